@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.virtual import mcc, robot
 from motionfmu.base.binding import Struct
+from motionfmu.virtual import mcc, robot
 
 SECONDS = 1.0
 REFUSALS = (ValueError, TypeError, mcc.MccError, mcc.CardError, robot.RobotError)

@@ -1,1 +1,1 @@
-"""What runs and models tell: contour, tool paths, loops, causes of errors, part programs."""
+"""Analyses of runs, models and part programs: contour, tool paths, loops, causes of errors."""

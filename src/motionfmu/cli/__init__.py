@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     import typer
 
-# Modules whose commands stand in others, too, and those that have no command.
+# Modules with commands that other modules add to, and modules without a command.
 SEVERAL = {"card", "common", "console_text", "fmu_export"}
 
 
@@ -56,7 +56,7 @@ def _status() -> tuple[int, str]:
     import os
     import signal
 
-    # To look for plugins in all installed packages takes longer than to read a scenario.
+    # pydantic would look for plugins in all installed packages, which takes longer than the rest.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     app = _commands(*sys.argv[1:2])
     from typer.exceptions import TyperException
@@ -64,7 +64,7 @@ def _status() -> tuple[int, str]:
     from motionfmu.base.errors import InputError
     from motionfmu.cli.common import STOPPED, WRONG, Stopped
 
-    # All is done then; an interrupt would only show where Python is.
+    # At exit all work is done, and an interrupt would only print a traceback.
     atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
     try:
         status = app(prog_name="motionfmu", standalone_mode=False) or 0

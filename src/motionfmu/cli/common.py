@@ -1,4 +1,4 @@
-"""What the commands share: the application, its options, settings, a run with a progress bar."""
+"""Common parts of the commands: application, options, settings, runs with a progress bar."""
 
 import functools
 import sys
@@ -128,7 +128,7 @@ def _given(texts: list[str]) -> dict[str, tuple[Any, str]]:
 
 def results(name: str, kind: str = "") -> Path:
     """The folder in which a command leaves its result."""
-    # A run's has the scenario's name alone; any other ends with the command's: circle.tune.
+    # The folder of a run has the scenario's name; other commands add their own: circle.tune.
     return Path("results") / (f"{name}.{kind}" if kind else name)
 
 
@@ -151,7 +151,7 @@ def progress_bar(*columns: "ProgressColumn") -> "Progress":
 
 
 def under_way(what: str) -> None:
-    """Tell on a terminal what is being made, in place of what was told before."""
+    """Show on a terminal what is being made, in place of the last such text."""
     if sys.stdout.isatty():
         print("\r\x1b[2K" + (f"{what} ..." if what else ""), end="", flush=True)
 

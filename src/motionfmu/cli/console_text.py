@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 
 GREEN, YELLOW, RED, DIM = "32", "33", "1;31", "2"
-LEAST = 20  # columns of the last cell of a row
+LEAST = 20  # least columns of the last cell of a row
 
 
 def styled(text: str, style: str) -> str:

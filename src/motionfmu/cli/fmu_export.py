@@ -1,4 +1,4 @@
-"""What `motionfmu export` does with an FMU instead of a scenario."""
+"""The part of `motionfmu export` that packs an FMU instead of a scenario."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def is_fmu(path: Path) -> bool:
-    """Whether a command line names a built FMU, and nothing that is there by that name."""
+    """Whether a path of the command line is the name of a built FMU and no existing file."""
     from motionfmu.scenarios.fmus import fmu_names
 
     return len(path.parts) == 1 and not path.exists() and path.name in fmu_names()
@@ -15,7 +15,7 @@ def is_fmu(path: Path) -> bool:
 def pack(
     name: str, target: Path | None, fmi: int, program: Path | None, given: Mapping[str, Any]
 ) -> None:
-    """Write an FMU with its files inside, and say what it has."""
+    """Write an FMU with its files inside, and print what it holds."""
     from motionfmu.cli.run import warnings
     from motionfmu.export.single_fmu import packed, program_of
 

@@ -1,4 +1,4 @@
-"""Arcs and helices, one or one for each point, and the nearest point on them."""
+"""Arcs and helices, and the nearest points on them: one arc for all points, or one for each."""
 
 import math
 from collections.abc import Iterator
@@ -14,8 +14,8 @@ Array = NDArray[np.float64]
 Numbers = Any
 
 TURN = 2.0 * math.pi
-# Newton with bisection as its fall-back gains at least one bit per round: a double has 53, and
-# the bracket is at most half a turn wide. Good starts need five to eight.
+# Newton's method with bisection as its fall-back gains one bit per round at least. A double has 53
+# bits, and the bracket is half a turn wide at most. Good starts need five to eight rounds.
 ROUNDS_MAX = 80
 # A root is found when the step is within a few roundings of the angle itself.
 EPS = float(np.finfo(float).eps)
@@ -37,8 +37,8 @@ class Arcs:
     """One arc for all points, or one for each of n: then every field has n rows.
 
     In an arc's own frame the point at angle a, 0 <= a <= `angle`, is ``radius + growth a/angle``
-    away from the axis, in the direction a, and ``rise a/angle`` high. All that is found, is found
-    there, in x, y and height.
+    away from the axis, in the direction a, and ``rise a/angle`` high. All searches are made in
+    this frame, in x, y and height.
     """
 
     centre: Array  # (3,) [mm]
@@ -72,14 +72,14 @@ class Arcs:
 
     @cached_property
     def reach(self) -> Numbers:
-        """No less than the length, also with growth [mm]."""
+        """Upper bound of the length, which holds with growth as well [mm]."""
         first, last = self.radius * self.angle, (self.radius + self.growth) * self.angle
         both = np.hypot(first, self.rise) + np.hypot(last, self.rise)
         return np.where(self.growth == 0.0, self.length, 0.5 * both + np.abs(self.growth))
 
     @cached_property
     def flat(self) -> NDArray[np.bool_]:
-        """Which are parts of a circle: no helix, no growth."""
+        """Which arcs are parts of a circle, without rise and growth."""
         return np.asarray((self.rise == 0.0) & (self.growth == 0.0))
 
     def points(self, angle: Array) -> Array:
@@ -108,7 +108,7 @@ class Arcs:
 
     def _frame(self, points: Array) -> tuple[Array, Array, Array]:
         """Points in the arc's own frame."""
-        # Sums of three products, not matrices: a library with threads is slower at these.
+        # Sums of three products: matrix products of a library with threads would be slower.
         u, v, w = (points[:, i] - c for i, c in enumerate(np.moveaxis(self.centre, -1, 0)))
         x, y, z = (a * u + b * v + c * w for a, b, c in self._rows)
         return x, y, z
@@ -142,10 +142,10 @@ class Arcs:
         return first, (-2.0 * g * s - radius * c, 2.0 * g * c - radius * s, 0.0 * c)
 
     def _foot_flat(self, points: Array) -> Foot:
-        """On a part of a circle: radially, or at the nearer end."""
+        """Nearest points on parts of circles: radially, or at the nearer end."""
         x, y, z = self._frame(points)
         size = np.sqrt(x * x + y * y)
-        middle = size == 0.0  # as far from all: the start
+        middle = size == 0.0  # a point on the axis is as far from all points: the start is taken
         angle = np.where(middle, 0.0, np.arctan2(y, x))  # of coordinates whose squares vanish, too
         angle = np.where(angle < 0.0, angle + TURN, angle)
         inside = angle <= self.angle
@@ -165,7 +165,7 @@ class Arcs:
         return Foot(point, angle * self.radius, distance, self._turned(-v, u, zero))
 
     def _foot_turned(self, points: Array) -> Foot:
-        """On a helix or an arc that grows: the best of all local minima and the ends."""
+        """Nearest points on helices and growing arcs: the best of local minima and ends."""
         own = self._frame(points)
         best = np.zeros(len(points))
         distance = self._distance(own, best)
@@ -192,7 +192,7 @@ class Arcs:
         if np.any(helix):
             rise = np.where(helix, self.rise, self.angle)
             near = self._helix_candidates(rise, (np.hypot(x, y), phase, z))
-            # Not the angle of the foot itself: as near to rounding, it would be no less exact.
+            # The foot's own angle is not compared: so near to rounding it is no less exact.
             found += [np.where(helix, angle, found[0]) for angle in near[1:]]
             found[0] = np.where(helix, near[0], found[0])
         return found

@@ -1,4 +1,4 @@
-"""Which segment each sample belongs to: monotone along the path."""
+"""Assignment of samples to segments of a path, in the order of travel."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.scaled_values import BLOCK, blocks, places
 from motionfmu.analysis.contour.segments import Index
 
-# Of so many samples in a row the middle one is searched first.
+# Successive samples are searched in groups of so many, of which the middle one comes first.
 STRIDE = 32
-# Parts of its candidates at whose ends such a sample looks first.
+# Number of parts of its candidates at whose ends such a sample is compared first.
 SPREAD = 8
 # Distances that differ by less are the same [mm]: a corner is as far from both its moves.
 SAME = 1e-9
-# The way along a path of kilometres is rounded to less than this [mm].
+# Upper bound of rounding in the length along a path of kilometres [mm].
 ROUNDED = 1e-6
 
 
@@ -35,10 +35,10 @@ def assign(
     `points` are an array (n, 3 or more) [mm], or what gives one for some rows of it.
 
     Of all assignments that stay within the candidates and never return to an earlier segment, the
-    one with the least sum of squared distances is found. So a path that crosses itself, or touches
-    itself, attracts no sample to the wrong branch: jumping ahead would have to be paid for by all
-    samples that follow. Of segments that are as near, as both moves are at a corner, the later one
-    is taken. It is a ValueError if candidates decrease or are missing.
+    one with the least sum of squared distances is found. So a path that crosses or touches itself
+    attracts no sample to the wrong branch, because to jump ahead would make all later samples
+    worse. Of segments that are equally near, as both moves are at a corner, the later one is taken.
+    A ValueError if candidates decrease or are missing.
 
     No assignment is better than one where each sample has its nearest candidate. Where those do not
     decrease, they are the result. Stretches where they do are solved by dynamic programming, each
@@ -73,7 +73,7 @@ def assign(
 
 
 def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]) -> Any:
-    """Whether two segments of each of some samples are as near."""
+    """Whether the two segments of each of some samples are equally near."""
     good = np.empty(len(rows), dtype=bool)
     for begin in range(0, len(rows), BLOCK):
         own = rows[begin : begin + BLOCK]
@@ -125,7 +125,7 @@ def nearest(
 
 @dataclass(eq=False)
 class _Search:
-    """What is known of the nearest segments of some points."""
+    """State of the search of the nearest segments of some points."""
 
     points: Array
     path: Path
@@ -133,7 +133,7 @@ class _Search:
     room: Array
     best: Array  # distance of the nearest place so far [mm]
     nearest: Index  # its segment
-    low: Index  # first and last segment that is as near
+    low: Index  # first and last of the equally near segments
     high: Index
 
     @classmethod
@@ -145,7 +145,7 @@ class _Search:
         return cls(points, path, candidates, room, none, one, one.copy(), one.copy())
 
     def look(self, rows: Index, segment: Index) -> None:
-        """See how near a segment is to some of the points."""
+        """Compare some of the points with a segment."""
         distance = self.path.segments.foot(self.points[rows], segment).distance
         best, room = self.best[rows], self.room[rows]
         near = distance <= best + room
@@ -159,7 +159,7 @@ class _Search:
         self.best[rows] = np.minimum(distance, best)
 
     def spread(self) -> None:
-        """Look at all candidates to either side that may be as near as the best so far."""
+        """Compare all candidates on either side that may be as near as the best so far."""
         segments = self.path.segments
         begin, end = segments.way
         here = self.nearest.copy()
@@ -179,15 +179,15 @@ class _Search:
             self.look(rows, s)
 
     def _free(self, rows: Index, node: Array) -> Array:
-        """Way from an end of a segment on which nothing is as near as the best so far [mm]."""
+        """Length from a segment's end on which nothing is as near as the best so far [mm]."""
         return norms(self.points[rows] - node) - self.best[rows] - self.room[rows] - ROUNDED
 
 
 def _solved(points: Array, path: Path, candidates: tuple[Index, Index], alone: Index) -> Index:
     """The best assignment of some samples, by dynamic programming along the segments.
 
-    Were each to go no farther back than the ones before it have to, that would be one of them; a
-    segment that costs a sample more than this costs all of them has no part in the best one.
+    A simple assignment moves each sample forward only as far as those before it require. Its cost
+    is a bound: a segment that costs one sample more has no part in the best assignment.
 
     With C(s, t) the least cost when sample t is on segment s, and D the running sum of its squared
     distances, ``C(s, t) = D(t) + min over u <= t of (M(u - 1) - D(u - 1))``, where M is the least C

@@ -1,4 +1,4 @@
-"""Circles of a program: where they are, and their circular tests."""
+"""Circles of a path, and their circular tests."""
 
 import math
 from dataclasses import asdict, dataclass, replace
@@ -38,11 +38,11 @@ class CirclePass:
     first: int  # first segment
     last: int  # last segment
     lines: tuple[int, int]  # first and last line of the program
-    points: Array  # (n, 2) samples that count, from the nominal centre in the plane's axes [mm]
+    points: Array  # (n, 2) samples used, from the nominal centre in the plane's axes [mm]
     time: Array  # (n,) of these samples [s]
     coverage: float  # angle they cover [rad]
-    steady: bool  # run-in and run-out are left out; false if the circle is too short for that
-    speed: float  # median of the command's over them [mm/s]
+    steady: bool  # without run-in and run-out; false if the circle is too short for that
+    speed: float  # median speed of the command over these samples [mm/s]
     reading: CircleFigures
 
     def numbers(self) -> dict[str, Any]:
@@ -92,7 +92,7 @@ def circular_tests(
     result is the reason by ``circles.<place>.<way>`` of each that has no test.
     """
     circles: list[CircularTest] = []
-    run: list[set[str]] = []  # ways round each that the path has
+    run: list[set[str]] = []  # directions in which the path goes round each circle
     missing: dict[str, str] = {}
     for ends in _full_circles(path):
         arc = path.segments[ends[0]]
@@ -199,8 +199,8 @@ def _full_circles(path: Path) -> list[tuple[int, int]]:
     columns = path.segments.columns
     rows = np.flatnonzero(columns.shape == ARC)
     angle, rise = columns.turned[:, 0], columns.turned[:, 1]
-    # Arcs that are like a first one are like their neighbours, twice as roughly: runs of such arcs
-    # that turn far enough in all are few.
+    # Arcs that are equal to the first of a group within a tolerance are equal to their neighbours
+    # within twice of it. So groups of equal neighbours are found first; few turn far enough.
     alike = (np.diff(rows) == 1) & (np.abs(np.diff(columns.centre, axis=0)).max(axis=1) <= 2 * SAME)
     starts = np.flatnonzero(np.concatenate([[True], ~alike])[: len(rows)])
     found = []
@@ -228,7 +228,7 @@ def _continues(head: Segment, other: Segment) -> bool:
 
 def _steady(time: Array, speed: Array, settle: float) -> tuple[float, float]:
     """Begin and end of the longest steady part of a circle, after it has settled [s]."""
-    # The tool may rest at an end for long: the usual speed is that of the samples in motion.
+    # The tool may rest at an end for long, so the usual speed is taken of samples in motion.
     moving = speed > 0.1 * float(speed.max(initial=0.0))
     middle = median(speed[moving]) if moving.any() else 0.0
     good = np.abs(speed - middle) <= STEADY * middle
@@ -241,7 +241,7 @@ def _steady(time: Array, speed: Array, settle: float) -> tuple[float, float]:
 
 
 def _whole_turns(points: Array, chosen: Index) -> tuple[Index, float]:
-    """As many whole turns of samples as there are, else all; the angle they cover [rad]."""
+    """Samples of all whole turns, or all if there is none, and the angle they cover [rad]."""
     if not len(chosen):
         return chosen, 0.0
     angle = unwrapped(np.arctan2(points[chosen, 1], points[chosen, 0]), TURN)

@@ -1,4 +1,4 @@
-"""What a contour analysis takes and gives."""
+"""Input and result of a contour analysis."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
@@ -19,7 +19,7 @@ from motionfmu.analysis.contour.segments import KINDS
 from motionfmu.analysis.contour.track import Track
 from motionfmu.base.errors import NoNumber
 
-# Commands and corners that `ContourResult.numbers` has at most, of each.
+# Most commands, and most corners, that `ContourResult.numbers` has.
 LISTED = 10_000
 # What is known of the error on a command: lengths [mm], time of the largest error [s].
 COMMANDS = [("command", "i8"), ("line", "i8"), ("kind", "U5")]
@@ -183,11 +183,11 @@ class ContourResult:
 
     @cached_property
     def _known(self) -> dict[str, Any]:
-        """Groups of numbers by name that were asked for."""
+        """Groups of numbers that were computed already, by name."""
         return {}
 
     def _group(self, name: str) -> Any:
-        """One of `GROUPS`, made once: a scenario's checks ask for one number after the other."""
+        """One of `GROUPS`, computed once, for checks ask for its numbers one by one."""
         if name not in self._known:
             self._known[name] = GROUPS[name](self)
         return self._known[name]
@@ -214,7 +214,7 @@ class ContourResult:
         return {AXES[i]: {"max": a, "rms": b} for i, a, b in rows}
 
     def _circles(self) -> list[dict[str, Any] | None]:
-        """By their number in the path, so that a name means the same circle in every run."""
+        """Circles by their number in the path, so that a name means one circle in all runs."""
         found = {c.place: c.numbers() for c in self.circles}
         known = {*found, *(int(name.split(".")[1]) for name in self.missing)}
         return [found.get(i) for i in range(1 + max(known, default=-1))]
@@ -274,7 +274,7 @@ class ContourResult:
         return float(value)
 
     def _why(self, name: str, part: str, value: Any) -> str:
-        """Why a number is not there: what the analysis left out, else what there is."""
+        """Why there is no such number: the analysis' reason, else the names that exist."""
         for place, reason in self.missing.items():
             if name.startswith((f"{place}.", f"{place.rpartition('.')[0]}.both.")):
                 return reason
@@ -284,7 +284,7 @@ class ContourResult:
 
 @dataclass(frozen=True, eq=False)
 class _Rows(Sequence[dict[str, Any]]):
-    """Rows of many, each made when it is asked for."""
+    """A sequence of rows, each of which is computed when it is read."""
 
     size: int
     make: Callable[[int], dict[str, Any]]

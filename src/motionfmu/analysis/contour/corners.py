@@ -38,7 +38,7 @@ def find_corners(
     if not len(before):
         return ()
     passed = np.searchsorted(track.segment, after)
-    reached = passed < len(time)  # else the run ends before
+    reached = passed < len(time)  # a run may end before a corner
     before, after, passed = before[reached], after[reached], passed[reached]
     angle = angle[reached]
     low = np.searchsorted(time, time[passed] - window)
@@ -72,11 +72,11 @@ def find_corners(
 
 
 def _corners(path: Path) -> tuple[Index, Index, Array]:
-    """Moves before and after each corner of the cutting moves, and its angle [rad]."""
+    """The cutting moves before and after each corner, and its angle [rad]."""
     segments = path.segments
     moves = np.flatnonzero(path.cut & (path.lengths > 0.0))
     before, after = moves[:-1], moves[1:]
-    # nothing but moves without length lies between
+    # only moves without length lie between them
     still = np.concatenate([[0], np.cumsum(path.lengths > 0.0)])
     joined = still[after] - still[before] == 1
     before, after = before[joined], after[joined]

@@ -12,7 +12,7 @@ from motionfmu.analysis.contour.arcs import ROUNDS_MAX, STEP_DONE, Arcs, Array, 
 # Parts of a cubic: Gauss and Legendre's rule of 16 points gives their lengths to rounding.
 PARTS = 64
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
-# Halvings of a cubic: parts are as short as the last digit of t then.
+# Most halvings of a cubic, after which parts are as short as the last digit of t.
 HALVINGS = 54
 # Of Bernstein polynomials of degree 3 and 2 to one of degree 5: C(3,i) C(2,j) / C(5,i+j).
 PRODUCT = [
@@ -84,7 +84,7 @@ class Arc:
 
     @cached_property
     def own(self) -> Arcs:
-        """The same, to find points on it."""
+        """The arc as `Arcs`, which find points on it."""
         shape = (self.angle, self.rise, self.growth)
         return Arcs.of(self.start, (self.centre, self.axis), shape)
 
@@ -219,7 +219,7 @@ class Cubic:
         found: list[tuple[NDArray[np.intp], Array, Array]] = []
         for _ in range(HALVINGS):
             changes = sign_changes(slope)
-            one = (changes == 1) & (slope[:, 0] <= 0.0)  # else it is farthest there
+            one = (changes == 1) & (slope[:, 0] <= 0.0)  # else the distance has a maximum there
             found.append((rows[one], low[one], low[one] + width))
             more = changes > 1
             if not more.any():
@@ -236,7 +236,7 @@ class Cubic:
         return of, self._root(points[of], start, end)
 
     def _root(self, points: Array, low: Array, high: Array) -> Array:
-        """Where the distance has no slope between some t: Newton, by halves where that leaves."""
+        """Values of t where the distance has no slope: by Newton's steps, or by halves."""
         t = 0.5 * (low + high)
         rows = np.arange(len(points))
         for _ in range(ROUNDS_MAX):
@@ -267,7 +267,7 @@ def norms(vectors: Array) -> Array:
 
 
 def sign_changes(coefficients: Array) -> NDArray[np.intp]:
-    """How often the signs of rows (n, k) change; zeros do not count."""
+    """Number of changes of sign in each row (n, k); zeros do not count."""
     last = np.zeros(len(coefficients))
     count = np.zeros(len(coefficients), np.intp)
     for column in np.sign(coefficients).T:

@@ -1,4 +1,4 @@
-"""When samples were taken, and what they were some time before or after."""
+"""Times of samples, and values of signals some time before or after them."""
 
 import math
 from dataclasses import dataclass
@@ -12,8 +12,8 @@ from motionfmu.analysis.contour.order import median
 from motionfmu.analysis.contour.scaled_values import blocks
 from motionfmu.analysis.contour.segments import Index
 
-# Samples are even if each lies within this part of a step of its place: k times a step, rounded, is
-# far nearer even after days.
+# Samples are evenly spaced if each lies within this part of a step of its place; k times a step,
+# rounded, is far nearer even after days.
 EVEN = 1e-7
 
 
@@ -33,7 +33,7 @@ class Instants:
 
     @cached_property
     def even(self) -> bool:
-        """Whether all steps are the same."""
+        """Whether samples are evenly spaced."""
         time, step = self.time, self.step
         for own in blocks(len(time), time):
             off = time[own] - (float(time[0]) + step * np.arange(own.start, own.stop))
@@ -47,7 +47,7 @@ class Instants:
         return self.step if self.even else median(np.diff(self.time))
 
     def shifted(self, values: Any, shift: float) -> Any:
-        """Of values (n,) those that hold at each time plus a shift [s]."""
+        """Values (n,) that hold at each time plus a shift [s]."""
         found = np.empty_like(values)
         count = len(self)
         k = math.floor(shift / self.step)
@@ -63,10 +63,10 @@ class Instants:
         return found
 
     def _at(self, own: slice, shift: float) -> Index:
-        """Sample that holds at some times plus a shift."""
+        """The samples whose values hold at times plus a shift."""
         time, last = self.time, len(self) - 1
         goal = np.asarray(time[own]) + shift
-        # Where the samples are even it is known, which is seen by looking there.
+        # For evenly spaced samples it can be computed, which is verified.
         even = np.arange(own.start, own.stop) + math.floor(shift / self.step)
         found = np.clip(even, 0, last)
         found += (found < last) & (time[np.minimum(found + 1, last)] <= goal)
@@ -78,7 +78,7 @@ class Instants:
         return found
 
     def speed(self, along: Array, span: float, own: slice | None = None) -> Array:
-        """Speed [mm/s] of a way along the path [mm], averaged over `span` [s]; of some samples."""
+        """Speed [mm/s] at samples of a position along the path [mm], averaged over `span` [s]."""
         time = self.time
         begin, end, _ = (own or slice(None)).indices(len(time))
         found = np.empty(max(0, end - begin))

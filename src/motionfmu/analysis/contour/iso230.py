@@ -11,18 +11,18 @@ from motionfmu.analysis.contour.kinds import BothWays, CircleFigures
 from motionfmu.analysis.contour.order import distinct, quantiles
 from motionfmu.analysis.contour.segments import Index
 
-# Gauss-Newton and its minimax kin square the error each round when the points lie near a circle;
-# six rounds go from 1 % to rounding. More are allowed for odd shapes.
+# Gauss and Newton's method and its minimax form square the error in each round if points lie near a
+# circle; six rounds lead from 1 % to rounding. Odd shapes may take more.
 ROUNDS_MAX = 50
 # A centre is found when it moves by less than this part of the radius.
 MOVE_DONE = 1e-13
-# Parts of the points of which the minimax fit takes the extreme ones.
+# The minimax fit begins with the extreme points of so many parts of the points.
 PARTS = 64
-# A point that leaves a zone by less than this part of its width is in it.
+# A point outside a zone by less than this part of its width counts as inside.
 ZONE_DONE = 1e-10
 # An exchange is one of at most so many points: far more than any shape needs.
 EXCHANGES_MAX = 1000
-# Corrections of a least squares solution: each squares what the normal equations lose.
+# Number of corrections of a least squares solution; each squares the error of the normal equations.
 CORRECTIONS = 2
 
 
@@ -52,7 +52,7 @@ class Ellipse:
 
 def _normal(rows: Array) -> Array:
     """Sums (k, k) of products of rows (k, n)."""
-    # no matrix products: a library with threads is slower at so few rows
+    # no matrix products, for a library with threads is slower with so few rows
     found = np.empty((len(rows), len(rows)))
     for i, row in enumerate(rows):
         for j in range(i, len(rows)):
@@ -68,8 +68,8 @@ def _sums(rows: Array, values: Array) -> Array:
 def least_squares(rows: Array, values: Array) -> Array:
     """Solve rows (k, n) @ x = values (n,) for x (k,) with the least sum of squares.
 
-    By the normal equations, which take one pass over the samples; what their condition loses, the
-    residuals bring back.
+    It is found by the normal equations, which take one pass over the samples, and corrected by the
+    residuals, because the condition of these equations loses digits.
     """
     normal = _normal(rows)
     found = np.linalg.solve(normal, _sums(rows, values))
@@ -111,9 +111,9 @@ def least_squares_circle(points: Array) -> tuple[Array, float]:
 def minimum_zone(points: Array, circle: tuple[Array, float] | None = None) -> Zone:
     """Two concentric circles of least radial separation, about points (n, 2) [mm].
 
-    They lie all round or at least over half a circle; `circle` is the least-squares one. The zone
-    of a few extreme points is found; those that it leaves out join them, until there are none: a
-    zone of some points that holds all of them is the least one of all.
+    The points lie all round or at least over half a circle; `circle` is the least-squares one. The
+    zone of a few extreme points is found, then points outside it are added, until it holds all of
+    them. It is the least zone of all points then, being that of some.
     """
     centre, _ = circle or least_squares_circle(points)
     radii = _radii(points, centre)
@@ -133,7 +133,7 @@ def minimum_zone(points: Array, circle: tuple[Array, float] | None = None) -> Zo
 
 
 def _extremes(radii: Array, of: NDArray[np.bool_]) -> Index:
-    """Nearest and farthest of some points, of each of `PARTS` parts of them."""
+    """The nearest and the farthest point of each of `PARTS` parts of the points."""
     rows = np.flatnonzero(of)
     cuts = distinct(np.linspace(0, len(rows), PARTS + 1).astype(int))
     found = []
@@ -189,7 +189,7 @@ def minimax(rows: Array, values: Array) -> Array:
     """
     angle = np.arctan2(rows[:, 1], rows[:, 0])
     order = np.argsort(angle)
-    # Four directions round the circle with signs that alternate have no better x.
+    # For four directions round the circle whose signs alternate no x is better.
     ends = np.searchsorted(angle[order], quantiles(distinct(angle), (0.0, 0.34, 0.67, 1.0)))
     four = order[ends]
     sign = np.array([1.0, -1.0, 1.0, -1.0])

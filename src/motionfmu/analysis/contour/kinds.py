@@ -1,4 +1,4 @@
-"""What a contour analysis gives as plain numbers; their names are those of result.json."""
+"""Plain numbers of a contour analysis, with the names that result.json has."""
 
 from dataclasses import dataclass
 

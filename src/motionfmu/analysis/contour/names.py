@@ -1,4 +1,4 @@
-"""Names that a contour number can have; whether a run has it is another question."""
+"""Names that numbers of a contour analysis can have, whether or not a run has them."""
 
 from dataclasses import fields
 from typing import Any, get_type_hints
@@ -16,7 +16,7 @@ def _of(kind: type, *more: str) -> dict[str, Any]:
 
 
 def _tree() -> dict[str, Any]:
-    """As `ContourResult.numbers`: None is a number, [x] a list of x."""
+    """Names of `ContourResult.numbers` as a tree: None is a number, [x] a list of x."""
     way = _of(CircleFigures, "coverage", "speed", "samples") | {"lines": [None]}
     circle = {"centre": [None], "normal": [None], "radius": None, "ccw": way, "cw": way}
     command = dict.fromkeys(("command", "line", "length", "max", "rms", "time"))

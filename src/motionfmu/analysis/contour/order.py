@@ -1,4 +1,4 @@
-"""Values in their order, as NumPy has it, without the masked arrays that it loads for that."""
+"""Quantiles, median and distinct values as NumPy gives them, without importing masked arrays."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,7 +9,7 @@ from motionfmu.analysis.contour.arcs import Array
 
 
 def quantiles(values: Array, shares: Sequence[float]) -> list[float]:
-    """Below each value lies this share of the values (n,), with straight lines between two."""
+    """The values below which these shares of the values (n,) lie, linearly interpolated."""
     places = [share * (len(values) - 1) for share in shares]
     low = [int(place) for place in places]
     high = [min(k + 1, len(values) - 1) for k in low]

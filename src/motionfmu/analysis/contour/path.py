@@ -1,4 +1,4 @@
-"""The planned path: exact segments in the order of the program."""
+"""The planned path, as exact segments in the order of the program."""
 
 from collections.abc import Iterable
 from functools import cached_property
@@ -12,7 +12,7 @@ from motionfmu.analysis.contour.segments import ARC, CUBIC, KINDS, LINE, Index, 
 
 # A move lies in a plane if it leaves it by less than this [mm]; a tenth of the finest pulse.
 FLAT = 1e-5
-# Points of a turn or a curve that is drawn.
+# Number of points of a turn, and of a curve, in a picture.
 STEPS = 90
 
 
@@ -92,7 +92,7 @@ class Path:
                 return normal
         rows = np.linalg.svd(ways, full_matrices=len(ways) < 3)[2]
         normal = rows[2]
-        if np.abs(ways @ rows[1]).max() <= FLAT:  # one direction: any plane through it will do
+        if np.abs(ways @ rows[1]).max() <= FLAT:  # one direction: any plane through it is right
             normal = np.eye(3)[int(np.argmin(np.abs(rows[0])))]
             normal = normal - (normal @ rows[0]) * rows[0]
             normal /= np.linalg.norm(normal)

@@ -22,7 +22,7 @@ from motionfmu.analysis.contour.segments import (
     Segments,
 )
 
-# Kinds of commands by their number in the file; place in KINDS, and shape.
+# Kinds of commands by their number in the file: index in KINDS, and shape.
 TYPES = {0: "ptp", 1: "line", 2: "arc", 3: "arc", 4: "helix", 5: "helix", 14: "curve"}
 SHAPES = {"ptp": LINE, "line": LINE, "arc": ARC, "helix": ARC, "curve": CUBIC}
 DELAY = 6
@@ -40,7 +40,7 @@ MEETS = 1e-4
 
 
 class RowFault(ValueError):
-    """A row that cannot be, by its number among those given."""
+    """A row that no geometry can have, with its number."""
 
     def __init__(self, row: int, what: str) -> None:
         super().__init__(what)
@@ -94,7 +94,7 @@ def path_of(stream: TextIO, name: str) -> Path:
 
 
 def _slowly(stream: TextIO, columns: tuple[list[str], list[str]], name: str) -> Array:
-    """The table row by row: some value in it is wrong, and the message says which."""
+    """Read the table row by row, because a value in it is wrong and the message must name it."""
     reader = csv.DictReader(stream, columns[0])
     rows = []
     for row in reader:

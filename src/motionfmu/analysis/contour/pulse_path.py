@@ -1,4 +1,4 @@
-"""What the pulses alone say of a run, which other gains do not change."""
+"""The pulses of a run followed along its path; runs with other gains have the same."""
 
 from collections import OrderedDict
 from collections.abc import Callable
@@ -16,15 +16,15 @@ from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.contour.track import Track, follow
 
 FIFO_DEPTH = 63
-# Commands under way beside the FIFO stock: one in the DDA, one transaction of 16, one spare.
+# Commands on their way beside the FIFO stock: one in the DDA, a transaction of 16, one spare.
 UNDER_WAY = 18
-# [bytes] what is kept of earlier runs; the longest unused goes first.
+# [bytes] that are kept of earlier runs; what was not used for the longest time goes first.
 ROOM, TEXTS = 64_000_000, 16_000_000
 
 
 @dataclass(frozen=True, eq=False)
 class PulsePath:
-    """The pulses put out, on the path."""
+    """Positions on the path of the pulses put out."""
 
     track: Track
     moved: Index  # (n,) number of samples so far at which they moved the tool
@@ -49,7 +49,7 @@ class PulsePaths:
         self._count = 0
 
     def path(self, text: str, make: Callable[[str], Path]) -> Path:
-        """The path of a text, now or before."""
+        """The path of a text, made by `make` unless it is kept from before."""
         found = self._paths.get(text)
         if found is None:
             found = self._paths[text] = make(text)
@@ -59,7 +59,7 @@ class PulsePaths:
         return found
 
     def commanded(self, run: ContourInput, progress: Callable[[float], None]) -> PulsePath:
-        """As the function; of a run with the same pulses what was found then."""
+        """As the function `commanded`; runs with the same pulses share one result."""
         given = _Inputs.of(run)
         for key, (before, found) in self._found.items():
             if before.same(given):
@@ -76,7 +76,7 @@ class PulsePaths:
 
 @dataclass(frozen=True, eq=False)
 class _Inputs:
-    """All that the pulses' way along the path depends on."""
+    """All inputs on which a `PulsePath` depends."""
 
     path: Path
     numbers: tuple[float, ...]
@@ -95,15 +95,15 @@ class _Inputs:
 
     @property
     def size(self) -> int:
-        """Bytes."""
+        """Size in memory [bytes]."""
         return sum(int(x.nbytes) for x in self.arrays)
 
     def copy(self) -> "_Inputs":
-        """The same in memory of its own."""
+        """A copy in memory of its own."""
         return _Inputs(self.path, self.numbers, tuple(np.array(x) for x in self.arrays))
 
     def same(self, other: "_Inputs") -> bool:
-        """Whether all is equal."""
+        """Whether all inputs are equal."""
         pairs = list(zip(self.arrays, other.arrays, strict=True))
         return (
             self.path is other.path
@@ -120,7 +120,7 @@ def _size(found: PulsePath) -> int:
 
 
 def _wait(run: ContourInput) -> float:
-    """How long a command may be under way [s]."""
+    """Longest time of a command between host and motor [s]."""
     stock = run.stock
     if stock is None:
         return run.dda_time * (UNDER_WAY + FIFO_DEPTH)

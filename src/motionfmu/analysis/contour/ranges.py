@@ -1,4 +1,4 @@
-"""Largest, least and mean of values over many ranges of samples, in one go."""
+"""Largest, least and mean values of many ranges of samples at once."""
 
 from collections.abc import Iterator
 

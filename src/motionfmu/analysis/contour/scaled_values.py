@@ -1,4 +1,4 @@
-"""Recorded signals in other units and in parts, without a copy of them."""
+"""Recorded signals in other units, converted part by part, so that no copy is made of them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ import numpy as np
 from motionfmu.analysis.contour.arcs import Array
 from motionfmu.base.columns import forget
 
-# Samples that are looked at together: enough for few calls, few enough for little memory.
+# Samples of a block: enough that there are few calls, few enough that they take little memory.
 BLOCK = 1 << 15
 
 
 @dataclass(frozen=True, eq=False)
 class ScaledValues:
-    """Values (n, m) over a divisor, or one for each column: made for the part that is asked for."""
+    """Values (n, m) divided by a number or one for each column; parts are computed when read."""
 
     values: Array
     divisor: Array | float
@@ -27,7 +27,7 @@ class ScaledValues:
 
     @property
     def base(self) -> Array:
-        """What it is made of, as of a view of an array."""
+        """The array of which this is a view."""
         return self.values
 
     def __len__(self) -> int:
@@ -43,12 +43,12 @@ class ScaledValues:
         return np.asarray(self[:], dtype=dtype)
 
     def copy(self) -> Array:
-        """All of it, to be changed."""
+        """All values as an array that can be changed."""
         return self[:]
 
 
 def places(values: Any, rows: Any) -> Array:
-    """The first three columns (n, 3) of some rows, each in a piece: so sums of them are quick."""
+    """The first three columns (n, 3) of some rows, each contiguous, for quick sums of them."""
     divisor = 1.0
     if isinstance(values, ScaledValues):
         values, divisor = values.values, values.divisor
@@ -61,7 +61,7 @@ def places(values: Any, rows: Any) -> Array:
 
 
 def finite(values: Any, own: slice) -> Any:
-    """Which values of some rows are finite; whole numbers are."""
+    """Which values of some rows are finite; whole numbers always are."""
     good = np.ones(1, dtype=bool)
     if isinstance(values, ScaledValues):
         divisor, values = np.asarray(values.divisor), values.values
@@ -70,7 +70,7 @@ def finite(values: Any, own: slice) -> Any:
 
 
 def blocks(count: int, *passed: Any) -> Iterator[slice]:
-    """Samples in parts; of arrays that are passed with them, a file's pages are let go."""
+    """Slices of all samples, block by block; pages of mapped arrays that were read are let go."""
     for first in range(0, count, BLOCK):
         yield slice(first, min(first + BLOCK, count))
         for array in passed:

@@ -1,4 +1,4 @@
-"""All segments of a path as columns, and the nearest points on many of them in one go."""
+"""All segments of a path as columns, and the nearest points on many of them at once."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -17,16 +17,16 @@ from motionfmu.base.memo import Memo
 Index = NDArray[Any]  # of integers
 KINDS = ("ptp", "line", "arc", "helix", "curve")
 LINE, ARC, CUBIC = 0, 1, 2
-# Points that follow each other on one segment are taken by themselves from so many on: what they
-# share is then not copied for each.
+# If so many successive points or more are on one segment, they are handled together, so that the
+# segment's data are not copied for each point.
 RUN = 256
-# Segments that are kept as they were made, with what has been worked out about them.
+# So many segments are kept as objects, with the values computed from them.
 KEPT = 64
 
 
 @dataclass(frozen=True, eq=False)
 class SegmentColumns:
-    """What many segments are, a row each."""
+    """Columns of a table with a row for each segment."""
 
     command: Index  # (n,) of the library
     line: Index  # (n,) of the part program

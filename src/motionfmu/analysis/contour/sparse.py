@@ -1,11 +1,11 @@
-"""What rows of every so many steps hide of a contour."""
+"""Warnings about a contour that is recorded at every so many steps only."""
 
 from motionfmu.analysis.contour.contour_result import ContourResult
 from motionfmu.analysis.contour.error import LAGS
 
-# Rows in a lag, at least. An error that comes and goes with the lag T falls by exp(-t/T), so half
-# a row off its peak 12 % of it are lost. Commands shorter than a row are no loss: the tool
-# cannot follow what is far shorter than the lag. What cuts lasts five lags, 20 rows.
+# A servo lag needs so many rows at least. An error that comes and goes with the lag T falls by
+# exp(-t/T), so half a row beside its peak 12 % of it are missed. Commands shorter than a row are no
+# loss, for the tool cannot follow what is far shorter than the lag. A cut lasts five lags, 20 rows.
 PER_LAG = 4
 
 

@@ -1,4 +1,4 @@
-"""A position followed along the exact path."""
+"""A position that is followed along the exact path."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -58,9 +58,9 @@ def follow(positions: Any, path: Path, owners: Index) -> Track:
 
 
 def _unwrap(along: Array, path: Path, owners: Index) -> None:
-    """Make of ways on circles [mm] such on arcs that may be run through more than once."""
+    """Convert positions on circles [mm] to positions on arcs of more than one turn."""
     columns, arcs = path.segments.columns, path.segments.arcs
-    # a shorter arc has no two places half a turn apart
+    # a shorter arc has no two points that are half a turn apart
     wide = (columns.turned[:, 0] > 0.5 * TURN) & (columns.turned[:, 1] == 0.0)
     for s in np.flatnonzero(columns.shape == ARC)[wide].tolist():
         a, b = np.searchsorted(owners, [s, s + 1])

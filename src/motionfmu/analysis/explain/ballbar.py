@@ -22,12 +22,12 @@ from numpy.typing import NDArray
 from motionfmu.analysis.contour.arcs import TURN, Array
 from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 
-# Left out of the fit, and searched for spikes: behind each quadrant in the direction of travel,
-# and just before it [rad].
+# Angles behind each quadrant, in the direction of travel, and just before it that are left out of
+# the fit and searched for spikes [rad].
 SPIKE_BEHIND, SPIKE_BEFORE = math.radians(20.0), math.radians(2.0)
-# A part is named if it is at least this large [mm], and this part of the largest.
+# A finding is named if it has this size at least [mm], and this share of the largest one.
 NAMED_MIN, NAMED_SHARE = 0.5e-3, 0.1
-# A spike is named above as much, and this many times the scatter of what the fit leaves.
+# A spike must also be this many times the scatter of what the fit leaves.
 SPIKE_SCATTER = 3.0
 AXES = "XYZ"
 
@@ -159,7 +159,7 @@ def _basis(angle: Array, way: Array) -> Array:
 
 
 def _taken_up(since: Array, radius: float, width: float) -> Array:
-    """From -1 to 1 while an axis takes up its backlash behind its reversal, at an angle since."""
+    """Goes from -1 to 1 while an axis takes up its backlash; `since` is the angle from reversal."""
     if width == 0.0:
         return np.ones_like(since)
     return np.clip(2.0 * radius * (1.0 - np.cos(since)) / abs(width) - 1.0, -1.0, 1.0)
@@ -207,7 +207,7 @@ def _mismatch(size: float, test: CircularTest, names: tuple[str, str]) -> tuple[
 
 
 def _figures(x: float) -> str:
-    """Three figures, never with a power of ten."""
+    """A number with three significant digits, without a power of ten."""
     return f"{float(f'{x:.3g}'):.10g}"
 
 

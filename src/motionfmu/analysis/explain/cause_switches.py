@@ -1,7 +1,7 @@
 """Causes of contour error, and how each is switched off.
 
-What an FMU can switch off stands in its own causes.toml, which its .fmu carries. A cause of a
-scenario is the union over its FMUs.
+The causes.toml in an FMU lists what it can switch off. A cause of a scenario is switched off in all
+FMUs that have it.
 """
 
 import functools
@@ -27,7 +27,7 @@ RESOURCE = f"{EXTRA}/causes.toml"
 THEORY = "theory"
 AXES = 6
 INT_MAX = 2**31 - 1
-# Titles of the causes that every report knows; an FMU may bring others with a title of their own.
+# Titles of the common causes; an FMU may have others, with titles of their own.
 TITLES = {
     "chord": "Interpolation (chord)",
     "quantisation": "Quantisation (pulses, encoder)",
@@ -64,13 +64,13 @@ class Cause:
 
     @property
     def after(self) -> str:
-        """Cause that is off on both sides; empty for none."""
+        """The cause that is off in both runs whose difference is this cause's effect; or empty."""
         return next((s.after for s in self.switches.values() if s.after), "")
 
 
 @dataclass(frozen=True)
 class CauseOff:
-    """A cause that is switched off."""
+    """The settings that switch a cause off, or why there are none."""
 
     set: Mapping[str, Any]  # value by `component.variable`; empty if nothing changes
     why_not: str = ""  # why nothing changes: the cause is absent, or cannot be switched off
@@ -160,7 +160,7 @@ def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> CauseOff:
 
 
 def used(result: "Result") -> list[int]:
-    """Axes in use, from 0: of the library that plans the path, else of the first that tells."""
+    """Axes in use, from 0: those of the library that plans the path, else of another FMU."""
     ports = result.resolver.ports
     told = [n for n, own in ports.items() if "active" in own and own["active"].shape == (AXES,)]
     planning = [n for n in told if "path_file" in ports[n]]
@@ -170,7 +170,7 @@ def used(result: "Result") -> list[int]:
 
 
 def _equal(values: np.ndarray, others: list[np.ndarray], axes: list[int]) -> np.ndarray:
-    """Give the product of values and others its mean over the axes in use."""
+    """Values whose product with `others` is its mean on all axes in use."""
     weight = np.ones_like(values)
     for other in others:
         weight = weight * other
@@ -194,8 +194,8 @@ def _within(values: np.ndarray, port: "Port", limit: bool) -> tuple[list[Any], s
 
 
 def quantities(result: "Result") -> dict[str, np.ndarray]:
-    """What the FMUs tell theory, six axes by name: ``gain`` is a product over FMUs, others a
-    sum.
+    """Quantities for theory from the FMUs, six axes each, by name: ``gain`` is a product over
+    FMUs, others are sums.
     """
     found: dict[str, np.ndarray] = {}
     for component, fmu in result.scenario.document.body.component.items():

@@ -24,15 +24,15 @@ if TYPE_CHECKING:
     from motionfmu.analysis.contour.track import Track
     from motionfmu.run import Result
 
-# Places along the path at which runs are compared.
+# Number of points along the path at which runs are compared.
 PLACES = 20_000
-# An effect below this is rounding of the runs, not a cause [mm].
+# A smaller effect comes from rounding in the runs and not from a cause [mm].
 NOTHING = 1e-6
-# A tool that goes back by more than this has been there before: only its first pass counts [mm].
+# If a tool goes back by more than this, only its first pass of the place counts [mm].
 STANDS = 1e-6
-# Servo lags that a rest takes at least; the places of a servo window after it do not count.
+# A rest takes so many servo lags at least; points within a servo window after it do not count.
 RESTS = 3.0
-# A motion is the same if it takes the same time but for this part: delays differ, speeds do not.
+# Two motions are the same if their times differ by this share at most, as by delays.
 SAME = 0.01
 PATH, SERVO = "path", "servo"
 TITLES = {PATH: "Path the card was given (blending)", SERVO: "Servo lag"}
@@ -50,7 +50,7 @@ class Effect:
     rms: float  # root mean square of the change [mm]
     where: int  # line of the program at which the change is largest; 0 if there is none
     without: float | None  # largest contour error of the run without the cause [mm]
-    judged: bool  # it could be switched off, or was not there; else `how` says why
+    judged: bool  # the cause could be switched off, or was absent; else `how` says why not
     theory: "theory.Theory"
     change: Array  # (n,) contour error with the cause minus without, along the path [mm]
 
@@ -96,7 +96,7 @@ class Explanation(Effects[Effect]):
 
     def numbers(self) -> dict[str, Any]:
         """Every number, ready for JSON; mm, rad."""
-        # The whole error as everywhere, over time where the tool cuts; the rest over the way.
+        # The whole error is taken over time where the tool cuts, all other numbers along the path.
         error = self.result.contour().error
         sizes = {"contour_error": {"max": error.max, "rms": error.rms}} | {
             name: {"max": _top(values[self.counts]), "rms": _rms(values[self.counts])}
@@ -141,7 +141,7 @@ def explain(
     InputError
         The scenario or a setting is wrong, or has no contour; one message.
     """
-    # One of its own, as more is recorded of it.
+    # The scenario is loaded anew, because more signals are recorded.
     scenario = path.changed() if isinstance(path, Scenario) else load(path)
     if scenario.document.body.contour is None:
         raise InputError(f"{scenario.document.file}: the scenario has no [contour] table")
@@ -175,7 +175,7 @@ def explain(
 
 
 def watch(scenario: "Scenario", names: list[str]) -> None:
-    """Record these too, for no chart."""
+    """Add outputs to those that a scenario records, without showing them in a figure."""
     have = {e.name for e in scenario.ends}
     if new := [n for n in names if n not in have]:
         ends = recording.chosen(scenario.resolver, new)
@@ -184,7 +184,7 @@ def watch(scenario: "Scenario", names: list[str]) -> None:
 
 
 def _run(scenario: "Scenario", given: Mapping[str, Any], stop: float | None) -> "ContourResult":
-    """Contour of a run without some causes; the library must still go on without an error."""
+    """Contour of a run without some causes; refuses a run in which the library has an error."""
     library = library_of(scenario.resolver)
     result = scenario.run(set=given, stop=stop)
     if code := int(np.max(result[f"{library}.error"])):
@@ -273,7 +273,8 @@ def _effect(
 def _counted(run: "ContourResult", along: Array) -> NDArray[np.bool_]:
     """Places on lines and arcs, but for the first ones after a rest.
 
-    Where the tool rests, and how it starts from there, depends by friction on all that was before.
+    By friction the place where the tool rests, and its start from there, depend on all motion
+    before.
     """
     time, path, way = run.run.time, run.run.path, run.command_track.along
     owner = np.searchsorted(path.offsets, along, side="right") - 1
@@ -297,7 +298,7 @@ def _rms(values: Array) -> float:
 
 
 def short(value: Any) -> str:
-    """A setting in few letters."""
+    """Short text of a setting."""
     if not isinstance(value, list):
         return f"{value:g}"
     return (
@@ -311,7 +312,7 @@ def _tool(run: "ContourResult", along: Array) -> Array:
 
 
 def _blended(run: "ContourResult") -> Array:
-    """Error of the pulses; where they blend two moves the nearer one counts."""
+    """Contour error of the pulses; where they blend two moves, that from the nearer one."""
     track, segments = run.command_track, run.run.path.segments
     after = np.minimum(track.segment + 1, len(segments) - 1)
     there = segments.foot(run.run.commanded[:, :3], after).distance
@@ -320,7 +321,7 @@ def _blended(run: "ContourResult") -> Array:
 
 
 def _along(errors: "tuple[Track, Array]", run: "ContourResult", along: Array) -> Array:
-    """Contour error at places of the path, where a run first comes by."""
+    """Contour error at points of the path, at the first pass of a run."""
     track, values = errors
     place, error = track.along[run.cutting], values[run.cutting]
     first = place >= np.maximum.accumulate(place) - STANDS

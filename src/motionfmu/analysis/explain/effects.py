@@ -1,4 +1,4 @@
-"""What every explanation has: effects by name, and what they leave."""
+"""Effects of an explanation by name, and the residual that they leave."""
 
 from typing import Generic, Protocol, TypeVar
 
@@ -6,11 +6,11 @@ from motionfmu.analysis.explain.servo_formulas import Array
 
 
 class NamedEffect(Protocol):
-    """An effect."""
+    """An effect with the name of its cause."""
 
     @property
     def name(self) -> str:
-        """Of its cause."""
+        """Name of the cause."""
 
 
 E = TypeVar("E", bound=NamedEffect)
@@ -25,7 +25,7 @@ class Effects(Generic[E]):
 
     @property
     def residual(self) -> Array:
-        """The whole minus the sum of the effects, in its shape [mm]."""
+        """The whole error minus the sum of the effects [mm]."""
         return self.whole - self.together
 
     def effect(self, name: str) -> E:

@@ -33,7 +33,7 @@ class PathEffect:
     name: str
     title: str
     how: str  # how it was switched off, or why not
-    judged: bool  # it could be switched off, or was not there; else `how` says why
+    judged: bool  # the cause could be switched off, or was absent; else `how` says why not
     change: Array  # (m, 3) mean line with the cause minus without, at the planes [mm]
     figures: Mapping[str, float]  # of the change as if it were the error, by `FIGURES` [mm]
     without: Mapping[str, float]  # of the run without the cause [mm]; empty if there is none
@@ -108,7 +108,7 @@ def explain_path(
     InputError
         The scenario or a setting is wrong, or has no figures; one message.
     """
-    # One of its own, as more is recorded of it.
+    # The scenario is loaded anew, because more signals are recorded.
     scenario = path.changed() if isinstance(path, Scenario) else load(path)
     if scenario.document.body.iso9283 is None:
         raise InputError(f"{scenario.document.file}: the scenario has no [iso9283] table")
@@ -177,7 +177,7 @@ def _error(run: Performance, along: Array) -> Array:
 
 
 def _figures(base: Performance, error: Array) -> dict[str, float]:
-    """Figures of a mean line that is off by so much."""
+    """Figures of a mean line with this deviation."""
     line = base.moved(error)
     found = {"accuracy": float(line.accuracy.max())}
     found |= {k: float(v[0]) for k, v in line.shapes().items()}

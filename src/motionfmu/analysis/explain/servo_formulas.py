@@ -24,7 +24,7 @@ PEAK_STEPS, PEAK_LENGTH = 2000, 8.0
 
 @dataclass(frozen=True)
 class ServoAxis:
-    """One axis as theory sees it."""
+    """The parameters of one axis that theory needs."""
 
     gain: float  # position gain Kp [1/s]
     period: float = 0.0  # sampling time of the position loop [s]

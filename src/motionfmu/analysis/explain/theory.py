@@ -1,4 +1,4 @@
-"""What theory says of each cause, for the geometry and the parameters of a run."""
+"""Predictions of theory for each cause, from the geometry and the parameters of a run."""
 
 import math
 from dataclasses import dataclass, replace
@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from motionfmu.analysis.contour.kinds import Corner
     from motionfmu.run import Result
 
-# Places per segment at which an error of the geometry is looked at.
+# Number of points of a segment at which an error of geometry is computed.
 PLACES = 361
 # A corner below this part of the feed is one at which the command stops.
 SLOW = 0.05
-# Servo lags for which the command stays there for the tool to come: exp(-3) of the way is left.
+# A command that stays at a corner for so many servo lags lets the tool come there: exp(-3) of the
+# distance is left.
 RESTS = 3.0
 BLENDED = "blended"
 # Causes whose formula asks for the position gain.
@@ -30,11 +31,11 @@ BY_GAIN = ("servo", "chord", "mismatch", "friction")
 
 @dataclass(frozen=True)
 class Theory:
-    """What a formula says."""
+    """The prediction of a formula."""
 
     # largest contour error by the cause [mm]; None without a formula for this geometry
     value: float | None
-    formula: str  # and what it leaves out
+    formula: str  # the formula, and what it leaves out
 
 
 NONE = Theory(None, "")
@@ -42,7 +43,7 @@ NONE = Theory(None, "")
 
 @dataclass(frozen=True)
 class CornerRow:
-    """A corner: what was found beside what a servo alone does."""
+    """A corner: its error in the run beside that of a servo alone."""
 
     lines: tuple[int, int]  # of the program, before and behind
     # "sharp" at a feed; "stop" for an instant; "rest" until the tool has come; or "blended": the
@@ -69,10 +70,9 @@ def corner_rows(
 
 
 class RunTheory:
-    """Formulas applied to one run.
+    """The formulas of theory, applied to one run.
 
-    The run without all causes, `ideal`, gives the corners, and the position gain if the FMUs do not
-    tell it.
+    The run without any cause, `ideal`, gives the corners, and the position gain if no FMU has it.
     """
 
     def __init__(self, result: "Result", ideal: "ContourResult") -> None:
@@ -121,7 +121,7 @@ class RunTheory:
                 return BLENDED, feed, None
             said = servo_formulas.blended_corner(feed, corner.angle, self.mean_gain, acceleration)
             return BLENDED, feed, said
-        # The least speed is a mean over a span: a command that stops for an instant shows so much.
+        # The least speed is a mean over a span; this one is that of a stop for an instant.
         speed = max(0.0, corner.speed - 0.25 * acceleration * SPEED_SPAN)
         if speed < SLOW * feed:
             speed = 0.0

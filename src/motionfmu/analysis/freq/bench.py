@@ -1,4 +1,4 @@
-"""The FMUs of one loop on a test bench: anything can be added to what a wire brings."""
+"""A test bench for the FMUs of one loop, where signals can be added to the values of wires."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator
@@ -92,7 +92,7 @@ class Bench:
         self.lead = self._lead() if axis.others else 0
 
     def _lead(self) -> int:
-        """Steps until axes that are coupled stand: drives begin without the torque that holds."""
+        """Steps until coupled axes stand still, for drives begin without their holding torque."""
         closed = self.axis.system(self.setup.inputs, self.setup.outputs)
         slow = np.abs(moving(closed.poles())).max(initial=0.0)
         seconds = _DIED / max(-math.log(max(float(slow), 1e-9)) / closed.dt, _DIED / _LEAD_MAX)
@@ -100,7 +100,7 @@ class Bench:
         return math.ceil(seconds / closed.dt) * round(closed.dt * 1e9 / self.step_ns)
 
     def _offset(self, wire: Wire) -> list[float]:
-        """The torque that holds a coupled plant, on top of what is wired there; else nothing."""
+        """The torque that holds a coupled plant, to be added to a wire's value; else zeros."""
         component, port = wire.target.component, wire.target.port
         if not self.axis.others or component not in self.axis.points:
             return []
@@ -109,7 +109,7 @@ class Bench:
         return [values[n] for n in names]
 
     def _alone(self, system: System) -> System:
-        """Only what is used, with every other axis switched off."""
+        """The system of the FMUs that are used, with all other axes switched off."""
         removed = set(self.setup.cut)
         joined = [
             w
@@ -144,7 +144,7 @@ class Bench:
         return replace(system, components=components, wires=tuple(joined), stimuli=())
 
     def _from_law(self, wire: Wire, given: dict[str, Any]) -> None:
-        """The value that an FMU which does not run would set, where its law says it."""
+        """Set an input to the value that an FMU that does not run would give it, by its law."""
         component, name = wire.target.component, wire.target.port.name
         try:
             value = self.axis.value(f"{component}.{name}")
@@ -261,7 +261,7 @@ def _target(wire: Wire) -> Port:
 
 
 class _BenchWire:
-    """A wire as it is, or with something constant added."""
+    """A wire that carries its value, or the value plus a constant."""
 
     def __init__(self, slaves: dict[str, Slave], wire: Wire, offset: list[float]) -> None:
         source, target = slaves[wire.source.component], slaves[wire.target.component]
@@ -288,13 +288,13 @@ class _OutputReader:
         self.get = slaves[component].access("Get", declared.type, declared.reference, self.buffer)
 
     def read(self) -> float:
-        """Its value now."""
+        """The present value."""
         self.get()
         return float(self.buffer[self.place])
 
 
 class _Tap:
-    """An input with something added to its wire, which may be delayed and multiplied."""
+    """An input with a signal added to its wire's value, which may be delayed and multiplied."""
 
     def __init__(self, slaves: dict[str, Slave], bench: Bench, number: int) -> None:
         self.port = bench.entries[number]
@@ -325,7 +325,7 @@ class _Tap:
             self.buffer[:] = self.source.buffer[:]  # other axes as their wire brings them
 
     def put(self, added: float) -> float:
-        """Write the sum; what was added, after rounding."""
+        """Write the sum; returns the signal that was added, after rounding."""
         brought = self.base if self.source is None else self.late.pop(0)
         value = brought + added
         if self.whole:

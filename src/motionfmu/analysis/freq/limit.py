@@ -26,22 +26,23 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RingingTest:
-    """How a loop is made to ring."""
+    """The test by which a loop is made to ring."""
 
     kick: float  # step, in the unit of the input: many of its grains, far from every limit
     cycles: int = 30  # of the ringing that are watched, after half as many
     tolerance: float = 0.01  # relative width at which the search ends; the rest is interpolated
 
 
-# What is watched lies between these multiples of the kick's own ringing and of the grain: above it
-# a limit may act, below it is rounding.
+# The amplitude of ringing is used between these multiples of the first ringing and of the grain:
+# above, a limit may act; below, there is rounding.
 _CAP, _FLOOR = 4.0, 1.0
-# A deviation of so many kicks ends a run: it is unstable.
+# A run ends as unstable at a deviation of so many kicks.
 _RUNAWAY = 300.0
 _CYCLES_PER_WINDOW = 2
-# The usual kick is so many grains, at their largest within so many samples.
+# The usual kick is so many grains, with the largest response within so many samples.
 _GRAINS, _LOOK = 200.0, 200
-# A smaller kick is so large a part, tried so often; two gains are the same within this.
+# The next smaller kick is this share of the last; so many are tried, until two gains differ by less
+# than this.
 _SMALLER, _SMALLEST, _SAME = 0.2, 2, 0.01
 
 
@@ -182,7 +183,7 @@ def small_signal_gain(
     gain: str | None = None,
     progress: Callable[[int], None] = lambda runs: None,
 ) -> tuple[Limit, float]:
-    """As `simulated_gain`, with a step of which the size is all one.
+    """As `simulated_gain`, with a step so small that its size does not matter.
 
     It begins with `usual_kick` and takes a fifth of it until two steps, or a step and the linear
     model, give the same gain within 1 %; a limit that acts, such as that of a torque, would show.

@@ -1,4 +1,4 @@
-"""All about one loop: margins, limits both ways, measured response."""
+"""Study of one loop: margins, largest gains by model and simulation, measured response."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -23,11 +23,11 @@ from motionfmu.base.errors import InputError
 _LINES, _SAMPLES_MAX, _SETTLE_MAX, _PERIODS = 60, 10_000, 8, 4
 # A frequency whose standard error is a larger share of its value is left out.
 _SPREAD = 0.05
-# Differences from the model are told from so many %, degrees on.
+# Differences from the model of so many %, degrees or more are told.
 _APART = 5.0, 5.0
 # Peak of the multisine, in kicks: it is spread over all lines.
 _PEAK = 4.0
-# A joint of an arm that is held harder than this moves too little to be measured.
+# A joint of an arm whose loop has a larger gain than this moves too little to be measured.
 _HELD = 20.0
 # A ringing of so many grains must be followed, or edges are lost and not rounded.
 _GRAINS = 20.0
@@ -35,7 +35,7 @@ _GRAINS = 20.0
 
 @dataclass(frozen=True)
 class LoopStudy:
-    """What was found out about a loop."""
+    """The results of a study of a loop."""
 
     at: str  # the input at which it is opened
     cut: tuple[str, ...]  # inputs of other loops that are cut
@@ -46,7 +46,7 @@ class LoopStudy:
     simulated: Limit | None  # the same by simulation; None if not asked for
     measured: Response | None  # open loop of the running FMUs
     kick: float  # step with which they were made to ring, in the unit of the input
-    silent: str = ""  # why they were not run; empty if they were, or were not to be
+    silent: str = ""  # why the FMUs did not run; empty if they did, or were not asked for
     notes: tuple[str, ...] = ()  # what the response leaves out, and where it is not the model's
 
     @property
@@ -58,7 +58,7 @@ class LoopStudy:
 
 @dataclass(frozen=True)
 class LoopStudyOptions:
-    """What to study."""
+    """Options of a study of loops."""
 
     loop: str | None = None  # one input; None: every input through which a plant is fed back
     gains: Mapping[str, str] | None = None  # parameter whose limit is wanted, by its loop's input
@@ -125,7 +125,7 @@ def _one(
 
 
 def _silent(axis: AxisModel, at: str, limit: Limit, gain: str | None) -> str:
-    """Why the FMUs would not do what the model does."""
+    """Why the FMUs would differ from the model; empty if they would not."""
     component, _, variable = at.partition(".")
     grain = getattr(axis.blocks[component], "grain", {}).get(variable, 0.0)
     factor = limit.gain if gain is None and math.isfinite(limit.gain) else 1.0
@@ -142,7 +142,7 @@ def _silent(axis: AxisModel, at: str, limit: Limit, gain: str | None) -> str:
 def _measured(
     axis: AxisModel, which: Loop, found: Margins, kick: float | None
 ) -> tuple[Response | None, tuple[str, ...]]:
-    """The loop of the FMUs where it can be measured, and what is to be said about it."""
+    """The measured loop of the FMUs, if it can be measured, and notes about it."""
     at, cut = which
     loop = axis.loop(at, cut)
     low = found.omega_phase if math.isfinite(found.omega_phase) else math.pi / (50.0 * loop.dt)

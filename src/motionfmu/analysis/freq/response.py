@@ -17,7 +17,7 @@ from motionfmu.analysis.linear.stability import moving
 from motionfmu.base.errors import InputError
 
 Array = NDArray[np.float64]
-# Share of the speed that an input follows with which it is moved.
+# An input is moved with this share of the speed that it can follow.
 _FOLLOWED = 0.8
 
 
@@ -57,7 +57,7 @@ def ramp(bench: Bench, name: str) -> float:
 
 
 def _rate(axis: AxisModel, name: str) -> float:
-    """How fast an input moves at the operating point."""
+    """Speed of an input at the operating point."""
     component, _, variable = name.partition(".")
     source = axis.wires.get((component, variable))
     point: Point | None = axis.points.get(source[0]) if source else None
@@ -65,7 +65,7 @@ def _rate(axis: AxisModel, name: str) -> float:
 
 
 def gentle(rate: float, lead: int, steps: int) -> Array:
-    """Position that reaches a rate per step within the lead smoothly."""
+    """A position whose rate per step rises smoothly within the lead."""
     time = np.arange(steps, dtype=float)
     soft = max(0.6 * lead, 1.0)
     rising = 0.5 * (time - soft / np.pi * np.sin(np.minimum(time / soft, 1.0) * np.pi))
@@ -74,13 +74,13 @@ def gentle(rate: float, lead: int, steps: int) -> Array:
 
 
 def room(axis: AxisModel, name: str, factor: float = 1.0) -> float:
-    """Speed that an input follows beside its own [its unit/s]."""
+    """Speed that an input can follow beside that of the operating point [its unit/s]."""
     # Below 0 if the operating point alone is too fast.
     return fastest(axis, name) - abs(factor * _rate(axis, name))
 
 
 def fastest(axis: AxisModel, name: str) -> float:
-    """Most of the speed that an input follows; infinite if unlimited."""
+    """Usable share of the speed that an input can follow; infinite if unlimited."""
     component, _, variable = name.partition(".")
     block = axis.blocks[component]
     found = block.speed.get(variable, math.inf) if isinstance(block, Sampled) else math.inf
@@ -88,9 +88,10 @@ def fastest(axis: AxisModel, name: str) -> float:
 
 
 def _held(signal: Array, hold: int, fastest: float) -> Array:
-    """Held from sample to sample.
+    """A signal held from sample to sample.
 
-    Where an input follows no jump: straight from the sample before, and so small that it follows.
+    If an input cannot follow jumps, it goes straight from sample to sample, reduced to what the
+    input follows.
     """
     if not fastest < math.inf:
         return np.repeat(signal, hold)
@@ -199,7 +200,7 @@ def measured_loop(setup: Setup, excitation: Excitation) -> Response:
 
 
 def settling(system: control.StateSpace) -> float:
-    """Samples until a start has died away to a thousandth."""
+    """Samples until a transient has died away to a thousandth."""
     # Poles at 1 only hold a position and do not count. An unstable system: as one which nearly is.
     slow = np.abs(moving(system.poles())).max(initial=1e-3)
     return 7.0 / -math.log(min(float(slow), 1.0 - 1e-4))

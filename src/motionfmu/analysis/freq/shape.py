@@ -1,4 +1,4 @@
-"""How large an excitation may be at each frequency: limits and the operating point say it."""
+"""Sizes of an excitation at each frequency, so that it keeps limits and the operating point."""
 
 import math
 from dataclasses import replace
@@ -19,11 +19,11 @@ from motionfmu.analysis.linear.wiring import Port
 Array = NDArray[np.float64]
 Complex = NDArray[Any]
 Loop = tuple[str, tuple[str, ...]]  # input, inputs of other loops that are cut
-# Share of a limit's room that is used: the rest is for the start and for what the model leaves out.
+# Share of a limit's margin that is used; the rest is for the transient and errors of the model.
 _ROOM = 0.5
-# Share of the stated speed: friction, a gap and a turning back stay far.
+# Share of the stated speed, so that no axis turns back, where friction and gaps act.
 _SPEED = 0.3
-# A loop is worth measuring above this |L|; largest share by which what is not linear may change it.
+# A loop is measured where |L| is above this; nonlinear parts may change it by this share at most.
 WORTH, _BEYOND, _HALVINGS = 0.1, 0.005, 40
 
 
@@ -76,7 +76,7 @@ def small(
 
 
 def _nearly_linear(axis: AxisModel, loop: Loop, signal: Excitation) -> Excitation:
-    """So small that what the plants' equations have beyond the linear part does not show.
+    """A signal so small that the nonlinear parts of the plants' equations have no effect.
 
     The rest w of the equations along the linear motion acts like a further input: what it moves at
     the input of the loop, first order, is compared with what the signal moves there.
@@ -140,7 +140,7 @@ def _port(name: str) -> Port:
 
 
 def _steady(axis: AxisModel, name: str) -> float:
-    """What an output is at the operating point, where a plant reads it; else 0."""
+    """Value of an output at the operating point if a plant reads it; else 0."""
     component, _, variable = name.partition(".")
     for target, source in axis.wires.items():
         if source == (component, variable) and target[0] in axis.points:

@@ -19,7 +19,7 @@ REPORTS = 64  # room for all faults and notes
 TYPES = (
     "rapid line cw_arc ccw_arc cw_helix ccw_helix dwell 7 8 9 10 outputs stop rapid_joints curve"
 ).split()
-_MORE = 0  # of enum interpreter_result: room was all that ended it
+_MORE = 0  # of enum interpreter_result: the call ended because its room was full
 
 
 @dataclass(frozen=True)
@@ -52,14 +52,14 @@ class Fault:
         return f'{file}line {self.line}: {self.why} "{self.text}", column {self.column}'
 
 
-# How C asks for the text of a file that a program calls: by name, with its length.
+# Type of the function by which C gets the text of a called file: by name, with its length.
 _FILE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes.c_int64))
 
 
 def judged(
     texts: Callable[[str], bytes], check: Callable[[ctypes.c_void_p, Any], Any]
 ) -> tuple[list[Fault], list[Fault], bool]:
-    """Faults and notes of texts as a C check tells them, and whether there are more faults.
+    """Faults and notes that a C check finds in texts, and whether there are more faults.
 
     The texts are those of the files that a program calls, and with an empty name its own.
     """
@@ -101,7 +101,7 @@ class Texts:
         return self.of[""], ctypes.c_int64(len(self.of[""])), self.file
 
     def tell(self) -> None:
-        """Raise what kept a file from being read while C asked for it."""
+        """Raise the error that kept a file from being read while C asked for it."""
         if self._unreadable:
             raise self._unreadable
 
@@ -113,7 +113,7 @@ class Texts:
                 return None
             try:
                 self.of[found] = text_of(text_in(file))
-            except InputError as error:  # C between here and the caller lets no exception pass
+            except InputError as error:  # an exception cannot pass through the C code
                 self._unreadable = error
                 return None
         length[0] = len(self.of[found])
@@ -195,7 +195,7 @@ class Program:
         return places
 
     def _driven(self, places: np.ndarray | None) -> tuple[np.ndarray, int]:
-        """Times of the commands, and how many periods there are."""
+        """Times of the commands, and the number of periods."""
         times, drive = np.zeros(len(self.commands)), library().binding_gcode_time
         drive.restype = ctypes.c_int64
         periods = drive(

@@ -1,11 +1,11 @@
-"""Files that a part program calls, found in its text: they travel with it."""
+"""Files that a part program calls, found in its text, because they must be packed with it."""
 
 import re
 from pathlib import Path
 
 from motionfmu.base.toml_lines import is_file
 
-# A line with a call, without blanks, which do not count; o#1 and o[..] are computed.
+# A call in a line without its blanks, which do not count; names o#1 and o[..] are computed.
 _CALL = re.compile(r"/*(?:n?[\d.]+)?o(?:<([^>]*)>|(\d+)|[#\[].*)call", re.IGNORECASE)
 # M100 to M199, whose subprograms are m100.ngc ..
 _USER = re.compile(r"m(1\d\d)(?!\d)", re.IGNORECASE)

@@ -1,4 +1,4 @@
-"""What a part program amounts to: its time, ways, extents and tools."""
+"""Figures of a part program: time, lengths, extents and tools."""
 
 import ctypes
 from collections.abc import Iterator
@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from motionfmu.analysis.gcode.program import AXES, TYPES, Program
 from motionfmu.base.binding import library
 
-# A point at least every so much of an arc [rad]; points of a curve.
+# Largest angle of an arc between two points [rad]; number of points of a curve.
 STEP, CURVE = 0.05, 41
 MOTIONS = ("line", "cw_arc", "ccw_arc", "cw_helix", "ccw_helix", "curve")
 
 
 @dataclass(frozen=True)
 class Use:
-    """What a tool does.
+    """The use of a tool.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What the analysis takes: recorded cycles and how they are looked at."""
+"""Input of the analysis: recorded cycles, and options of their evaluation."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from motionfmu.analysis.iso9283.turn import Array
 
 PLANES = 200
 CORNER = 1.0  # [mm] planes turn at a corner: ISO 9283 looks at cornering by itself
-RAMP = 0.5  # of the speed, as in ISO 9283: what is slower at either end is a ramp
+RAMP = 0.5  # share of the speed below which either end of a cycle is a ramp, as in ISO 9283
 
 
 @dataclass(frozen=True)

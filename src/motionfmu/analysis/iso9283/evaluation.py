@@ -1,4 +1,4 @@
-"""All figures of an evaluation by name, and which names there can be."""
+"""All figures of an evaluation by name, and the names that figures can have."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -49,7 +49,7 @@ class Evaluation:
 
     def numbers(self) -> dict[str, Any]:
         """Every figure, ready for JSON; AV and RV in percent."""
-        # One that this run does not have is None.
+        # A figure that this run does not have is None.
         path = self.path
         found: dict[str, Any] = {
             "units": {"length": "mm", "time": "s", "angle": "deg", "speed": "mm/s", "AV, RV": "%"},

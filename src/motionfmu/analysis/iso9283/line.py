@@ -1,4 +1,4 @@
-"""How straight points lie: the best line by least squares and the largest distance to it."""
+"""Straightness of points: the line by least squares and the largest distance from it."""
 
 import numpy as np
 

@@ -15,7 +15,7 @@ from motionfmu.analysis.iso9283.pose import three_sigma
 from motionfmu.analysis.iso9283.strokes import Strokes, coincidence
 from motionfmu.analysis.iso9283.turn import Array, deviation
 
-# Places that are looked at to find where the ramps end; the planes are laid between those.
+# Number of points at which the ends of the ramps are searched; planes are placed between them.
 SURVEY = 400
 # A change of direction of the path from here on is a corner.
 CORNER = np.radians(10.0)
@@ -103,7 +103,7 @@ class Performance:
     @cached_property
     def mean_speeds(self) -> Array:
         """Way over time of each cycle, middle half (n,) [mm/s]."""
-        # The way from plane to plane: what goes back between two of them is none.
+        # The length is taken from plane to plane, so motion back between two planes does not count.
         first, last = self._middle
         steps = np.linalg.norm(np.diff(self.point[:, first : last + 1], axis=1), axis=2)
         return np.asarray(steps.sum(axis=1) / (self.time[:, last] - self.time[:, first]))
@@ -155,7 +155,7 @@ class Performance:
 
     def shapes(self) -> dict[str, Array]:
         """Straightness, in-plane deviation, height by cycle (n,) [mm]."""
-        # What the path does not have is left out.
+        # Figures that the path does not have are left out.
         found: dict[str, Array] = {}
         if self.given.path.straight:
             found["straightness"] = np.array([straightness(p) for p in self.point])
@@ -223,7 +223,7 @@ def analyse(given: Cycles) -> Performance:
 
 
 def _evaluated(given: Cycles, survey: Array, rough: list[Crossings]) -> tuple[float, float]:
-    """Ends of what all cycles pass fast enough, as lengths on the path [mm]."""
+    """Ends of the part of the path that all cycles pass fast enough, as lengths on it [mm]."""
     good = np.ones(len(survey), dtype=bool)
     for j, (cycle, each) in enumerate(zip(given.cycles, rough, strict=True)):
         there = ~np.isnan(each.time)
@@ -260,7 +260,7 @@ def _refuse_gaps(cycle: int, along: Array, found: Crossings, wanted: NDArray[np.
 
 
 def _near_corner(path: CommandPath, along: Array, room: float) -> NDArray[np.bool_]:
-    """Places nearer than this to a corner of the path."""
+    """Which points of the path are nearer than `room` to a corner."""
     near = np.zeros(len(along), dtype=bool)
     steps = np.diff(path.points, axis=0)
     way = steps / np.linalg.norm(steps, axis=1, keepdims=True)

@@ -73,7 +73,7 @@ class AxisModel:
 
     @property
     def others(self) -> tuple[int, ...]:
-        """Axes that a plant couples with this one; mostly none."""
+        """The axes that a plant couples with this one, usually none."""
         return self._parts.others
 
     def changed(self, set: Mapping[str, Any]) -> "AxisModel":
@@ -100,7 +100,7 @@ class AxisModel:
     def moved(self, at: Mapping[str, float]) -> "AxisModel":
         """The same model about another operating point.
 
-        The scenario is not read anew, and plants that are not asked to move are kept.
+        The scenario is not read again, and plants whose point is the same are kept.
 
         Parameters
         ----------

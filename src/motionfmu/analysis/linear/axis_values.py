@@ -24,9 +24,9 @@ def element(ports: Mapping[str, Port], name: str, axis: int) -> tuple[Port, int]
 
 
 class AxisValues(Mapping[str, Any]):
-    """Values of one axis of one component, asked for one by one."""
+    """Values of one axis of one component, which notes the names that are read."""
 
-    # The axis counts from 1; a scalar is the same for all.
+    # The axis counts from 1; all axes share a scalar.
 
     def __init__(self, system: System, scenario: Scenario, component: str, axis: int) -> None:
         self._ports = scenario.resolver.ports[component]

@@ -1,4 +1,4 @@
-"""Linear blocks between communication points, timed as the FMUs are."""
+"""Linear blocks with the timing of the FMUs between communication points."""
 
 from dataclasses import dataclass, field
 
@@ -19,7 +19,7 @@ def nonzero(matrix: Matrix) -> NDArray[np.bool_]:
 
 @dataclass(frozen=True)
 class Sampled:
-    """A sampled law: reads at k T, shows at (k + 1) T.
+    """A sampled law, which reads at k T and shows its outputs at (k + 1) T.
 
     The input vector is ``inputs`` and then ``commands``. At an instant, from input u and state x:
     [next x; outputs; early] = law [x; u]. A law may change from instant to instant, and begins
@@ -27,8 +27,8 @@ class Sampled:
     """
 
     inputs: tuple[str, ...]  # ports that move
-    commands: tuple[str, ...]  # signals that arise inside and come in from the side
-    states: tuple[str, ...]  # what is kept
+    commands: tuple[str, ...]  # signals that arise inside the block
+    states: tuple[str, ...]  # quantities that are kept from one instant to the next
     outputs: tuple[str, ...]  # shown one period later
     early: tuple[str, ...]  # shown at the next communication point
     direct: tuple[str, ...]  # shown at once
@@ -53,7 +53,7 @@ class Sampled:
 
     @property
     def memory(self) -> tuple[str, ...]:
-        """Names of what it remembers from one grid instant to the next."""
+        """Names of the values that are kept from one grid instant to the next."""
         return (*self.states, *self.outputs, *self.early)
 
     @property
@@ -63,12 +63,12 @@ class Sampled:
 
     def begin(self, memory: Matrix) -> Matrix:
         """Working memory, of shape (rows, n), at an instant of its grid."""
-        # A place more for each output: what is shown and what is computed.
+        # Each output has two places: the value that is shown, and the one computed since.
         n = len(self.states)
         return np.vstack([memory, memory[n : n + len(self.outputs)]])
 
     def end(self, work: Matrix) -> Matrix:
-        """Memory again, at an instant of its grid."""
+        """The kept values of a working memory, at an instant of its grid."""
         return work[: len(self.memory)]
 
     def shown(self, work: Matrix, u: Matrix) -> Matrix:

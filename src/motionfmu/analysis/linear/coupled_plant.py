@@ -1,4 +1,4 @@
-"""A plant that couples axes: the axis studied, and all others held by their own loops."""
+"""Plants that couple axes: one axis is studied while the others are held by their own loops."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -12,18 +12,18 @@ from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.scenarios.fmus import Port
 from motionfmu.scenarios.system import Wire
 
-# What a law names: in order, and with a value.
+# Fields of a law with names in order, and fields with values by name.
 _NAMES = "inputs", "commands", "states", "outputs", "early", "direct"
 _TABLES = "grain", "speed"
 
 
 def couples(said: Any) -> bool:
-    """Whether an FMU's own equation has arrays as inputs: its elements act on one another."""
+    """Whether an FMU's equation has arrays as inputs, so that its axes act on one another."""
     return isinstance(said, Ode) and any("[" in d.name for d in said.inputs)
 
 
 def others(wires: Iterable[Wire], said: Mapping[str, Any], axis: int) -> tuple[int, ...]:
-    """Axes beside one, from 1, that plants couple with it."""
+    """The axes, from 1, that plants couple with an axis."""
     counts = [w.target.port.count for w in wires if couples(said[w.target.component])]
     return tuple(k for k in range(1, max(counts, default=0) + 1) if k != axis)
 
@@ -64,7 +64,7 @@ def beside(own: Sampled, rest: Mapping[int, Sampled]) -> Sampled:
 
 
 def _diagonal(blocks: Sequence[Matrix]) -> Matrix:
-    """Blocks one below and beside the other, zeros elsewhere."""
+    """A block diagonal matrix."""
     made = np.zeros(np.sum([b.shape for b in blocks], axis=0))
     row = column = 0
     for b in blocks:

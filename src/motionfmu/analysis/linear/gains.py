@@ -1,4 +1,4 @@
-"""Position gains in 1/s, worked out once for what they depend on and kept on the disk."""
+"""Position gains in 1/s, computed once and kept on the disk with all that they depend on."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -16,7 +16,7 @@ from motionfmu.scenarios.document import plain
 
 FILE = "gains.json"
 PACKAGE = Path(__file__).resolve().parents[2]
-# Parts of the package of which a gain is made: its modules, those they import, and FMUs' readers.
+# Parts of the package that compute gains: these modules, those they import, readers of FMUs.
 MADE_BY = ("*.py", "fmu/**/*.py", "scenarios/*.py", "run/*.py", "linear/*.py")
 
 
@@ -99,7 +99,7 @@ def gain_of(
         needed("tune")
         from motionfmu.analysis.linear.position_gain import (
             found,
-        )  # with all that makes linear models
+        )  # its import brings all that makes linear models
 
         listed = list(found(loaded, set or {}, axis, at))
         (folder / FILE).write_text(json.dumps(listed), encoding="utf-8")
@@ -111,7 +111,7 @@ def gain_of(
 def _key(
     scenario: Scenario, set_: Mapping[str, Any], axis: int | None, at: Mapping[str, float]
 ) -> str:
-    """A name for the gains: what is written, what is given, the FMUs, and what works it out."""
+    """A hash of all on which gains depend: scenario, values, FMUs, and the package's text."""
     # All of the scenario's tables: a law may ask for any value.
     told = repr((scenario.document.tables, plain(set_), axis, plain(at)))
     archives = map(fmus.digest, scenario.document.body.component.values())
@@ -120,13 +120,13 @@ def _key(
 
 @cache
 def _text() -> str:
-    """A name for the package's own text, as far as it works out gains."""
+    """A hash of the package's own text, as far as it computes gains."""
     files = (file for pattern in MADE_BY for file in sorted(PACKAGE.glob(pattern)))
     return disk_cache.key(*(file.read_bytes() for file in files))
 
 
 def in_lines(gains: Iterable[LoopGain]) -> list[str]:
-    """Gains in words, a line each; alike ones of one parameter together."""
+    """Gains in words, one line each; equal gains of one parameter share a line."""
     found = []
     for (name, told), group in groupby(gains, key=lambda g: (g.name, _told(g))):
         axes = ",".join(str(g.axis) for g in group if g.axis)

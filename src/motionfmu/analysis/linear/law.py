@@ -1,4 +1,4 @@
-"""Read the sampled law that an FMU carries, and make a block of it."""
+"""The sampled law that an FMU carries, and the linear block that is made of it."""
 
 import functools
 import tomllib
@@ -19,7 +19,7 @@ from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import nanoseconds
 
 LAW = "linear.toml"
-# Decimal periods are not exact in binary: a quotient is off by far less than this share.
+# Decimal periods are not exact in binary, but their quotients are wrong by far less than this.
 _WHOLE = 1e-9
 
 
@@ -65,8 +65,8 @@ def parse(text: str, file: str = LAW) -> Law:
 
 @functools.cache
 def carried(fmu: str) -> Law | Ode | None:
-    """A sampled law, a plant's equation, or nothing, from its archive."""
-    # A wrong law is a ValueError; no such folder under fmus/, an InputError.
+    """The sampled law or the plant's equation in an FMU's archive; None if it has neither."""
+    # A ValueError if the law is wrong, an InputError if there is no such FMU.
     with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
         names = archive.namelist()
         if f"{EXTRA}/{LAW}" in names:
@@ -77,7 +77,7 @@ def carried(fmu: str) -> Law | Ode | None:
 
 
 class _LawNames(Mapping[str, Any]):
-    """Moving quantities first, then formulas of `let`, then values of the FMU's variables."""
+    """Names in a law's formulas: moving quantities, then formulas of `let`, then variables."""
 
     def __init__(self, law: Law, given: Mapping[str, Any], moving: dict[str, Quantity]) -> None:
         self._law, self._given, self._moving = law, given, moving
@@ -130,7 +130,7 @@ def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None
 def _instant(
     law: Law, given: Mapping[str, Any], place: tuple[int, int]
 ) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
-    """The law at one instant of its cycle, and what it shows at once."""
+    """Matrices of the law at one instant of its cycle, and those of direct outputs."""
     moving = [*law.state, *law.inputs, *law.commands]
     known: dict[str, Quantity] = dict(zip(("instant", "instants"), place, strict=True))
     for name, unit in zip(moving, np.eye(len(moving)), strict=True):

@@ -1,4 +1,4 @@
-"""Formulas over numbers and over quantities that move, kept linear."""
+"""Formulas of numbers and of moving quantities, whose results are linear forms."""
 
 import ast
 import functools
@@ -24,7 +24,7 @@ class Gain(float):
     """
 
     symbol: ca.SX  # scalar
-    plain: Any  # the number as a scenario takes it, where that is not a float
+    plain: Any  # the number as a scenario takes it, if that is no float
 
     def __new__(cls, value: float, symbol: ca.SX, plain: Any = None) -> "Gain":
         """Keep the number in the float itself."""
@@ -54,7 +54,7 @@ Gain.__neg__ = _both("__neg__")  # type: ignore[method-assign]
 
 
 def coefficient(value: Any) -> Any:
-    """What a matrix holds: the expression of a `Gain`, else a float."""
+    """An element of a matrix: the expression of a `Gain`, else a float."""
     return value.symbol if isinstance(value, Gain) else float(value)
 
 

@@ -1,4 +1,4 @@
-"""Which loops a scenario closes, and the largest gain that leaves one stable."""
+"""The loops that a scenario closes, and the largest gain with which one is stable."""
 
 import math
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from motionfmu.analysis.linear.tuning_parts import matrices
 from motionfmu.analysis.linear.wiring import Port
 from motionfmu.base.errors import InputError
 
-# A gain is looked for within this factor of where the search begins.
+# A gain is searched within this factor of its start.
 FACTOR_MAX = 1e4
 _WIDEN = 1.5
 
@@ -69,13 +69,13 @@ def feedbacks(axis: AxisModel) -> dict[str, tuple[str, ...]]:
             around = matrices(axis, [name], [".".join(axis.wires[target])], (name, *cut))
         except InputError:
             continue
-        if around.states or around.d.any():  # else it is read there, but nothing acts on it
+        if around.states or around.d.any():  # else the input is read, but has no effect
             found[name] = cut
     return dict(sorted(found.items(), key=lambda pair: len(pair[1])))
 
 
 def _way(axis: AxisModel, start: Port) -> set[str]:
-    """Components from an input to the plants that it acts on, without them."""
+    """Components between an input and the plants on which it acts."""
     found, left = {start[0]}, [start[0]]
     while left:
         component = left.pop()
@@ -143,7 +143,7 @@ def is_whole(axis: AxisModel, gain: str | None) -> bool:
 
 
 def begin(axis: AxisModel, gain: str | None) -> float:
-    """Where a search for a gain begins: its value, which must be > 0."""
+    """The start of a search for a gain: its value, which must be above 0."""
     if gain is None:
         return 1.0
     value = axis.value(gain)

@@ -1,4 +1,4 @@
-"""What the linear model of an axis is made of: values, blocks and wires of its components."""
+"""Parts of the linear model of an axis: values, blocks and wires of its components."""
 
 import functools
 import itertools
@@ -37,7 +37,7 @@ class Parts:
     blocks: Mapping[str, Block]
     points: Mapping[str, Point]
     others: tuple[int, ...]  # axes that a plant couples with this one
-    keys: Mapping[str, Any]  # what the block of a plant was made of
+    keys: Mapping[str, Any]  # all on which the block of each plant depends
 
     @property
     def left_out(self) -> tuple[str, ...]:
@@ -91,7 +91,7 @@ def parts(
 def _complete(
     system: System, every: Mapping[str, AxisValues], gains: Mapping[str, tuple[Gain, ...]]
 ) -> None:
-    """Put in open gains, and what the laws say of the other ends of the wires."""
+    """Add open gains, and values that the laws give for the other ends of wires."""
     for name, value in gains.items():
         component, _, variable = name.partition(".")
         every[component].given[variable] = value
@@ -116,7 +116,7 @@ def _blocks(
     said = {c: law.carried(f) for c, f in components.items()}
     blocks: dict[str, Block] = {}
     points: dict[str, Point] = {}
-    # plants first: a law may ask for its outputs at their point
+    # plants come first, because a law may need their outputs at the operating point
     for c in sorted(components, key=lambda c: isinstance(said[c], law.Law)):
         own = said[c]
         try:

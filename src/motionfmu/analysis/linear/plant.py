@@ -1,4 +1,4 @@
-"""A plant's equation about an operating point, on its micro-grid."""
+"""A plant's equation, linearised about an operating point and discretised by its micro step."""
 
 import itertools
 import math
@@ -17,29 +17,29 @@ from motionfmu.scenarios.system import nanoseconds
 
 # As src/plant/plant_model.c chooses its sub-steps: (h/n) |lambda| <= 2.
 H_LAMBDA = 2.0
-# A uniform motion is found when what is left of the balance is below this, relative.
+# A uniform motion is found when the residual of the balance, relative to its terms, is below this.
 _UNIFORM = 1e-9
 _EXACT = 1e-15
-# Size of a position on which nothing depends [m, rad]: it shall stay, and end stops are near.
+# Size of a position on which nothing depends [m, rad], small so that it stays off end stops.
 _FAR = 1e-3
-# Positions after a second have lost digits to rounding.
+# Share of a position that rounding may have lost after a second.
 _LASTING = 1e-6
-# Times after which a motion is looked at again [s]; one that is over sooner than the first is none.
+# Times at which a motion is tested [s]; one that ends before the first is no uniform motion.
 _LOOKS = [float(t) for t in np.geomspace(1e-3, 1.0, 61)]
 _SHORTEST_MOTION = _LOOKS[0]
-# Relative distance at which both sides of a point are looked at.
+# Relative distance of the two points about a point at which its matrices are taken.
 _HAIR = 1e-13
-# Newton's steps and the shortest part of one; fewer where many beginnings are tried.
+# Most of Newton's steps, and the shortest share of one; fewer steps if many starts are tried.
 _PATIENCE, _GLANCE = (60, 1e-6), (15, 1e-2)
-# It leads nowhere when so many steps, one after the other, were cut to less than this share.
+# Newton's method has failed if so many successive steps were cut to less than this share.
 _CREEPING, _SHORT = 5, 1e-3
-# Ways beyond which a gap may be closed, and how much stiffer it is then.
+# Distances at which a gap may be closed, and the factor by which it is stiffer then.
 _GAPS, _CLOSED = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2), 1e3
 # Steps of an input that is followed: the first, the least, the one at which Newton takes over, and
 # the farthest input looked at, in its unit and as a share.
 _FIRST_INPUT, _LEAST_INPUT, _NEAR_INPUT, _LAST_INPUT = 1e-3, 1e-7, 1e-4, 1e4
 
-# Points that are remembered.
+# Number of operating points that are kept.
 _POINTS_MAX = 100
 
 
@@ -54,9 +54,9 @@ class Point:
     x: Matrix  # states
     u: Matrix  # inputs
     values: dict[str, float]  # both by name, and the outputs, in the units of the class
-    stated: dict[str, float]  # what was asked for
+    stated: dict[str, float]  # the values that the user stated
     rates: dict[str, float]  # of the outputs, per second: nonzero where the motion goes on
-    held: dict[str, float] = field(default_factory=dict)  # kept though not stated
+    held: dict[str, float] = field(default_factory=dict)  # values that are kept, though not stated
     # How long the motion goes on so [s]: to an end stop, or where a gap closes. Infinite from a
     # second on.
     lasts: float = math.inf
@@ -72,7 +72,7 @@ def _newton(
     sizes: Matrix,
     patience: tuple[int, float] = _PATIENCE,
 ) -> Matrix:
-    """The shortest step in sizes of the unknowns, halved until it leads nearer; size 0 stays."""
+    """Solve equations by Newton's shortest steps, relative to `sizes`; unknowns of size 0 stay."""
     z, found, slow = start, rest(start), 0
     steps, shortest = patience
     for _ in range(steps):
@@ -91,7 +91,7 @@ def _newton(
 
 
 def _beside(x: Matrix, which: NDArray[np.intp]) -> Iterator[Matrix]:
-    """Some states moved a little and more, both ways: a gap closes on the side of the force."""
+    """Starts in which some states are moved a little and more, both ways, to close gaps."""
     for size in (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0):
         for k in which:
             for sign in (1.0, -1.0):
@@ -105,8 +105,8 @@ def _bracketed(
 ) -> Matrix:
     """The input between two, one after the other, whose motions are too slow and too fast.
 
-    Where a valve is shut the input moves nothing and Newton has no way to go. So the motion is
-    followed along the input, from its start both ways, each begun at the one before.
+    If a valve is shut, the input moves nothing and Newton's method has no direction. So motions are
+    found for one input after the other, from its start both ways, each begun at the one before.
     """
     rest, slope, aimed = equations
     rows = np.delete(np.arange(len(rest(start))), aimed)
@@ -135,13 +135,13 @@ def _bracketed(
 
 
 class Linearised:
-    """The functions of an equation, made once."""
+    """The functions of a plant's equation and of its derivatives."""
 
     def __init__(self, ode: Ode) -> None:
         self.ode = ode
         a, b, c, d = (ca.jacobian(e, v) for e in (ode.xdot, ode.y) for v in (ode.x, ode.u))
         arguments = [ode.x, ode.u, ode.p]
-        # In a uniform motion every slope is constant: d(xdot)/dt = A xdot = 0.
+        # In a uniform motion all rates are constant: d(xdot)/dt = A xdot = 0.
         change = ca.mtimes(a, ode.xdot)
         self._matrices = Quick("abcd", arguments, [a, b, c, d])
         self._values = Quick("values", arguments, [ode.xdot, ode.y, change])
@@ -158,12 +158,12 @@ class Linearised:
     def matrices(self, x: Matrix, u: Matrix, p: Matrix) -> tuple[Matrix, Matrix, Matrix, Matrix]:
         """Matrices A, B, C, D at a point.
 
-        The mean of both sides of the point, a hair away: where branches meet without a bend (a gap
-        of width 0 at force 0) the point itself has no derivative that CasADi could tell.
+        They are means of two points very near on either side: where branches meet smoothly, as at a
+        gap of width 0 without force, CasADi gives no derivative at the point itself.
         """
         sides = []
         for hair in (_HAIR, -_HAIR):
-            # unequal, so that no difference of two states stays 0
+            # the shifts are unequal, so that no difference of two states stays 0
             away = [v + hair * np.arange(1, v.size + 1) * (1.0 + np.abs(v)) for v in (x, u)]
             sides.append(self._matrices(*away, p))
         a, b, c, d = (0.5 * (one + other) for one, other in zip(*sides, strict=True))
@@ -212,7 +212,7 @@ class Linearised:
         return Point(x, u, values, dict(stated), told, left, lasts)
 
     def _moving(self, x: Matrix, u: Matrix, p: Matrix) -> Matrix:
-        """Rates of the states, without what rounding leaves of a sum of forces."""
+        """Rates of the states, where those that are only rounding of a sum of forces are 0."""
         xdot = self._values(x, u, p)[0].ravel()
         a, b, _, _ = self.matrices(x, u, p)
         balance = np.abs(a) @ np.abs(x) + np.abs(b) @ np.abs(u)
@@ -225,7 +225,7 @@ class Linearised:
         wanted: dict[int, float],
         stated: Mapping[str, float],
     ) -> tuple[Matrix, Matrix, float]:
-        """The motion that lasts longest, with the first input that makes one."""
+        """The motion that lasts longest, by the first input with which there is one."""
         inputs = [d.name for d in self.ode.inputs]
         free = [k for k, name in enumerate(inputs) if name not in stated]
         for movable in [[k] for k in free] or [[]]:
@@ -294,7 +294,7 @@ class Linearised:
         return best
 
     def _across(self, begin: tuple[Matrix, Matrix, Matrix], x: Matrix) -> Iterator[Matrix]:
-        """States moved just beyond a gap, on either side: the force there is another one."""
+        """States moved just beyond a gap on either side, where the force is different."""
         x0, u0, p = begin
         before = np.abs(self.matrices(x0, u0, p)[0]).max(axis=1)
         for k, sign in itertools.product(range(len(x0)), (1.0, -1.0)):
@@ -309,7 +309,7 @@ class Linearised:
                     break
 
     def _back(self, z: Matrix, begin: Matrix, rest: _Function) -> Matrix:
-        """A position on which the motion does not depend returns to where it was."""
+        """Put back positions on which the motion does not depend."""
         for k in range(len(self.ode.states)):
             moved = z.copy()
             moved[k] = begin[k]
@@ -318,7 +318,7 @@ class Linearised:
         return z
 
     def _lasts(self, x: Matrix, u: Matrix, p: Matrix, weights: Matrix) -> float:
-        """How long the motion goes on so [s]: in a gap it ends where the sides meet."""
+        """Duration of the uniform motion [s]; in a gap it ends where the sides meet."""
         xdot = self._values(x, u, p)[0].ravel()
 
         def goes_on(seconds: float) -> bool:
@@ -339,11 +339,11 @@ class Linearised:
         stated: Mapping[str, float],
         left: Mapping[str, float],
     ) -> Point:
-        """The state in which nothing moves, held where it starts.
+        """The state of rest in which the plant is held at its start position.
 
-        The ends are outputs that keep their values of the start, and the inputs with which this is
-        done: what measures and what acts in loops with integrals. Other inputs have the values
-        stated or left. A ValueError if nothing holds it.
+        `ends` are outputs that keep their start values, and the inputs by which they are held: the
+        measured and the acting variables of loops with integrals. Other inputs have the values of
+        `stated` or `left`. A ValueError if nothing holds the plant.
         """
         ode = self.ode
         inputs, outputs = [d.name for d in ode.inputs], [d.name for d in ode.outputs]
@@ -378,7 +378,7 @@ class Linearised:
         return Point(z[:n], z[n:], values, dict(stated), dict.fromkeys(outputs, 0.0), dict(left))
 
     def block(self, p: Matrix, at: Point, micro_step: float) -> Plant:
-        """The plant between two instants, as the FMU integrates it.
+        """The plant's block over a micro step, as the FMU integrates it.
 
         The classic Runge-Kutta step of a linear equation is R(hA) x + h S(hA) B u with
         R = 1 + z + z^2/2 + z^3/6 + z^4/24 and S = (R - 1)/z.

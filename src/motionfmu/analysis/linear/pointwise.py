@@ -1,4 +1,4 @@
-"""CasADi's expressions in numpy: over many points at once, or at one without its matrices."""
+"""CasADi's expressions evaluated by numpy at many points, or quickly at one."""
 
 import threading
 from collections.abc import Callable
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motionfmu.fmu.modelica.nodes import program
 
 Array = NDArray[np.float64]
-# Points that are looked at together: what is in work stays in the processor's cache.
+# Points of a block, so few that intermediate values stay in the processor's cache.
 _BLOCK = 4096
 _SAME = {
     "ASSIGN": "positive",
@@ -51,7 +51,7 @@ _TRUTHS = {
 
 
 def _number(truth: Callable[..., Any]) -> Callable[..., Any]:
-    """A comparison that gives 1.0 and 0.0; numpy itself would take it there piece by piece."""
+    """A comparison that gives 1.0 and 0.0, which is quicker than numpy's own conversion."""
 
     def operation(*operands: Any, out: Array | None = None) -> Any:
         found = truth(*operands)
@@ -90,7 +90,7 @@ class Pointwise:
         depends = made.depends({0})
         last = {a: k for k, n in enumerate(made.nodes) for a in n.args}
         self._results = made.results
-        self._known: list[Any] = [0.0] * len(made.nodes)  # what does not depend on x
+        self._known: list[Any] = [0.0] * len(made.nodes)  # values that do not depend on x
         self._inputs: list[tuple[int, int]] = []  # node, element of x
         # operation, operands, node, place of its values
         self._steps: list[tuple[Callable[..., Any], tuple[int, ...], int, int]] = []
@@ -146,7 +146,7 @@ class Pointwise:
 
 
 class Quick:
-    """A CasADi function of dense results, called with and giving plain arrays."""
+    """A CasADi function with dense results whose arguments and results are plain arrays."""
 
     def __init__(self, name: str, arguments: list[ca.SX], results: list[ca.SX]) -> None:
         self._function = ca.Function(name, arguments, [ca.densify(r) for r in results])

@@ -1,4 +1,4 @@
-"""The position gain Kp of a loop in 1/s, whatever units its parameter has."""
+"""The position gain Kp of a loop in 1/s, in whatever unit its parameter is."""
 
 import cmath
 from collections.abc import Iterable, Iterator, Mapping
@@ -15,13 +15,13 @@ from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.run import Scenario
 from motionfmu.scenarios import system
 
-# Frequency [rad/s] that is as good as none, for time constants up to a minute.
+# Frequency [rad/s] that counts as 0, for time constants up to a minute.
 _SLOW = 1e-4
 # A loop has a position gain if (z - 1)/T times it changes less than this over an octave there.
 _STEADY = 1e-3
-# What rounding leaves of the difference of two loops is below this share of them.
+# A difference of two loops that is below this share of them is rounding.
 _SAME = 1e-9
-# The motion for which a gain is told where nobody says one: slow, but no creeping, by unit.
+# Speeds, by unit, at which a gain is told if nobody states one: slow, but no creeping.
 _MOTION = {"rad/s": 10.0, "m/s": 0.01}
 
 
@@ -128,13 +128,13 @@ def _first(
     for at in points:
         try:
             return model(scenario, axis, at, set_)
-        except InputError:  # not active, or an end stop or load in the way
+        except InputError:  # the axis is not active, or an end stop or a load is in the way
             continue
     return None
 
 
 def _motions(scenario: Scenario) -> list[dict[str, float]]:
-    """Slow motions of the plants that a law moves, both ways: speed by output."""
+    """Slow motions, in both directions, of plants that a law moves: speed by output."""
     found = {}
     said = {c: law.carried(fmu) for c, fmu in scenario.document.body.component.items()}
     wires = [(w.source.component, w.target.component) for w in system.wires(scenario.resolver)]

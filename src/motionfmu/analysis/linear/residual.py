@@ -1,4 +1,4 @@
-"""What a plant's equation has beyond its linearisation: friction, gaps."""
+"""The nonlinear part of a plant's equation, such as friction and gaps."""
 
 from dataclasses import dataclass, replace
 
@@ -14,7 +14,7 @@ from motionfmu.fmu.modelica.ode import Ode
 
 @dataclass(frozen=True)
 class Residual:
-    """What equations of states have beyond the linear part, w."""
+    """The nonlinear part w of equations of states."""
 
     component: str
     inputs: tuple[str, ...]  # of the model; they carry w(x) = f(x, u) - A x - B u

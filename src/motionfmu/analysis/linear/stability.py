@@ -14,7 +14,7 @@ Complex = NDArray[np.complex128]
 System: TypeAlias = Any  # control.StateSpace or control.TransferFunction
 # Points of the first grid; crossings and peaks are then refined.
 _POINTS = 2000
-# A pole as near to 1 does not move: it would take 10^6 samples.
+# A pole this near to 1 counts as 1, for it moves in 10^6 samples only.
 AT_ONE = 1e-6
 _BANDWIDTH = 1.0 / np.sqrt(2.0)
 
@@ -171,7 +171,7 @@ def margins(loop: System) -> Margins:
 
 
 def _root(of: Callable[[float], float], ends: Sequence[float] | Array, **options: float) -> float:
-    """Where a function is 0 between two ends."""
+    """Root of a function between two ends."""
     from scipy.optimize import brentq  # takes longer to import than most commands
 
     return float(brentq(of, ends[0], ends[1], **options))
@@ -247,7 +247,7 @@ def closed_poles(loop: System, gain: float = 1.0) -> Complex:
 
 
 def moving(poles: Complex) -> Complex:
-    """Discrete poles without those at 1, which hold nothing."""
+    """Discrete poles without those at 1, which belong to positions that nothing holds."""
     # A velocity loop leaves the position of its axis where it is: no instability.
     found: Complex = poles[np.abs(poles - 1.0) > AT_ONE]
     return found

@@ -1,4 +1,4 @@
-"""State-space systems of python-control that know what a pole at 1 means."""
+"""State-space systems of python-control with a right gain at a pole at 1."""
 
 from typing import Any
 
@@ -9,14 +9,14 @@ from scipy import linalg
 from motionfmu.analysis.linear.block import Matrix
 from motionfmu.analysis.linear.stability import AT_ONE
 
-# What a sum of terms leaves of them by rounding is below this share.
+# A sum that is below this share of its terms is rounding.
 _CANCELLED = 1e-12
 
 
 class StandstillSystem(control.StateSpace):
     """A discrete state-space system with a right gain at standstill."""
 
-    # Right also where a position, of which it shows nothing, adds up.
+    # The gain is right even if the system has an integrating position that no output shows.
 
     def dcgain(self, warn_infinite: bool = False) -> Any:
         """Gain for a constant input, in the long run.
@@ -30,7 +30,7 @@ class StandstillSystem(control.StateSpace):
 
 
 def _static(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Matrix:
-    """The part at 1 by itself: [T1 T12; 0 T2] is made diagonal, then each is looked at alone."""
+    """Static gain, with the part at 1 separated: [T1 T12; 0 T2] is made block diagonal."""
     if not len(a):
         return d
     a, (scale, _) = linalg.matrix_balance(a, permute=False, separate=True)
@@ -41,7 +41,7 @@ def _static(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Matrix:
     left = (z[:, :m].conj() - z[:, m:].conj() @ x.T).T, z[:, m:].conj().T
     moved = np.linalg.solve(np.eye(len(a) - m) - t[m:, m:], left[1] @ b)
     found: Matrix = np.real(c @ right[1] @ moved) + d
-    # C N^k B of the part at 1, against the size of what it is a product of
+    # C N^k B of the part at 1, compared with the size of its factors
     seen, driven = c @ right[0], left[0] @ b
     size = np.linalg.norm(c, axis=1)[:, None] * np.linalg.norm(b, axis=0)
     size = size * np.linalg.norm(right[0], 2) * np.linalg.norm(left[0], 2) if m else size
@@ -55,7 +55,7 @@ def _static(a: Matrix, b: Matrix, c: Matrix, d: Matrix) -> Matrix:
 
 
 def backward(system: StandstillSystem, output: str, name: str) -> StandstillSystem:
-    """The same with the other sign; the states keep their names."""
+    """A system with the opposite sign, whose states keep their names."""
     return StandstillSystem(
         *(system.A, system.B, -system.C, -system.D, system.dt),
         inputs=system.input_labels,

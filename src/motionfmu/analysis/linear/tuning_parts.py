@@ -15,7 +15,7 @@ def matrices(
     axis: AxisModel, inputs: Iterable[str], outputs: Iterable[str], cut: Iterable[str] = ()
 ) -> PeriodMap:
     """The matrices of `AxisModel.system`, also with open gains."""
-    # Objects, floats and CasADi expressions, where a value is a `Gain`.
+    # If a value is a `Gain`, they are arrays of objects: floats and CasADi expressions.
     entries = [axis.port(n, axis.inputs, "input") for n in inputs]
     exits = [axis.port(n, axis.outputs, "output") for n in outputs]
     return period_of(axis.net(cut, {}), entries, exits, axis.scenario.document.file)
@@ -39,7 +39,7 @@ def limit(axis: AxisModel, name: str) -> float:
 
 def listed(axis: AxisModel, kind: str) -> list[str]:
     """Parameters that the laws let a tuning change, by their kind."""
-    # Kinds: position, velocity, feed_forward.
+    # The kinds are position, velocity and feed_forward.
     found = []
     for component, fmu in axis.scenario.document.body.component.items():
         own = law.carried(fmu)
@@ -49,8 +49,8 @@ def listed(axis: AxisModel, kind: str) -> list[str]:
 
 
 def worst(axis: AxisModel) -> list[str]:
-    """``component: what`` the model takes as the worst that it can be."""
-    # Empty if the running FMUs do what the model does.
+    """``component: what`` for all that the model assumes to be the worst case."""
+    # There is none if the running FMUs do what the model does.
     found = []
     for component in axis.blocks:
         own = law.carried(axis.scenario.document.body.component[component])
@@ -62,6 +62,6 @@ def worst(axis: AxisModel) -> list[str]:
 
 
 def held(axis: AxisModel) -> str:
-    """In words, inputs beside the operating point that nobody stated."""
+    """In words, the inputs at the operating point that nobody stated."""
     kept = [f"{c}.{n} = {v:g}" for c, p in axis.points.items() for n, v in p.held.items()]
     return f"Not stated, kept as the scenario has them: {', '.join(kept)}" if kept else ""

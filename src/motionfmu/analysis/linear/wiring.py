@@ -1,4 +1,4 @@
-"""Blocks, wires and the master's steps, put together to one period map."""
+"""Blocks and wires, stepped as the master does, as one linear map over a period."""
 
 import math
 from collections.abc import Mapping
@@ -11,7 +11,7 @@ import numpy as np
 from motionfmu.analysis.linear.block import Block, Matrix, Plant, nonzero, reaches
 from motionfmu.base.errors import InputError
 
-# A period of more communication steps than this has grids that do not fit together.
+# If a period has more communication steps than this, its grids do not fit together.
 STEPS_MAX = 20_000
 
 Port = tuple[str, str]  # component, variable
@@ -19,7 +19,7 @@ Port = tuple[str, str]  # component, variable
 
 @dataclass(frozen=True)
 class Net:
-    """Linear blocks and what joins them."""
+    """Linear blocks and the wires between them."""
 
     blocks: Mapping[str, Block]  # by component
     wires: Mapping[Port, Port]  # source by target
@@ -47,7 +47,7 @@ class Net:
         return {component for component, _ in on}
 
     def _end(self, port: Port) -> Port:
-        """The end of a wire: its target, or what is beside the opened one."""
+        """The end of a wire: its target, or the exit in place of an opened target."""
         return (port[0], f"{port[1]} opened") if port == self.opened else port
 
 
@@ -120,7 +120,7 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
 
 def period_of(net: Net, entries: list[Port], exits: list[Port], file: Path) -> PeriodMap:
     """The period map of what lies between entries and exits of a net."""
-    # Of objects where a law holds expressions of gains.
+    # Its matrices are of objects if a law holds expressions of gains.
     used = net.used(entries, exits) | {c for c, _ in (*entries, *exits)}
     joined = {t: s for t, s in net.wires.items() if t[0] in used and s[0] in used}
     blocks = {c: b for c, b in net.blocks.items() if c in used}
@@ -131,7 +131,7 @@ def period_of(net: Net, entries: list[Port], exits: list[Port], file: Path) -> P
 
 
 def _kind(net: Net) -> np.dtype[Any]:
-    """Objects where a law holds expressions of gains."""
+    """Type of the matrices: objects if a law holds expressions of gains, else floats."""
     laws = [
         m for b in net.blocks.values() for m in (b.show[:1] if isinstance(b, Plant) else b.laws)
     ]
@@ -141,7 +141,7 @@ def _kind(net: Net) -> np.dtype[Any]:
 def _exchange(
     net: Net, work: dict[str, Matrix], queue: dict[Port, list[Matrix]], injected: dict[Port, Matrix]
 ) -> tuple[dict[str, Matrix], dict[Port, Matrix]]:
-    """What every block is fed and every port shows at a communication point."""
+    """Inputs of all blocks and values of all ports at a communication point."""
     width = next(iter(work.values())).shape[1] if work else 0
     fed: dict[str, Matrix] = {}
     shows: dict[Port, Matrix] = {}

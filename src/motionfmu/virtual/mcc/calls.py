@@ -1,4 +1,4 @@
-"""How Python values become the arguments of a C call."""
+"""Conversion of Python values to the arguments of C calls."""
 
 import ctypes
 from collections.abc import Iterable, Sequence
@@ -12,17 +12,17 @@ Numbers = Sequence[float]
 
 
 def doubles(values: Numbers, count: int = AXES) -> Any:
-    """Make a C array of doubles, of just so many."""
+    """Make a C array of exactly so many doubles."""
     return _array(ctypes.c_double, [real(v) for v in _several(values, count)], count)
 
 
 def integers(values: Sequence[int], count: int = AXES) -> Any:
-    """Make a C array of int32, of just so many."""
+    """Make a C array of exactly so many int32."""
     return _array(ctypes.c_int32, [whole(v) for v in _several(values, count)], count)
 
 
 def letters(values: str, count: int = AXES) -> Any:
-    """Make a C array of characters, of just so many letters."""
+    """Make a C array of exactly so many characters."""
     return _array(ctypes.c_char, [letter(v) for v in _several(values, count)], count)
 
 
@@ -34,7 +34,7 @@ def letter(value: str) -> Any:
 
 
 def _several(values: Any, count: int) -> Any:
-    """Refuse what has no elements."""
+    """Refuse a value that is no sequence of elements."""
     if not isinstance(values, Iterable):
         raise InputError(f"{values!r}: {count} values wanted")
     return values
@@ -47,7 +47,7 @@ def _array(kind: Any, values: list[Any], count: int) -> Any:
 
 
 class Calls:
-    """A library state by its address, with functions called by name; the owner keeps it alive."""
+    """Calls of C functions by name on a library's state, which its owner keeps alive."""
 
     def __init__(self, pointer: ctypes.c_void_p, owner: object) -> None:
         self._pointer, self._owner, self._library = pointer, owner, library()

@@ -1,4 +1,4 @@
-"""What the calls of the MCC library answer."""
+"""Return codes of the MCC library's calls, and the error of a refused call."""
 
 AXES = 6
 

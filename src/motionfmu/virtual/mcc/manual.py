@@ -1,4 +1,4 @@
-"""Calls that move axes for themselves: asynchronous rapid, jog, hand wheel, homing."""
+"""Calls that move single axes: asynchronous rapid, jog, hand wheel, homing."""
 
 import ctypes
 from collections.abc import Sequence

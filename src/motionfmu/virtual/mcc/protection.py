@@ -8,10 +8,10 @@ from motionfmu.virtual.mcc.calls import Calls, Numbers, doubles, integers
 
 
 class Protection(Calls):
-    """What may not be commanded, and when a command counts as done."""
+    """Limits of commands, and the condition under which a command counts as done."""
 
     def set_check_OT(self, on: Sequence[int]) -> None:
-        """Look at the software limits, or not: 1 they are in force, 0 not."""
+        """Put the software limits in force (1) or out of force (0), for each axis."""
         self._do("MCC_set_check_OT", integers(on))
 
     def get_check_OT(self) -> list[int]:

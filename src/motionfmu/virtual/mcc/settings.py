@@ -22,7 +22,7 @@ class Settings(Calls):
         self._do("MCC_set_inc")
 
     def get_pos_type(self) -> int:
-        """Which of the two: 1 absolute, 0 incremental."""
+        """Kind of targets: 1 absolute, 0 incremental."""
         return self._do("MCC_get_pos_type")
 
     def set_fspd(self, feed: float) -> None:

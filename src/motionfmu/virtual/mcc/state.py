@@ -231,7 +231,7 @@ class Mcc(Moves, Manual, Settings, Axes, Protection):
         self._do("task_set_single_block", ctypes.c_bool(on))
 
     def task_status(self) -> int:
-        """What the library is doing.
+        """The present state of the library.
 
         Returns
         -------

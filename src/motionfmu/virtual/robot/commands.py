@@ -1,4 +1,4 @@
-"""What a robot is told: moves, jogs, programs, outputs, keys of the pendant."""
+"""Commands to a robot: moves, jogs, programs, outputs, keys of the pendant."""
 
 import ctypes
 from pathlib import Path
@@ -101,7 +101,7 @@ class Commands:
         return int(self._state["move"])
 
     def _busy(self, call: str) -> RobotError | None:
-        """Why nothing can be asked for now."""
+        """The error if no command can be given now; else None."""
         if self._panel["stopped"]:
             return RobotError(f"{call}: not now: the card has stopped: reset it", "BUSY")
         if library().binding_robot_running(self._state.pointer):

@@ -1,4 +1,4 @@
-"""What a refused call of the robot raises, and how C tells it."""
+"""The error that a refused call of the robot raises, made of what C says of it."""
 
 import contextlib
 import ctypes
@@ -68,7 +68,7 @@ def message() -> Any:
 
 
 def refused(call: str, code: int, why: Struct, words: Any) -> RobotError:
-    """What a move or jog that C has refused raises."""
+    """The error for a move or jog that C has refused."""
     status = STATUS[code]
     error = RobotError(f"{call}: {words.value.decode()}", status)
     if status not in ("BUSY", "PARAMETER"):
@@ -79,7 +79,7 @@ def refused(call: str, code: int, why: Struct, words: Any) -> RobotError:
 
 
 def within(name: str, value: float, low: float, high: float) -> float:
-    """Take a number of a range; RobotError if it is not within."""
+    """Check that a number is within a range; a RobotError if it is not."""
     if not isinstance(value, int | float | np.number) or not low <= value <= high:
         limit = high if isinstance(value, int | float) and value > high else low
         number = math.nan
@@ -100,7 +100,7 @@ def whole_within(name: str, value: float, low: int, high: int) -> int:
 
 
 def bounded(name: str, values: np.ndarray, most: float = MOST) -> np.ndarray:
-    """Take an array of numbers up to a limit; RobotError names the first beyond it."""
+    """Check an array of numbers against a limit; a RobotError names the first beyond it."""
     for k in np.flatnonzero(~(np.abs(values) <= most).ravel()):
         within(f"{name}[{k}]", float(values.flat[k]), -most, most)
     return values
