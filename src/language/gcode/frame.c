@@ -287,65 +287,98 @@ bool frame_go_on(struct interpreter *in, const struct cycle_way *way, double pla
     return true;
 }
 
+/* Where a block leads to, axis by axis. */
+struct ends {
+    bool    machine, framed;    /* G53; the program's coordinates are not only offset */
+    int     together;           /* axes that a rotation couples, a bit each, */
+    int     polar, moved;       /* that polar words, or words of the program's coordinates, move */
+    double  *end;
+    double  program[AXES];
+};
+
+/* Polar words, or the axis words of the plane in polar mode. */
+static enum fault polar_ends(struct interpreter *in, const struct block *b, struct ends *e,
+                             struct fault_report *r)
+{
+    const int other = b->g.code[GCODE_NONMODAL];
+    const bool at_pole = b->g.letters & (GCODE_BIT('@') | GCODE_BIT('^'));
+
+    if (at_pole && !e->machine) {
+        e->polar = 3;
+        return polar_words(in, b, e->program, r);
+    }
+    if (in->words.polar && (other == GCODE_ABSENT || other == 40) &&
+        polar_mode(in, b, e->program)) {
+        e->polar = 1 << path_first(in->plane) | 1 << path_second(in->plane);
+    }
+    return FAULT_NONE;
+}
+
+static void axis_end(const struct interpreter *in, const struct block *b, int i,
+                     const struct token *word, struct ends *e)
+{
+    const struct words *w = &in->words;
+    const double value = gcode_value(b, i, word);
+
+    if (e->machine) {
+        e->end[i] = value;
+    } else if (in->incremental && !(e->together & 1 << i)) {
+        e->end[i] += w->scaled && i < 3 ? w->factor[i] * value : value;
+    } else if (!e->framed) {
+        e->end[i] = value + offsets_zero(in, i);
+    } else {
+        e->moved |= 1 << i;
+    }
+    if (e->framed) {
+        e->program[i] = in->incremental ? e->program[i] + value : value;
+    }
+}
+
+/* What the words of the program's coordinates move, as the machine has it. */
+static void framed_ends(const struct interpreter *in, struct ends *e)
+{
+    double place[AXES];
+
+    e->moved |= e->polar;
+    e->moved |= e->moved & e->together ? e->together : 0;
+    frame_machine(in, e->program, place);
+    for (int i = 0; i < AXES; i++) {
+        e->end[i] = e->moved & 1 << i ? place[i] : e->end[i];
+    }
+}
+
 enum fault frame_end(struct interpreter *in, const struct program *p, const struct block *b,
                      double end[AXES], struct fault_report *r)
 {
-    const struct words *w = &in->words;
-    const int other = b->g.code[GCODE_NONMODAL];
-    const bool machine = other == 530;
-    const int axis[2] = { path_first(in->plane), path_second(in->plane) };
-    const int together = coupled(in);
     const bool at_pole = b->g.letters & (GCODE_BIT('@') | GCODE_BIT('^'));
-    const bool framed = w->scaled || together || w->polar || at_pole;
-    double program[AXES], place[AXES];
-    int moved = 0, polar = 0;
+    struct ends e;
 
+    e.machine = b->g.code[GCODE_NONMODAL] == 530;
+    e.together = coupled(in);
+    e.framed = in->words.scaled || e.together || in->words.polar || at_pole;
+    e.polar = e.moved = 0;
+    e.end = end;
     frame_from(in, b, end);
-    if (framed) {
-        frame_program(in, end, program);
-    }
-    if (at_pole && !machine) {
-        const enum fault f = polar_words(in, b, program, r);
+    if (e.framed) {
+        frame_program(in, end, e.program);
+        const enum fault f = polar_ends(in, b, &e, r);
         if (f != FAULT_NONE) {
             return f;
         }
-        polar = 3;
-    } else if (w->polar && (other == GCODE_ABSENT || other == 40) &&
-               polar_mode(in, b, program)) {
-        polar = 1 << axis[0] | 1 << axis[1];
     }
     for (int i = 0; i < AXES; i++) {
         const struct token *word = gcode_word(&b->g, BLOCK_AXES[i]);
-        if ((word || (polar & 1 << i)) && !p->machine.axis[i]) {
+        const bool polar = e.polar & 1 << i;
+        if ((word || polar) && !p->machine.axis[i]) {
             return word ? tokens_at_word(r, FAULT_AXIS, word)
                         : tokens_at_line(r, FAULT_AXIS, &b->tokens);
         }
-        if (!word || (polar & 1 << i)) {
-            continue;
-        }
-        const double value = gcode_value(b, i, word);
-        const double way = w->scaled && i < 3 ? w->factor[i] * value : value;
-        if (machine) {
-            end[i] = value;
-        } else if (in->incremental && !(together & 1 << i)) {
-            end[i] += way;
-        } else if (!framed) {
-            end[i] = value + offsets_zero(in, i);
-        } else {
-            moved |= 1 << i;
-        }
-        if (framed) {
-            program[i] = in->incremental ? program[i] + value : value;
+        if (word && !polar) {
+            axis_end(in, b, i, word, &e);
         }
     }
-    if (!framed) {
-        return FAULT_NONE;
-    }
-    moved |= polar;
-    moved |= moved & together ? together : 0;
-    frame_machine(in, program, place);
-    for (int i = 0; i < AXES; i++) {
-        end[i] = moved & 1 << i ? place[i] : end[i];
+    if (e.framed) {
+        framed_ends(in, &e);
     }
     return FAULT_NONE;
 }

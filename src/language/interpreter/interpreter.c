@@ -35,12 +35,27 @@ void interpreter_start(struct interpreter *in, const double point[AXES], double 
     memcpy(in->origin, origin, INTERPRETER_SYSTEMS * sizeof *in->origin);
 }
 
-static enum fault set_modes(struct interpreter *in, struct block *b, struct fault_report *r)
+/* G61, G64: exact stop, or corners within a tolerance and runs of lines within another. */
+static enum fault set_blend(struct interpreter *in, const struct block *b, struct fault_report *r)
+{
+    const struct token *p = gcode_word(&b->g, 'P'), *q = gcode_word(&b->g, 'Q');
+
+    in->blend = b->g.code[GCODE_PATH] == 640;
+    if (in->blend && ((p && p->value < 0.0) || (q && q->value < 0.0))) {
+        return tokens_at_word(r, FAULT_VALUE, p && p->value < 0.0 ? p : q);
+    }
+    if (q && !p) {
+        return tokens_at_word(r, FAULT_UNUSED, q);
+    }
+    in->tolerance = in->blend && p ? p->value * b->scale : 0.0;
+    in->merge = in->blend && q ? q->value * b->scale : in->tolerance;
+    return FAULT_NONE;
+}
+
+/* Units and plane, by which other words of the line are read. */
+static void set_measure(struct interpreter *in, struct block *b)
 {
     const int *code = b->g.code;
-    const bool framed = in->words.scaled || in->words.rotated;
-    const enum path_plane plane = in->plane;
-    const int32_t system = in->system;
 
     if (code[GCODE_UNITS] != GCODE_ABSENT) {
         in->inch = code[GCODE_UNITS] == 200;
@@ -50,24 +65,12 @@ static enum fault set_modes(struct interpreter *in, struct block *b, struct faul
         in->plane = code[GCODE_PLANE] == 170 ? PATH_XY
                   : code[GCODE_PLANE] == 180 ? PATH_ZX : PATH_YZ;
     }
-    if (code[GCODE_SYSTEM] != GCODE_ABSENT) {
-        const enum fault f = offsets_select(in, b, r);
-        if (f != FAULT_NONE) {
-            return f;
-        }
-    }
-    if (code[GCODE_PATH] != GCODE_ABSENT) {
-        const struct token *p = gcode_word(&b->g, 'P'), *q = gcode_word(&b->g, 'Q');
-        in->blend = code[GCODE_PATH] == 640;
-        if (in->blend && ((p && p->value < 0.0) || (q && q->value < 0.0))) {
-            return tokens_at_word(r, FAULT_VALUE, p && p->value < 0.0 ? p : q);
-        }
-        if (q && !p) {
-            return tokens_at_word(r, FAULT_UNUSED, q);
-        }
-        in->tolerance = in->blend && p ? p->value * b->scale : 0.0;
-        in->merge = in->blend && q ? q->value * b->scale : in->tolerance;
-    }
+}
+
+static void set_motion(struct interpreter *in, const struct block *b)
+{
+    const int *code = b->g.code;
+
     if (code[GCODE_DISTANCE] != GCODE_ABSENT) {
         in->incremental = code[GCODE_DISTANCE] == 910;
     }
@@ -77,6 +80,27 @@ static enum fault set_modes(struct interpreter *in, struct block *b, struct faul
     if (code[GCODE_MOTION] != GCODE_ABSENT) {
         in->motion = code[GCODE_MOTION];
     }
+}
+
+static enum fault set_modes(struct interpreter *in, struct block *b, struct fault_report *r)
+{
+    const int *code = b->g.code;
+    const bool framed = in->words.scaled || in->words.rotated;
+    const enum path_plane plane = in->plane;
+    const int32_t system = in->system;
+    enum fault f = FAULT_NONE;
+
+    set_measure(in, b);
+    if (code[GCODE_SYSTEM] != GCODE_ABSENT) {
+        f = offsets_select(in, b, r);
+    }
+    if (f == FAULT_NONE && code[GCODE_PATH] != GCODE_ABSENT) {
+        f = set_blend(in, b, r);
+    }
+    if (f != FAULT_NONE) {
+        return f;
+    }
+    set_motion(in, b);
     if (framed && in->system != system) {
         return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_SYSTEM]);
     }
@@ -86,20 +110,37 @@ static enum fault set_modes(struct interpreter *in, struct block *b, struct faul
     return FAULT_NONE;
 }
 
-/* Motion of the block, if it has any. */
+/* A word of the centre or radius of an arc; R and P unless another code has them. */
+static const struct token *shape_word(const struct block *b)
+{
+    const struct token *shape = gcode_first(&b->g, "IJK");
+
+    for (const char *c = "RP"; *c && !shape; c++) {
+        shape = uses_of(&b->g, *c) ? NULL : gcode_word(&b->g, *c);
+    }
+    return shape;
+}
+
+/* A point of a NURBS, its end, or what may not stand between its points. */
+static bool nurbs_asked(const struct interpreter *in, const struct block *b, bool words,
+                        bool axis)
+{
+    const int code = b->g.code[GCODE_MOTION];
+
+    return in->motion == 52 ? axis || code == 52 || gcode_word(&b->g, 'P')
+                            : code == 53 || (in->nurbs.count > 0 && words);
+}
+
+/* Motion of the block, if it has any. One row of questions: who is asked first has the first claim on
+ * the words, so the order is the language's. */
 static enum fault move(struct interpreter *in, const struct program *p, const struct block *b,
                        struct fault_report *r)
 {
     const struct token *axis = gcode_first(&b->g, BLOCK_AXES "@^");
-    const struct token *shape = gcode_first(&b->g, "IJK");
     const int code = b->g.code[GCODE_MOTION];
-    const bool machine = b->g.code[GCODE_NONMODAL] == 530;
+    const bool machine = b->g.code[GCODE_NONMODAL] == 530, words = axis || shape_word(b);
 
-    for (const char *c = "RP"; *c && !shape; c++) {     /* unless another code has them */
-        shape = uses_of(&b->g, *c) ? NULL : gcode_word(&b->g, *c);
-    }
-    if (in->motion == 52 ? axis || code == 52 || gcode_word(&b->g, 'P')
-                         : code == 53 || (in->nurbs.count > 0 && (axis || shape))) {
+    if (nurbs_asked(in, b, words, axis)) {
         return nurbs_block(in, p, b, r);
     }
     if (machine && !axis) {
@@ -117,11 +158,10 @@ static enum fault move(struct interpreter *in, const struct program *p, const st
     if (probing_asked(b)) {
         return probing_block(in, p, b, r);
     }
-    if (in->motion == 331 && (axis || shape || code == 331)) {
+    if (in->motion == 331 && (words || code == 331)) {
         return tapping_block(in, p, b, r);
     }
-    const bool alone = gcode_arc(code) || gcode_spline(code);
-    if (!axis && !shape && !alone) {
+    if (!words && !gcode_arc(code) && !gcode_spline(code)) {
         return FAULT_NONE;
     }
     const int32_t before = in->count;

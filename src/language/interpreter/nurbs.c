@@ -234,15 +234,60 @@ static enum fault end_block(struct interpreter *in, const struct block *b,
     return FAULT_NONE;
 }
 
+/* The words of a line of G5.2: what it may not have, and a point with both its axes or none. */
+static enum fault words_of(const struct interpreter *in, const struct program *p,
+                           const struct block *b, const struct token *other,
+                           struct fault_report *r)
+{
+    const struct token *weight = gcode_word(&b->g, 'P');
+    const bool one = gcode_word(&b->g, "XYZ"[path_first(in->plane)]),
+               two = gcode_word(&b->g, "XYZ"[path_second(in->plane)]);
+
+    if (other || (weight && !(weight->value > 0.0))) {
+        return tokens_at_word(r, other ? FAULT_UNUSED : FAULT_VALUE, other ? other : weight);
+    }
+    if (p->plain || in->words.feed_mode == 930) {
+        return tokens_at_line(r, p->plain ? FAULT_PLAIN : FAULT_NURBS_FEED, &b->tokens);
+    }
+    if (one != two || (!one && in->nurbs.count > 0)) {
+        return tokens_at_line(r, FAULT_NURBS_POINT, &b->tokens);
+    }
+    return FAULT_NONE;
+}
+
+/* A line of G5.2 whose words are right: the first begins the curve, each with a point adds it. */
+static enum fault take_line(struct interpreter *in, const struct program *p,
+                            const struct block *b, struct fault_report *r)
+{
+    struct nurbs *n = &in->nurbs;
+    const struct token *weight = gcode_word(&b->g, 'P');
+    const bool point = gcode_word(&b->g, "XYZ"[path_first(in->plane)]);
+    const double w = weight ? weight->value : 1.0;
+    enum fault f = feed_of(in, p, b, 1.0, false, &n->feed, r);
+    const double feed = n->feed;
+
+    if (f == FAULT_NONE && n->count == 0) {
+        f = begin(in, b, point ? 1.0 : w, r);
+        n->feed = feed;
+    } else if (f == FAULT_NONE && gcode_word(&b->g, 'L')) {
+        f = tokens_at_word(r, FAULT_UNUSED, gcode_word(&b->g, 'L'));
+    }
+    if (f == FAULT_NONE && point) {
+        f = add_point(in, p, b, w, r);
+    }
+    if (f == FAULT_NONE) {
+        run(in, b, r);
+    }
+    return f;
+}
+
 enum fault nurbs_block(struct interpreter *in, const struct program *p, const struct block *b,
                        struct fault_report *r)
 {
     struct nurbs *n = &in->nurbs;
-    const struct token *weight = gcode_word(&b->g, 'P'), *other = gcode_first(&b->g, "UVW@^");
-    const bool one = gcode_word(&b->g, "XYZ"[path_first(in->plane)]);
-    const bool two = gcode_word(&b->g, "XYZ"[path_second(in->plane)]);
-    const double w = weight ? weight->value : 1.0;
-    enum fault f;
+    const struct token *other = gcode_first(&b->g, "UVW@^");
+    const bool one = gcode_word(&b->g, "XYZ"[path_first(in->plane)]),
+               two = gcode_word(&b->g, "XYZ"[path_second(in->plane)]);
 
     other = other ? other : gcode_word(&b->g, "XYZ"[in->plane]);
     if (b->g.code[GCODE_MOTION] == 53 && !one && !two && !other) {
@@ -252,30 +297,8 @@ enum fault nurbs_block(struct interpreter *in, const struct program *p, const st
         n->count = 0;
         return tokens_at_line(r, FAULT_NURBS, &b->tokens);
     }
-    if (other || (weight && !(w > 0.0))) {
-        return tokens_at_word(r, other ? FAULT_UNUSED : FAULT_VALUE, other ? other : weight);
-    }
-    if (p->plain || in->words.feed_mode == 930) {
-        return tokens_at_line(r, p->plain ? FAULT_PLAIN : FAULT_NURBS_FEED, &b->tokens);
-    }
-    if (one != two || (!one && n->count > 0)) {
-        return tokens_at_line(r, FAULT_NURBS_POINT, &b->tokens);
-    }
-    f = feed_of(in, p, b, 1.0, false, &n->feed, r);
-    const double feed = n->feed;
-    if (f == FAULT_NONE && n->count == 0) {
-        f = begin(in, b, one ? 1.0 : w, r);
-        n->feed = feed;
-    } else if (f == FAULT_NONE && gcode_word(&b->g, 'L')) {
-        f = tokens_at_word(r, FAULT_UNUSED, gcode_word(&b->g, 'L'));
-    }
-    if (f == FAULT_NONE && one) {
-        f = add_point(in, p, b, w, r);
-    }
-    if (f == FAULT_NONE) {
-        run(in, b, r);
-    }
-    return f;
+    const enum fault f = words_of(in, p, b, other, r);
+    return f == FAULT_NONE ? take_line(in, p, b, r) : f;
 }
 
 enum fault nurbs_between(struct interpreter *in, const struct block *b, struct fault_report *r)

@@ -11,27 +11,14 @@ enum { COARSE = 5 };
 /* Spans are at least this part of the spacing. */
 static const double LEAST = 1e-3;
 
-bool shape_knots_put(struct shape_fit *f)
+/* Knots behind the one at `held`, closer where vertices crowd, until one is at `to` or there are no
+ * more; returns the last. */
+static int32_t spread(struct shape_fit *f, int32_t held, double to)
 {
     struct shape_run *r = f->run;
     const struct shape_vertex *v = r->vertex;
-    const double to = v[f->end].u;
-    int32_t k = r->begun ? 5 : 3, i = 1, crowd = 0;
+    int32_t k = held, i = 1, crowd = 0;
 
-    if (!r->begun) {
-        for (int j = 0; j <= 3; j++) {
-            r->knot[j] = v[0].u;
-        }
-    }
-    if (!(to > r->knot[k])) {
-        return false;
-    }
-    while (r->begun && k < r->kept && r->knot[k + 1] < to) {
-        k++;
-    }
-    r->kept = 0;
-    const double from = r->knot[k];
-    const int32_t held = k;
     while (k < SHAPE_SPANS + 3) {
         double h = COARSE * shape_spacing(v[i].tolerance);
         while (i < f->end && (v[i].u <= r->knot[k]
@@ -47,35 +34,64 @@ bool shape_knots_put(struct shape_fit *f)
             break;
         }
     }
+    return k;
+}
+
+/* The last knot, of those up to k, comes to the end of the run, those before it move along; returns
+ * which it is. */
+static int32_t put_end(struct shape_run *r, int32_t held, int32_t k, double at_end)
+{
+    const double from = r->knot[held];
+
+    /* the last one at the end: drop it if it is nearer to the one before */
+    if (k > held + 1 && k > SHAPE_SPANS_LEAST + 3
+        && r->knot[k] - at_end > at_end - r->knot[k - 1]) {
+        k--;
+    }
+    const double stretch = (at_end - from) / (r->knot[k] - from);
+    for (int32_t j = held + 1; j <= k; j++) {
+        r->knot[j] = from + (r->knot[j] - from) * stretch;
+    }
+    if (k < SHAPE_SPANS_LEAST + 3) {      /* short: evenly */
+        const int32_t n = SHAPE_SPANS_LEAST + 3 - held;
+        k = SHAPE_SPANS_LEAST + 3;
+        for (int32_t j = 1; j <= n; j++) {
+            r->knot[held + j] = from + (at_end - from) * j / n;
+        }
+    }
+    for (int j = 0; j <= 3; j++) {
+        r->knot[k + j] = at_end;
+    }
+    return k;
+}
+
+bool shape_knots_put(struct shape_fit *f)
+{
+    struct shape_run *r = f->run;
+    const struct shape_vertex *v = r->vertex;
+    const double to = v[f->end].u;
+    int32_t held = r->begun ? 5 : 3;
+
+    if (!r->begun) {
+        for (int j = 0; j <= 3; j++) {
+            r->knot[j] = v[0].u;
+        }
+    }
+    if (!(to > r->knot[held])) {
+        return false;
+    }
+    while (r->begun && held < r->kept && r->knot[held + 1] < to) {
+        held++;
+    }
+    r->kept = 0;
+    const int32_t k = spread(f, held, to);
     if (r->knot[k] < to && f->last) {
         return false;
     }
     while (f->end > 1 && v[f->end].u > r->knot[k]) {
         f->end--;
     }
-    const double at_end = v[f->end].u;
-    /* the last knot is the end: without the one before it if that is nearer */
-    if (k > held + 1 && k > SHAPE_SPANS_LEAST + 3
-        && r->knot[k] - at_end > at_end - r->knot[k - 1]) {
-        k--;
-    }
-    int32_t n = k - held;
-    const double stretch = (at_end - from) / (r->knot[k] - from);
-    for (int32_t j = held + 1; j <= k; j++) {
-        r->knot[j] = from + (r->knot[j] - from) * stretch;
-    }
-    if (k < SHAPE_SPANS_LEAST + 3) {      /* short: evenly */
-        n = SHAPE_SPANS_LEAST + 3 - held;
-        k = SHAPE_SPANS_LEAST + 3;
-        for (int32_t j = 1; j <= n; j++) {
-            r->knot[held + j] = from + (at_end - from) * j / n;
-        }
-    }
-    r->knot[k] = at_end;
-    for (int j = 1; j <= 3; j++) {
-        r->knot[k + j] = at_end;
-    }
-    f->spans = k - 3;
+    f->spans = put_end(r, held, k, v[f->end].u) - 3;
     return true;
 }
 
