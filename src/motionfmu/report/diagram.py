@@ -34,7 +34,7 @@ class Scale:
 
     @property
     def text(self) -> str:
-        """Title with unit."""
+        """The title with its unit, as it stands beside the axis."""
         return label(self.title, self.unit)
 
 
@@ -77,7 +77,7 @@ class SamplesMark:
 
 @dataclass(frozen=True)
 class PointMark:
-    """Single points."""
+    """Points that no line joins."""
 
     x: Array  # (n,)
     y: Array  # (n,)
@@ -166,7 +166,7 @@ class Subplot:
 
     @property
     def names(self) -> list[str]:
-        """What its legend says: marks without points are not in it."""
+        """The names in its legend, which leaves out marks without points."""
         named = [m for m in self.marks if named_mark(m)]
         shown = len(named) > 1 if self.legend is None else self.legend
         return [getattr(m, "name", "") for m in named] if shown else []
@@ -183,7 +183,7 @@ class Diagram:
 
     @property
     def marks(self) -> list[Mark]:
-        """All marks."""
+        """All marks of all subplots."""
         return [m for s in self.subplots for cell in s.cells for m in cell]
 
     @property

@@ -1,4 +1,4 @@
-"""What the pictures of a path are made of: points, magnified error, gaps."""
+"""The path of a run and its contour error, as few points as a chart of them needs."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,19 +18,21 @@ from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.report.numbers import magnification
 from motionfmu.run.decimate import peaks_of
 
-# Points of the drawn error, even along the magnified curve; peaks and joints come on top.
+# The error is drawn through so many points, which are even along the magnified curve. Its peaks
+# and the joints of segments are drawn besides.
 POINTS = 2400
 BUCKETS = 300
 JOINTS_MAX = 2000
-# A joint at which the error turns by more than this part of itself is a corner: no line across.
+# Where the error turns by more than this part of itself at a joint, there is a corner: the line
+# of the error is interrupted.
 JUMP = 0.25
-# The magnified error's length is known at so many samples: far more than are drawn.
+# The length of the magnified curve is kept at so many samples, far more than are drawn.
 WAYS = 1 << 20
-# A path of more segments is drawn to this part of its size.
+# A path of more than SEGMENTS_MAX segments is drawn to within its size divided by FINE.
 SEGMENTS_MAX, FINE = 10_000, 4000
-PART = 1 << 14  # segments that are looked at together
+PART = 1 << 14  # segments that are worked on at a time
 JOINED = 1e-9  # [mm]
-# Hairs from the path to the magnified error.
+# Number of hairs: short lines from the path to the magnified error.
 HAIRS = 320
 AXES = "XYZ"
 
@@ -40,15 +42,15 @@ class ErrorPath:
     """A path in the coordinates it is drawn in, and its error."""
 
     names: tuple[str, ...]  # of the axes drawn: two for a path in a plane, else three
-    path: Array  # (m, k) nominal, pieces parted by a row of NaN [mm]
-    rapids: Array  # (r, k) likewise [mm]
+    path: Array  # (m, k) nominal path, a row of NaN between two parts [mm]
+    rapids: Array  # (r, k) rapids, as the path [mm]
     foot: Array  # (n, k) points of the path [mm]
-    gap: Array  # (n, k) the error there; NaN where it is not counted [mm]
-    error: Array  # (n,) its magnitude, signed for a path in a plane [mm]
+    gap: Array  # (n, k) the error at these points; NaN where it is not counted [mm]
+    error: Array  # (n,) magnitude of the error, signed for a path in a plane [mm]
     time: Array  # (n,) [s]
-    line: NDArray[np.int64]  # (n,) of the program
-    hairs: NDArray[np.int64]  # which of the points get a hair
-    magnify: float  # magnification that suits
+    line: NDArray[np.int64]  # (n,) line of the program
+    hairs: NDArray[np.int64]  # points that have a hair
+    magnify: float  # a magnification that suits path and error
 
     def magnified(self, factor: float) -> Array:
         """The path (n, k) with its error so many times as large [mm]."""
@@ -56,7 +58,7 @@ class ErrorPath:
 
 
 def draw(contour: ContourResult) -> ErrorPath:
-    """Make the drawing of a run."""
+    """Choose the points that draw the path of a run and its error."""
     path, track = contour.run.path, contour.track
     basis = np.eye(3) if path.normal is None else plane_axes(path.normal)
     cutting = _outlined(path, np.flatnonzero(path.cut), basis)

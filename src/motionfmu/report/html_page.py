@@ -16,14 +16,14 @@ from motionfmu.report.plotly_figure import plotly_figure
 from motionfmu.report.samples import Samples, bits, clock
 from motionfmu.run.checks import Verdict
 
-# Cursors of all plots over the time of one run are the same two.
+# The name of the cursors that all plots over the time of one run share.
 RUN = "run"
 SCRIPTS = ("samples.js", "cursors.js", "page.js")
 
 
 @dataclass(frozen=True)
 class PageFrame:
-    """What stands around the sections."""
+    """The parts of a page around its sections: head, verdict and footer."""
 
     name: str  # of the scenario
     about: str  # what it shows
@@ -33,7 +33,7 @@ class PageFrame:
 
 
 class Page:
-    """Sections and plots, as they are added."""
+    """The sections and plots of a page, in the order in which they are added."""
 
     def __init__(self) -> None:
         self.sections: list[str] = []
@@ -42,9 +42,9 @@ class Page:
         self._known: dict[bytes, int] = {}
 
     def place(self, name: str, diagram: Diagram, over_time: bool = False, cursors: str = "") -> str:
-        """Add the plot of a diagram; give its HTML element, for a section."""
-        # Those over time are zoomed together, and share the cursors of the run. Others with curves
-        # of samples may have cursors of their own, by a name: plots of one name share.
+        """Add the plot of a diagram and give its HTML element, which goes into a section."""
+        # Plots over time are zoomed together and share the cursors of the run. Any other plot with
+        # curves of samples may have cursors, too: plots with one name for them share them.
         drawn = plotly_figure(diagram)
         data = [self._trace(trace) for trace in drawn["data"]]
         more = {"over_time": over_time, "cursors": cursors or (RUN if over_time else "")}
@@ -74,7 +74,7 @@ class Page:
         self.sections.append(f"<section><h2>{title}</h2>{note}{content}</section>")
 
     def text(self, frame: PageFrame, scripts: Sequence[str] = (), **data: Any) -> str:
-        """The whole page; scripts that follow page.js, data for them."""
+        """The whole page as HTML, with scripts that follow page.js and the data they read."""
         here = files("motionfmu.report")
         everything = {"figures": self.plots, "times": self.times} | data
         run = [(here / s).read_text(encoding="utf-8") for s in (*SCRIPTS, *scripts)]

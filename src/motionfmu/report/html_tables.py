@@ -14,13 +14,13 @@ from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
 from motionfmu.run.checks import Verdict, of_one_number, parts, together
 
-# What the RMS of a contour error is, on every page.
+# The words on every page for the time over which the RMS of a contour error is taken.
 RMS = "over time where the tool cuts"
 CORNERS_SHOWN = 10
 LINES_SHOWN = 10
-# Letters from which on the value of a card is written small.
+# A value of a card with more letters than LONG is written small.
 LONG, SMALL = 13, ' style="font-size:17px"'
-# Letters from which on the text of a column may break into lines.
+# A column with more letters than this may break its text into lines.
 WIDE = 26
 _NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")  # of a bound
 _DASH = re.compile(r"(?<![\w.>-])-(?=\d)|^-(?=\d)")  # before a number a minus
@@ -53,7 +53,7 @@ def facts(rows: Iterable[tuple[str, str]]) -> str:
 
 
 def overrides(told: Iterable[str]) -> str:
-    """What was run otherwise than written, a line each."""
+    """A line for each value that was run otherwise than the scenario is written."""
     return facts([("Overrides", "<br>".join(map(escape, told)))])
 
 
@@ -64,7 +64,7 @@ def _width(column: Sequence[str]) -> int:
 
 
 def cards(rows: Iterable[tuple[str, str, str]], columns: str = "") -> str:
-    """Large numbers: what each is; in HTML, its value and where."""
+    """Cards with large numbers: title as plain text, value and place as HTML."""
     # Columns are those of the grid in CSS, else the page's own; a long value is written small.
     shown = (
         f'<div class="card"><div class="what">{escape(what)}</div>'
@@ -91,7 +91,7 @@ def picture_buttons(name: str) -> str:
 
 
 def warning_list(warnings: Sequence[str]) -> str:
-    """What FMUs and runner warned of."""
+    """The warnings of FMUs and of the runner, as a list."""
     return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"
 
 

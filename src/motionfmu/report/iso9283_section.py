@@ -126,7 +126,7 @@ def _poses(found: Evaluation) -> str:
 
 
 def parts(path: Performance) -> list[tuple[str, Any, Any]]:
-    """What is drawn over the path: title, values by cycle (n, m), their mean line (m,) [mm]."""
+    """The deviations over the path: title, values by cycle (n, m) and their mean (m,) [mm]."""
     if path.normal is None:
         size = np.linalg.norm(path.point - path.command, axis=2)
         return [("Distance", size, path.accuracy)]

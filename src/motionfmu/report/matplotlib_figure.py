@@ -169,9 +169,9 @@ def _diagram(drawn: Figure, place: Any, diagram: Diagram, width: float) -> list[
     for i, subplot in enumerate(diagram.subplots):
         table.append([])
         for j, marks in enumerate(subplot.cells):
-            shared = {"sharex": table[j][j]} if i > j else {}
-            shared = {"sharex": table[0][j]} if i and len(table[0]) > j else shared
-            axes: Any = drawn.add_subplot(grid[i, j], projection=projection, **shared)
+            above = next((row[j] for row in table[:-1] if len(row) > j), None)
+            look: Any = {"projection": projection, "sharex": above}
+            axes: Any = drawn.add_subplot(grid[i, j], **look)
             table[-1].append(axes)
             last = i == len(diagram.subplots) - 1
             _axes(axes, diagram, subplot, (j, last))
@@ -250,7 +250,7 @@ def _numbers() -> ScalarFormatter:
 
 
 def _ends(axes: Any, diagram: Diagram, subplot: Subplot, column: int) -> None:
-    """How far the axes reach, after all is drawn."""
+    """Set the ends of the axes after all marks are drawn."""
     if diagram.shape == POLAR:
         _rings(axes, subplot.y, diagram.x[0])
         return
@@ -272,7 +272,7 @@ def _ends(axes: Any, diagram: Diagram, subplot: Subplot, column: int) -> None:
 
 
 def _log_ticks(axis: Any) -> None:
-    """Numbers in full, and enough of them."""
+    """Ticks of a logarithmic axis, with numbers in full and several in each decade."""
     low, high = axis.get_view_interval()
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < 200 * low else (1.0,)))
     axis.set_major_formatter("{x:g}")

@@ -1,4 +1,4 @@
-"""What a result shows of itself in Python: figures of matplotlib, a view for notebooks."""
+"""The figures and the notebook view of a result in Python."""
 
 import base64
 import io
@@ -72,7 +72,7 @@ def plot(
 
 
 def _first(result: Result, make: Callable[..., Figure] = Figure) -> Figure:
-    """What the report begins with."""
+    """The figure with which the report begins."""
     if _has_contour(result):
         contour = result.contour()
         drawn = draw(contour)
@@ -218,7 +218,7 @@ def _warnings(result: Result) -> str:
 
 
 def _signals(result: Result) -> str:
-    """What was recorded, folded away."""
+    """The list of recorded signals, which a click opens."""
     rows: list[Any] = []
     for name, data in result.items():
         port = result.resolver.end(name, "record", "signals").port

@@ -41,7 +41,7 @@ def figure(value: float, sign: bool = False) -> str:
 
 
 def unit(largest: float) -> tuple[float, str]:
-    """Values per mm, and name, of the unit for lengths to this [mm]."""
+    """Factor from mm to the unit for lengths up to this one [mm], and the name of the unit."""
     return (1.0, "mm") if largest >= MILLIMETRES_FROM else (1e3, "µm")
 
 

@@ -126,7 +126,7 @@ def _layout(height: float, **more: Any) -> Figure:
 
 
 def _legend(height: float) -> Figure:
-    """A legend that stands on a place of the plot's height."""
+    """A legend that stands on top of a share of the plot's height."""
     return {
         "orientation": "h",
         "x": 0,
@@ -202,7 +202,7 @@ def _rows(diagram: Diagram) -> Figure:
 
 
 def _into_space(diagram: Diagram, drawn: Figure) -> None:
-    """Make axes in space of those in a plane."""
+    """Replace the axes in a plane by axes in space."""
     scales = (diagram.x[0], diagram.subplots[0].y, diagram.z)
     drawn["scene"] = {"aspectmode": "data", "camera": CAMERA}
     for name, scale in zip("xyz", scales, strict=True):
@@ -254,7 +254,7 @@ def _polar(diagram: Diagram) -> Figure:
 
 
 def _clear(color: str, part: float) -> str:
-    """A colour of which only a part is seen."""
+    """A colour through which a part of what lies below is seen."""
     parts = ",".join(str(int(color[k : k + 2], 16)) for k in (1, 3, 5))
     return f"rgba({parts},{part})"
 

@@ -23,23 +23,23 @@ class ReportInput(RunRecord, Protocol):
 
     @property
     def checks(self) -> Sequence[Verdict]:
-        """Its verdicts."""
+        """The verdicts of its checks."""
 
     @property
     def scenario(self) -> RunPlan:
-        """What was run."""
+        """The scenario that was run."""
 
     @property
     def options(self) -> Mapping[str, Any]:
-        """How it was run."""
+        """The options with which it was run."""
 
     @property
     def overrides(self) -> Sequence[str]:
-        """In what not as written."""
+        """The values with which the run departs from the scenario as written."""
 
     @property
     def stopped(self) -> str:
-        """Why it ended."""
+        """The reason for which the run ended."""
 
     @property
     def done_at(self) -> float | None:
@@ -51,7 +51,7 @@ class ReportInput(RunRecord, Protocol):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """What FMUs and runner warned of."""
+        """The warnings of FMUs and of the runner, as a list."""
 
     def figures(self) -> Sequence[Chart]:
         """The figures that the scenario asks for."""

@@ -1,4 +1,4 @@
-"""What a run leaves on disk: signals, numbers, report."""
+"""The folder that a run leaves on disk: its signals, its numbers and its report."""
 
 import contextlib
 import os
@@ -31,13 +31,13 @@ def _write_csv(result: Result, file: Path) -> None:
 
 
 def near(folder: Path) -> Path:
-    """The folder that is there in which, or in which of its folders, a result will be."""
+    """The nearest folder above a result's folder that exists already."""
     return next(p for p in folder.resolve().parents if p.is_dir())
 
 
 def usable(folder: Path) -> Path:
     """The absolute path of a folder in which a result may be written."""
-    # New, empty, or with an older result; else an InputError.
+    # It is new, empty, or holds an older result; anything else is an InputError.
     folder = folder.resolve()
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file, not a folder")
@@ -48,7 +48,7 @@ def usable(folder: Path) -> Path:
 
 @dataclass(frozen=True)
 class Kept:
-    """What of a result is kept beside its report."""
+    """The files that are kept of a result beside its report."""
 
     csv: bool = False
     signals: bool = True
@@ -63,7 +63,7 @@ def save(
 ) -> Path:
     """Write a run's folder, whole or not at all; give the report."""
     # An older result is replaced; anything else in the folder is an InputError.
-    # Each part, which takes long after a long run, is `told` before it is done.
+    # Each part takes long after a long run, so `told` is called before it begins.
     with whole(folder) as part:
         if kept.signals:
             told("signals")
@@ -94,7 +94,7 @@ def save(
 @contextlib.contextmanager
 def whole(folder: Path) -> Iterator[Path]:
     """Write a folder of results whole or not at all."""
-    # Yields where to write, which must get a `NUMBERS`.
+    # Yields the folder to write into; the file `NUMBERS` must be written there.
     # An older result is replaced; anything else in the folder is an InputError.
     folder = usable(folder)
     part = folder.with_name(f".{folder.name}.part{os.getpid()}")

@@ -1,4 +1,4 @@
-"""What was run: overrides, times, ways, gains, and the speed of the tool beside the programmed."""
+"""A run in short: overrides, times, lengths, gains and the speed of its tool."""
 
 import contextlib
 from collections.abc import Sequence
@@ -42,7 +42,7 @@ AS_WRITTEN = "Note of the scenario as written: "
 
 @dataclass(frozen=True)
 class RunSummary:
-    """What a run was, for page and JSON."""
+    """How a run went, for its page and for result.json."""
 
     began: float | None  # first command of the program, else first motion of the tool [s]
     done: float | None  # [s]
@@ -59,7 +59,7 @@ class RunSummary:
         return self.done - self.began if known else None  # type: ignore[operator]
 
     def numbers(self) -> dict[str, Any]:
-        """The same for JSON."""
+        """The summary as numbers for JSON."""
         gains = [{"name": g.name, "axis": g.axis, "value": g.value, "kp": g.kp} for g in self.gains]
         return {
             "began_at": self.began,
@@ -71,7 +71,7 @@ class RunSummary:
 
 
 def summary_of(result: ReportInput, contour: ContourResult | None) -> RunSummary:
-    """Look at how a run went."""
+    """Find out how a run went."""
     scenario, given = result.scenario, result.options.get("set", {})
     gains: tuple[LoopGain, ...] = ()
     with contextlib.suppress(Missing):
@@ -182,7 +182,7 @@ def _planned(result: ReportInput) -> Read | None:
 
 
 def add_summary(page: Page, result: ReportInput, ran: RunSummary) -> None:
-    """Add the section that says what was run, and the speed over time."""
+    """Add the section that says what was run."""
     options = result.options
     step = options.get("step") or result.resolver.document.body.step
     every = options.get("every") or result.resolver.document.body.record.every

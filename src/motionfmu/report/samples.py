@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from motionfmu.run.decimate import MOST, Read, at, few, reader
 
-LEVEL = 1  # of zlib: a quarter of the time of its usual one, a tenth larger
-# 32 bits do for a real number if they move it by less than this part of the curve's height.
+LEVEL = 1  # of zlib: takes a quarter of the time of its usual level, for a tenth more bytes
+# Real numbers get 32 bits if that moves none by more than this part of the curve's height.
 COARSE = 1e-6
-EVEN = 1e-9  # [s] times that lie so near to even ones are even
+EVEN = 1e-9  # [s] times that are so near to even ones are kept as start and step
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Samples:
     values: NDArray[Any]  # (n,) as shown; NaN is a gap
     steps: bool = False  # a value holds until the next one
     dots: bool = False  # single events, no line between them
-    lines: NDArray[Any] | None = None  # (n,) of the program, said beside the value
+    lines: NDArray[Any] | None = None  # (n,) lines of the program, which are shown beside the value
     all: bool = True  # none of the recorded samples are left out
 
     @classmethod
@@ -50,7 +50,8 @@ class Samples:
 
 def bits(values: NDArray[Any]) -> dict[str, Any]:
     """Numbers as one short text: whole ones exact, real ones to 7 digits of the height."""
-    # Differences of their bits, the bytes sorted by their place: those of a smooth curve are alike.
+    # Differences of the bits are sorted by the place of their bytes, because neighbours of a smooth
+    # curve have most bytes in common.
     kind = _kind(values)
     word = np.dtype(f"<u{kind[1]}")
     raw = np.ascontiguousarray(values, dtype="<" + kind).view(word)

@@ -17,7 +17,7 @@ def head(doc: str) -> str:
 
 
 def sentence(doc: str) -> str:
-    """What a description says first, for a table."""
+    """The first sentence of a description, for a table."""
     return _SENTENCE.split(doc, maxsplit=1)[0].strip()
 
 
@@ -27,7 +27,7 @@ def titled(name: str, doc: str) -> str:
 
 
 def words_of(resolver: Resolver, name: str) -> tuple[str, str]:
-    """What is checked, and its unit as on all pages; both empty where nothing says so."""
+    """Words and unit of what is checked; both are empty where no description has them."""
     whole = name.partition("[")[0]
     table, _, own = whole.partition(".")
     if table == "contour":

@@ -1,4 +1,4 @@
-"""Colours and type of all pictures, safe for the colour-blind."""
+"""Colours and fonts of all charts; the colour-blind can tell them apart."""
 
 INK = "#1b2733"
 MUTED = "#5b6b7a"

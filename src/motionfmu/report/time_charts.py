@@ -1,4 +1,4 @@
-"""What a run did over time: errors, stock, signals and the speed of its tool."""
+"""Charts of a run over time: errors, FIFO stock, signals and the speed of its tool."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ from motionfmu.report.style import AXES, HEAT, INK, RAPID
 from motionfmu.run.decimate import Read, ends, reader
 from motionfmu.run.tool_gap import ToolGap
 
-ROOM, PEAK_ROOM = 0.08, 0.16  # above and below curves, and where the peak has a label
+ROOM, PEAK_ROOM = 0.08, 0.16  # free part of the height above curves, and above a peak with a label
 LATE = 0.05  # part of a run at its end in which a text has no room
 HEIGHT, LOW = 188, 150  # [pixel] of a plot, and of one of several
 NAMES = "XYZUVW"
@@ -38,8 +38,8 @@ class Speeds:
     time: Array  # (n,) [s]
     tool: Array  # (n,)
     planned: Array | None  # (n,) by the controller
-    programmed: Array | None  # (n,) NaN where nothing is
-    unit: tuple[str, str]  # and what the tool's is from
+    programmed: Array | None  # (n,) NaN where the program asks for no speed
+    unit: tuple[str, str]  # unit, and the signals from which the speed of the tool is computed
     done: float | None  # when the program was done [s]
 
 
@@ -93,7 +93,7 @@ def following_chart(contour: ContourResult) -> Diagram:
 
 
 def gap_chart(time: Array, tool: ToolGap) -> Diagram:
-    """How far a tool is from its command against time, and how it is turned from it."""
+    """Distance and angle between a tool and its command against time."""
     factor, name = unit(tool.sizes[0].largest)
     distance = _curve(
         time, lambda first, last: factor * tool.distance(first, last), "Distance", AXES[0]

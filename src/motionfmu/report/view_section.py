@@ -27,7 +27,7 @@ KEYS = (
 
 
 def add_view(page: Page, scene: Scene | None) -> dict[str, Any]:
-    """Add the section; give its data for the page, none without a scene."""
+    """Add the section and give the data of its script; without a scene there are none."""
     if scene is None:
         return {}
     duration = float(scene.time[-1] - scene.time[0])
@@ -45,7 +45,7 @@ def add_view(page: Page, scene: Scene | None) -> dict[str, Any]:
 
 
 def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
-    """What the script draws."""
+    """The data that the script of the view draws."""
     arm = scene.arm
     return {
         "id": "view",

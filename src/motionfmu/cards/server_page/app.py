@@ -76,7 +76,7 @@ def application(cards: Fleet, token: str, config: Path | None = None) -> Starlet
     InputError
         The configuration is wrong.
     """
-    page = _Page(cards, load(config) if config else None, config)
+    page = _CardPage(cards, load(config) if config else None, config)
     live = Live(cards, token)
     routes = [
         Route("/", _file("page.html")),
@@ -130,7 +130,7 @@ async def values(request: Request) -> dict[str, Any]:
     return found
 
 
-class _Page:
+class _CardPage:
     def __init__(self, cards: Fleet, config: CardConfig | None, file: Path | None) -> None:
         self._cards = cards
         self._pictures = Pictures()

@@ -90,8 +90,8 @@ def _cards(found: Explanation) -> str:
 
 
 def shown(found: Explanation) -> list[Effect]:
-    """Effects that a chart shows: those that act, or should."""
-    # The largest first; all of them if none acts.
+    """Effects that a chart shows: those that act, and those that act in theory."""
+    # The largest effect comes first; if none acts, all are shown.
     acting = [e for e in found.effects if e.judged and (e.size > 0.0 or e.theory.value)]
     return acting or list(found.effects)
 
@@ -143,7 +143,7 @@ def _effects(found: Explanation) -> str:
 
 
 def idle(found: Explanation) -> list[Effect]:
-    """Causes that change nothing, and should not."""
+    """Causes that change nothing, in the runs and in theory."""
     return [e for e in found.effects if e.judged and e.size == 0.0 and not e.theory.value]
 
 
@@ -206,7 +206,7 @@ def _circle_title(test: CircularTest) -> str:
 
 
 def _corners(found: Explanation) -> str:
-    """Those with the largest errors; the others are behind a line that opens them."""
+    """The corners with the largest errors; a line opens the list of all other corners."""
     worst = sorted(found.corners, key=lambda c: -c.error)
     shown = _corner_rows(worst[:CORNERS_SHOWN])
     if not (rest := worst[CORNERS_SHOWN:]):

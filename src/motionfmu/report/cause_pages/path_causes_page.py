@@ -53,7 +53,7 @@ def write_path_explanation(found: PathExplanation, folder: Path) -> Path:
 
 
 def acting(found: PathExplanation) -> list[PathEffect]:
-    """Effects that are to be seen, the largest first; all if none is."""
+    """Effects that are larger than 0, the largest first; all effects if there is none."""
     return [e for e in found.effects if e.judged and e.size > 0.0] or list(found.effects)
 
 

@@ -1,4 +1,4 @@
-"""What a network card's drawing, plan or job draws, and how fast."""
+"""Charts of a network card's drawing, plan or job: its path, and how fast it is drawn."""
 
 from pathlib import Path
 from typing import Any
@@ -51,7 +51,7 @@ def plan_chart(plan: Plan) -> Diagram:
 
 
 def rate_chart(plan: Plan, order: int) -> Diagram:
-    """Speeds (1) or accelerations (2) of the axes that move."""
+    """The speed (order 1) or the acceleration (order 2) of each axis that moves."""
     every = np.vstack([np.zeros((order, 4)), plan.places])
     rates = np.diff(every, order, axis=0) / plan.period**order
     title, unit = (("Speed", "mm/s"), ("Acceleration", "mm/s²"))[order - 1]
@@ -59,7 +59,7 @@ def rate_chart(plan: Plan, order: int) -> Diagram:
 
 
 def _over_time(period: float, rows: Array, scale: Scale) -> Diagram:
-    """Curves of the axes that move; a row (n, 4) is what a period gives."""
+    """A curve for each axis that moves; `rows` (n, 4) has one row for each period [s]."""
     time = np.arange(1, len(rows) + 1) * period
     curves = [
         SamplesMark(Samples(time, rows[:, k]), name, AXES[k], 1.2)
@@ -71,7 +71,7 @@ def _over_time(period: float, rows: Array, scale: Scale) -> Diagram:
 
 
 def _chords(places: Array, mask: NDArray[np.bool_]) -> Array:
-    """Chords of the frames of a mask, gaps between those that do not follow each other."""
+    """The chords of the chosen frames, with gaps where frames do not follow each other."""
     step = -(-len(mask) // MOST)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]])))
     parts = []

@@ -1,4 +1,4 @@
-"""The page of a plan: its numbers, the path by speed, speeds over time, what was passed over."""
+"""The page of a plan: numbers, path coloured by speed, speeds over time, ignored commands."""
 
 from html import escape
 from typing import Any

@@ -106,7 +106,7 @@ def colors(drawn: Sequence[Stroke]) -> dict[int, str]:
 
 
 def _joined(parts: Sequence[Stroke]) -> tuple[Any, Any, Any]:
-    """Points of several strokes with a gap between, feeds and lines."""
+    """Points, feeds and line numbers of several strokes, with a gap between two strokes."""
     gap = np.full((1, 3), np.nan)
     points = np.concatenate([np.concatenate([s.points, gap]) for s in parts])
     feed = np.concatenate([np.append(s.feed, s.feed[-1]) for s in parts])
@@ -126,7 +126,7 @@ def _by_tool(feeds: Sequence[Stroke]) -> list[Group]:
 
 
 def _by_feed(feeds: Sequence[Stroke]) -> list[Group]:
-    """Moves of the same feed, or of one of `LEVELS` spans of feeds, from light to dark."""
+    """Groups of moves with the same feed, or with one of `LEVELS` spans of feeds, light to dark."""
     pieces = []
     for s in feeds:
         cuts = np.flatnonzero(np.diff(s.feed)) + 1

@@ -206,7 +206,7 @@ def kp_at(limit: Limit, study: LoopStudy, gains: Sequence[LoopGain]) -> list[flo
 
 
 def point_line(axis: AxisModel, whence: str) -> str:
-    """What the model is linearised about, in one line."""
+    """One line that names the operating point at which the model is linearised."""
     if axis.at:
         end = axis.scenario.resolver.end
         units = {name: end(name, "at", name).port.unit or "" for name in axis.at}
@@ -238,7 +238,7 @@ def _point_note(axis: AxisModel) -> str:
 
 
 def _over(axis: AxisModel) -> str:
-    """Where the motion cannot go on."""
+    """Say after which time the motion cannot go on."""
     ends = [p.lasts for p in axis.points.values() if math.isfinite(p.lasts)]
     if not ends:
         return ""

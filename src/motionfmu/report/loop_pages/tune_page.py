@@ -72,7 +72,7 @@ def _cards(tuned: Tuned) -> str:
 
 
 def _over(tuned: Tuned) -> str:
-    """What the RMS is over."""
+    """The words that say over which time the RMS is taken."""
     return RMS if tuned.study.problem.command is None else "over the whole run"
 
 

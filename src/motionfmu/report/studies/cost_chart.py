@@ -40,11 +40,11 @@ if TYPE_CHECKING:
 CELL, HIGH, LOW = 190, 470, 330  # [pixel] of a cell of the matrix, of a field, of a curve
 BEST: dict[str, Any] = {"symbol": "star", "size": 17.0, "color": "#ffffff", "edge": INK}
 TUNED: dict[str, Any] = {"symbol": "diamond", "size": 12.0, "color": AXES[0], "edge": "#ffffff"}
-SMALL = 0.75  # size of these two in a matrix
+SMALL = 0.75  # factor for the size of both in a matrix
 
 
 def cost_chart(outcome: "Outcome") -> Diagram:
-    """The cost as its kind wants it."""
+    """The chart of the cost that suits the number and kind of the variables."""
     return {CURVE: _curve, FIELD: _field}.get(kind(outcome), _matrix)(outcome)
 
 
@@ -60,7 +60,7 @@ def _cost_scale(outcome: "Outcome") -> Scale:
 
 
 def _heat(outcome: "Outcome", values: Array) -> Heat:
-    """The cost as colour, between round values."""
+    """The cost as a colour, between two round values."""
     steps = levels(values)
     ends = float(steps[0]), float(steps[-1])
     ticks = tuple(float(s) for s in steps)
@@ -68,12 +68,12 @@ def _heat(outcome: "Outcome", values: Array) -> Heat:
 
 
 def _number(shown: Dimension, value: Any) -> float:
-    """A value of a variable as its axis has it."""
+    """The number at which an axis shows a value of its variable."""
     return float(value) if shown.numeric else float(list(dict.fromkeys(shown.values)).index(value))
 
 
 def _points(outcome: "Outcome", size: float = 1.0) -> list[tuple[dict[str, Any], Any, Any]]:
-    """Look, place by variable and cost of the best run and of the tuned point."""
+    """The best run and the tuned point: how each is drawn, its values and its cost."""
     found: list[tuple[dict[str, Any], Any, Any]] = []
     if (best := outcome.best) is not None:
         place = dict(zip(outcome.study.job.axes, outcome.study.points[best], strict=True))

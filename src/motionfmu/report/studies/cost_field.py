@@ -23,7 +23,7 @@ DECADES = 1.5  # a cost that spreads over more of them is drawn in logarithms
 CELLS = 121  # of the field between scattered points, each way
 LEVELS = 12  # about so many lines
 STEPS = (1.0, 2.0, 5.0, 10.0)
-# Lines in each decade: while there are fewer than 3 decades, fewer than 6, more.
+# Lines in each decade, for fewer than 3 decades, for fewer than 6 and for more.
 FINE, MIDDLE, COARSE = (1.0, 1.5, 2.0, 3.0, 5.0, 7.0), (1.0, 2.0, 5.0), (1.0,)
 
 
@@ -47,7 +47,7 @@ class Dimension:
 
     @property
     def even(self) -> Array:
-        """Numbers as they lie on the page, perhaps logarithms."""
+        """The numbers as they lie on a page: on a logarithmic axis their logarithms."""
         return np.log10(self.numbers) if self.log else self.numbers
 
 
@@ -80,7 +80,7 @@ def _scaled(outcome: "Outcome", unit: str) -> tuple[float, str]:
 
 
 def dimensions(outcome: "Outcome") -> list[Dimension]:
-    """What was varied."""
+    """The variables that the study varies."""
     found = []
     for axis in outcome.study.axes:
         values = outcome.axis(axis.name)
@@ -90,7 +90,7 @@ def dimensions(outcome: "Outcome") -> list[Dimension]:
 
 
 def kind(outcome: "Outcome") -> str:
-    """How the cost is drawn."""
+    """The kind of chart that suits the cost: CURVE, FIELD or MATRIX."""
     # CURVE over one axis, FIELD over two axes of numbers, MATRIX of points else.
     shown = dimensions(outcome)
     if len(shown) == 2 and all(d.numeric for d in shown) and field(outcome) is not None:
@@ -132,7 +132,7 @@ def logarithmic(cost: Array) -> bool:
 
 def levels(cost: Array) -> Array:
     """At least two round values, increasing, for contour lines."""
-    # The same of each decade if the cost is drawn in logarithms; NaN is no cost.
+    # Where the cost is drawn by its logarithm, each decade has the same values. NaN is no cost.
     known = cost[np.isfinite(cost)]
     low, high = float(known.min()), float(known.max())
     if logarithmic(cost):

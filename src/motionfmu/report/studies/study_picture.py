@@ -1,4 +1,4 @@
-"""The picture of a study: axes alike, one file."""
+"""The look that the pictures of all studies share."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ DPI = 130
 
 
 def save(figure: Figure, picture: Path) -> None:
-    """Quiet the axes, write the file and say where it is."""
+    """Give all axes the common look, write the file and print where it is."""
     for axes in figure.axes:
         axes.grid(alpha=0.25)
         axes.spines[["top", "right"]].set_visible(False)

@@ -81,7 +81,7 @@ def page_text(outcome: "Outcome") -> str:
 
 
 def _told_best(outcome: "Outcome") -> str:
-    """Where the best run lies at an end of the study; that there is none without a cost."""
+    """Say at which ends of the study the best run lies, or that no cost was named."""
     if not outcome.study.cost:
         return "No cost was named, so no run is the best: <code>--cost</code>."
     if not outcome.at_the_edge:

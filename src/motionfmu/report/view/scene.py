@@ -1,4 +1,4 @@
-"""From a run to what the moving picture needs, in mm and few enough numbers."""
+"""The moving picture of a run: its frames, its path and its deviations [mm]."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
 
 @dataclass(frozen=True)
 class DeviationLine:
-    """A line that was followed, and how far off."""
+    """A line that the tool followed, and its deviation along it."""
 
     foot: Array  # (n, 3) points of the command [mm]
     gap: Array  # (n, 3) deviation there [mm]
