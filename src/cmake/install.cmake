@@ -17,8 +17,6 @@ install(DIRECTORY ${header_folder}/motionfmu DESTINATION ${CMAKE_INSTALL_INCLUDE
 install(TARGETS ${cores} EXPORT motionfmu ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}/motionfmu)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/motionfmu)
 install(EXPORT motionfmu NAMESPACE motionfmu:: FILE motionfmuConfig.cmake DESTINATION ${package})
-file(STRINGS pyproject.toml version REGEX "^version")
-string(REGEX REPLACE ".*\"(.*)\"" "\\1" version "${version}")
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/motionfmuConfigVersion.cmake VERSION ${version}
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/motionfmuConfigVersion.cmake DESTINATION ${package})
@@ -26,7 +24,7 @@ install(FILES ${CMAKE_BINARY_DIR}/motionfmuConfigVersion.cmake DESTINATION ${pac
 set(pkgconfig ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH to_prefix /${pkgconfig} /)
 foreach(core ${cores})
-  list(TRANSFORM ${core}_uses PREPEND motionfmu- OUTPUT_VARIABLE requires)
+  list(TRANSFORM core_${core}_uses PREPEND motionfmu- OUTPUT_VARIABLE requires)
   list(JOIN requires " " requires)
   configure_file(src/cmake/core.pc.in ${CMAKE_BINARY_DIR}/pkgconfig/motionfmu-${core}.pc @ONLY)
   install(FILES ${CMAKE_BINARY_DIR}/pkgconfig/motionfmu-${core}.pc DESTINATION ${pkgconfig})
