@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 # What a model that is made of a Modelica class uses, whichever class it is.
-OF_PLANTS = ("elementary",)
+OF_PLANTS: tuple[str, ...] = ("elementary",)
 
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
