@@ -51,7 +51,7 @@ check: needs .venv/installed          ## formatting, lint, types
 
 bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures
 	@cmake --build build --target fused_circle fused_six_axes count_here card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
-	PYTHONPATH=tests $(BIN)/python tests/bench/bench.py $(BENCH)
+	PYTHONPATH=tests/helpers $(BIN)/python tests/bench/bench.py $(BENCH)
 
 importers: build export         ## FMUs in other people's importers, which it installs; writes docs/importers.md
 	PYTHONPATH=tests/importers $(BIN)/python tests/importers/matrix.py

@@ -4,7 +4,7 @@
 
 The points of the library at every period, without a card; the contour error of the machine comes
 from runs of the scenario. Junction deviation is computed here, as is the bound: the least time
-along our own curve, by toppra. tests/shape_paths.py asks the library for the curve.
+along our own curve, by toppra. tests/helpers/shape_paths.py asks the library for the curve.
 """
 
 import re
@@ -27,7 +27,7 @@ import motionfmu
 from motionfmu.analysis import gcode
 
 HERE = Path(__file__).parent
-sys.path.append(str(HERE.parents[1] / "tests"))
+sys.path.append(str(HERE.parents[1] / "tests/helpers"))
 from shape_paths import Chords, Piece, shaped  # noqa: E402
 
 toppra.setup_logging("ERROR")

@@ -1,6 +1,6 @@
 """Which integrator a plant needs: error against Radau and cost, measured on a hard trajectory.
 
-PYTHONPATH=tests python tests/bench/integrators.py        prints the table of
+PYTHONPATH=tests/helpers python tests/bench/integrators.py        prints the table of
 fmus/hydraulic_axis/README.md. Times are of one core; they compare with each other only.
 """
 

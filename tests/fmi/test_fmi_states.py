@@ -42,7 +42,7 @@ def test_a_damaged_state_is_refused_and_changes_nothing(
     for length in (0, 1, HEADER - 1, HEADER, len(data) // 2, len(data) - 8, len(data) - 1):
         refused(data[:length], "bytes given")
     refused(data + bytes(8), "bytes given")
-    half = len(data) // 16 * 8
+    half = (HEADER + len(data)) // 16 * 8
     refused(data[:HEADER] + data[half:] + data[HEADER:half], "its bytes have changed")
     assert instance.serialize(instance.save()) == data
     assert instance.step(STEP) == OK

@@ -64,7 +64,7 @@ def test_one_round_gives_no_figures_of_time(last: Path, capsys) -> None:
 
 def test_one_round_is_never_kept() -> None:
     bench = [sys.executable, ROOT / "tests/bench/bench.py", "--quick", "--renew"]
-    path = {"PYTHONPATH": str(ROOT / "tests")}
+    path = {"PYTHONPATH": str(ROOT / "tests/helpers")}
     done = subprocess.run(bench, capture_output=True, text=True, env=path)
     assert done.returncode != 0 and done.stdout == ""
     assert done.stderr == "bench: --quick takes one round, which --renew does not keep\n"

@@ -35,7 +35,8 @@ PATIENCE, SLEEP = 120, 900  # [s]
 # An installed checkout is found before any path, and it is the user's.
 PYTEST = (
     "import sys; sys.meta_path[:] = [m for m in sys.meta_path if 'ditable' not in repr(m)]; "
-    "sys.path[:0] = ['src', 'tests']; import pytest; sys.exit(pytest.main(sys.argv[1:]))"
+    "sys.path[:0] = ['src', 'tests', 'tests/helpers']; "
+    "import pytest; sys.exit(pytest.main(sys.argv[1:]))"
 )
 # No C test compiles these: a plant is made of its template, others are loaded built, by Python.
 ELSEWHERE = ("src/plant", "src/python", "src/controllers/robot_station")

@@ -1,4 +1,4 @@
-/* Rides along chains of pieces in one call, for tests/pace_rides.py. */
+/* Rides along chains of pieces in one call, for tests/helpers/pace_rides.py. */
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 """Random rides along smooth pieces: what they take of the limits of their axes, and which too much.
 
-    PYTHONPATH=tests python tests/pace/random_rides.py --first 0 --count 1000 [-j 2]
+    PYTHONPATH=tests/helpers python tests/pace/random_rides.py --first 0 --count 1000 [-j 2]
 
 Each seed is ridden without and with limited jerk. Exit status 1 if a ride takes more than 1e-6
 above a limit, turns back, or does not rest at the end of its path.

@@ -1,4 +1,4 @@
-/* Many S-curves in one call, for tests/scurve_moves.py. */
+/* Many S-curves in one call, for tests/helpers/scurve_moves.py. */
 #include "scurve.h"
 
 struct move {

@@ -10,10 +10,13 @@ import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+# What a model that is made of a Modelica class uses, whichever class it is.
+OF_PLANTS: tuple[str, ...] = ("elementary",)
+
 _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _GUARD = re.compile(r"^#ifndef (\w+)\n#define \1\n", re.MULTILINE)
 _END = "\n#endif\n"
-_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)
+_INCLUDE = re.compile(r'^\s*#\s*include\s+"(?:[^"]*/)?([^"/]+)"', re.MULTILINE)
 
 # Lines around a header's declarations, for C++: its functions are those of C, and C11's structs
 # without a name raise no warning.
@@ -58,7 +61,7 @@ def _names(file: Path, key: str) -> list[str]:
 
 
 def closure(source: Path, names: Iterable[str]) -> list[str]:
-    """These cores, and all that they use, directly or through others."""
+    """These cores, then those that they use, directly or through others."""
     place = folders(source)
     found: list[str] = []
     waiting = list(names)
@@ -67,11 +70,11 @@ def closure(source: Path, names: Iterable[str]) -> list[str]:
         if name not in found:
             found.append(name)
             waiting += uses(place[name])
-    return sorted(found)
+    return found
 
 
 def included(file: Path) -> list[str]:
-    """Names of the headers a C file includes, in their order."""
+    """Names of the headers a C file includes, without folders, in their order."""
     return _INCLUDE.findall(file.read_text())
 
 

@@ -1,5 +1,7 @@
 """Generate an FMU's C and XML, pack its .fmu files, make headers; called by the build.
 
+python src/pack.py cmake
+python src/pack.py needed   fmus build/gen
 python src/pack.py generate fmus/epcio build/gen/epcio
 python src/pack.py archive  fmus/epcio build/gen/epcio 3 epcio.o epcio.fmi3.fmu here=epcio.so
 python src/pack.py headers  src build/include/motionfmu
@@ -27,6 +29,7 @@ from motionfmu.fmu import (
     ctables,
     documentation,
     fmu_toml,
+    for_cmake,
     sources,
     start_values,
     terminals,
@@ -80,10 +83,17 @@ def generate(fmu: Path, out: Path) -> None:
 
 
 def _core_files(fmu: Path) -> list[Path]:
-    # What all Modelica classes use; to translate one only to learn that would take seconds.
+    # A class is not translated for this, which takes seconds.
     if is_modelica(fmu):
-        return cores.needed(SOURCE, ["elementary"], (SOURCE / "plant").glob("*.[ch]"))
+        return cores.needed(SOURCE, cores.OF_PLANTS, (SOURCE / "plant").glob("*.[ch]"))
     return cores.needed(SOURCE, fmu_toml.load(fmu / "fmu.toml").cores, fmu.glob("*.[ch]"))
+
+
+def needed(fmus: Path, out: Path) -> None:
+    """Write which files of the cores each FMU needs into core_files.txt of its generated text."""
+    for file in fmus.glob("*/fmu.toml"):
+        names = [str(f.relative_to(SOURCE)) for f in _core_files(file.parent)]
+        _write(out / file.parent.name / "core_files.txt", "\n".join([*names, ""]))
 
 
 def compiled_sources(fmu: Path, out: Path) -> list[Path]:
@@ -221,10 +231,12 @@ def headers(source: Path, out: Path) -> None:
 
 
 def main(arguments: list[str]) -> int:
-    """Run one of the four as in the module's first lines; 0, or 2 after one message on stderr."""
+    """Run one of the six as in the module's first lines; 0, or 2 after one message on stderr."""
     try:
-        two = {"generate": generate, "headers": headers}
-        if arguments == ["platforms"]:
+        two = {"needed": needed, "generate": generate, "headers": headers}
+        if arguments == ["cmake"]:
+            print(for_cmake.lists(SOURCE.parent), end="")
+        elif arguments == ["platforms"]:
             print(*(f"{p.name} {p.target} {p.suffix}" for p in platforms.PLATFORMS), sep="\n")
         elif arguments[0] in two:
             two[arguments[0]](Path(arguments[1]), Path(arguments[2]))

@@ -379,7 +379,7 @@ static void check_pairs(void *c, const char *bytes, size_t size)
     }
 }
 
-/* Bytes as another build would have made them: with another value of its own, and the right hash. */
+/* Bytes as another build would have made them: another value of its own, the right hash. */
 static void check_other(void *c, const char *bytes, size_t size, size_t at, char value,
                         const char *words)
 {

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 AXES, POINTS = 6, 6
 LINE, ARC, CURVE = range(3)
 # struct told, struct sample and struct pace_limits of tests/pace/pace_batch.c.

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import ruckig
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 # struct move of tests/scurve/scurve_batch.c, and the power of the second in the unit of each.
 SECONDS = {"s": 0, "v": -1, "a": -2, "s1": 0, "v1": -1, "speed": -1, "acc": -2, "dec": -2}
 SECONDS |= {"jerk": -3}

@@ -12,7 +12,7 @@ import numpy as np
 from motionfmu.fmu import ctables, fmu_toml
 from motionfmu.fmu.modelica import codegen
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 BUILD = ROOT / "build"
 PACKAGE = ROOT / "modelica" / "MotionControl"
 _ELEMENTARY = ROOT / "src/base/elementary"

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import BPoly, CubicSpline
 from scipy.spatial import cKDTree
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 BATCH = os.environ.get("SHAPE_BATCH", str(ROOT / "build/tests/shape/shape_batch"))
 PLANES = {0: (1, 2), 1: (2, 0), 2: (0, 1)}
 Array = np.ndarray

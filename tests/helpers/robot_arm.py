@@ -11,7 +11,7 @@ import pinocchio
 from motionfmu.fmu.modelica import causal
 from motionfmu.fmu.modelica.ode import Ode
 
-PACKAGE = Path(__file__).resolve().parent.parent / "modelica" / "MotionControl"
+PACKAGE = Path(__file__).resolve().parents[2] / "modelica" / "MotionControl"
 AXES = "zyyzyz"
 EXACT = {"lost_motion": 0.0, "transmission_error_1": 0.0, "transmission_error_2": 0.0,
          "zero_error": 0.0, "origin_error": 0.0}  # fmt: skip
