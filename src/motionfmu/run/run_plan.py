@@ -62,7 +62,7 @@ class Options:
     progress: Callable[[float], None] = lambda share: None
 
     def given(self) -> dict[str, Any]:
-        """The options that a result keeps, with which the same run can be made again."""
+        """The options that a result keeps, to run so again."""
         names = ("engine", "fmi", "set", "stop", "step", "every")
         return {name: getattr(self, name) for name in names} | {"set": dict(self.set)}
 

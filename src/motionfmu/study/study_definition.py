@@ -69,7 +69,7 @@ class Study:
 
     @property
     def shown(self) -> str:
-        """The column that is drawn: the cost, or the first column if there is no cost."""
+        """The column that is drawn: the cost, else the first column."""
         return self.cost or self.columns[0].name
 
     @property
