@@ -188,8 +188,8 @@ def test_a_run_calls_them(engine: str) -> None:
 
 @pytest.mark.parametrize("fmi", (2, 3))
 def test_they_travel_inside_an_fmu(fmi: int, tmp_path: Path) -> None:
-    made = packed("mcc", tmp_path / "m.fmu", fmi, {"program": str(CALLS / "files.ngc")})
-    assert made == ["12.ngc", "files.ngc", "outline.ngc"]
+    made, why = packed("mcc", tmp_path / "m.fmu", fmi, {"program": str(CALLS / "files.ngc")})
+    assert made == ["12.ngc", "files.ngc", "outline.ngc"] and why == ""
     with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
         assert archive.read("resources/outline.ngc") == (CALLS / "outline.ngc").read_bytes()
 

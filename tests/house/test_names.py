@@ -16,15 +16,6 @@ PARTICIPLES = set(
     " measured opened packed planned prepared ran recorded scaled scoped shipped shown stored taken"
     " told used wanted wired written".split()
 )
-# Names that stand twice nevertheless, and participles, each with its reason.
-TWICE = {
-    "Result": "the report's interface of a run has the name of what it reads",
-    "sweep": "the page of a study, beside the package and its command",
-}
-PARTICIPLE = {
-    "report/packed.py": "numbers as plotly's typed arrays",
-    "report/ran.py": "the report's part on what was run",
-}
 Places = dict[str, list[str]]
 
 
@@ -67,23 +58,15 @@ def participles(texts: Mapping[str, str]) -> set[str]:
 
 
 def test_no_two_classes_share_a_name() -> None:
-    assert {n: f for n, f in twice(classes(TEXTS)).items() if n not in TWICE} == {}
+    assert twice(classes(TEXTS)) == {}
 
 
 def test_no_two_modules_share_a_name_but_a_command_and_its_package() -> None:
-    found = {n: f for n, f in twice(modules(TEXTS)).items() if not is_command(n, f)}
-    assert {n: f for n, f in found.items() if n not in TWICE} == {}
+    assert {n: f for n, f in twice(modules(TEXTS)).items() if not is_command(n, f)} == {}
 
 
 def test_a_module_has_a_noun_for_a_name() -> None:
-    assert participles(TEXTS) - PARTICIPLE.keys() == set()
-
-
-def test_every_exception_is_one() -> None:
-    found = twice(modules(TEXTS))
-    shared = {*twice(classes(TEXTS)), *(n for n, f in found.items() if not is_command(n, f))}
-    assert shared == TWICE.keys()
-    assert participles(TEXTS) == PARTICIPLE.keys()
+    assert participles(TEXTS) == set()
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,9 @@
 #include "el_extremes.h"
 
 /* Axes that go together. */
-static const uint32_t TURN[] = { [APPROACH_TOOL] = 0xC, [APPROACH_PLANE] = 0x3, [APPROACH_THERE] = 0 };
+static const uint32_t TURN[] = {
+    [APPROACH_TOOL] = 0xC, [APPROACH_PLANE] = 0x3, [APPROACH_THERE] = 0
+};
 
 bool card_approach_due(const struct netcard *c)
 {

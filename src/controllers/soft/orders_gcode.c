@@ -1,4 +1,4 @@
-/* orders_gcode - a part program as orders, and its inquiry: it is read to its end, nothing moves. */
+/* orders_gcode - a part program as orders, and its inquiry, which reads it without motion. */
 #include "orders_parts.h"
 
 #include "waiting.h"

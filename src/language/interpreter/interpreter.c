@@ -131,8 +131,8 @@ static bool nurbs_asked(const struct interpreter *in, const struct block *b, boo
                             : code == 53 || (in->nurbs.count > 0 && words);
 }
 
-/* Motion of the block, if it has any. One row of questions: who is asked first has the first claim on
- * the words, so the order is the language's. */
+/* Motion of the block, if it has any. One row of questions: who is asked first has the first
+ * claim on the words, so the order is the language's. */
 static enum fault move(struct interpreter *in, const struct program *p, const struct block *b,
                        struct fault_report *r)
 {

@@ -64,8 +64,8 @@ bool mover_busy(const struct mover *p)
     return p->motion != MOVER_MIX || p->mix.count > 0;
 }
 
-/* Single block: whether the next command is the first of a block that may not begin yet. A block is a line
- * of the program, or one call. */
+/* Single block: whether the next command is the first of a block that may not begin yet. A
+ * block is a line of the program, or one call. */
 static bool blocked(const struct mover *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);

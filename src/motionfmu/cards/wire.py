@@ -97,7 +97,7 @@ def proved(given: bytes, wanted: bytes, whose: str) -> None:
 class LinkEnd:
     """What both ends of a connection have in common: the handshake, then messages from bytes.
 
-    The package has the PC's end; the card's in Python, for tests, is in tests/soft_card.py.
+    The package has the PC's end; the card's in Python, for tests, is in tests/helpers/soft_card.py.
     """
 
     def __init__(self, out: int) -> None:

@@ -3,7 +3,6 @@
 import asyncio
 import contextlib
 import hashlib
-import os
 import random
 import zlib
 from collections import deque
@@ -14,6 +13,7 @@ from motionfmu.cards.wire import OPEN_KEY, PROTOCOL, TO_PC, LinkEnd, proof, prov
 
 CREDIT = 16  # [pages]
 KEPT = 8  # results of commands
+DRAWS = random.Random(16)  # lives and nonces, the same in every run
 FIRST_WAIT, LAST_WAIT = 0.5, 30.0  # [s] until it connects again
 PING, PINGS = 1.0, 3  # [s] of silence, without an answer
 
@@ -54,7 +54,7 @@ class SoftCard:
         self.pages: dict[int, bytes] = {}  # of the transfer under way
         self.begun: m.JobBegin | None = None
         self.done = 0
-        self.life = random.getrandbits(16)
+        self.life = DRAWS.getrandbits(16)
         self.orders: list[m.Message] = []  # every command that was carried out
         self.written = 0  # pages that were taken, those taken again too
         self.settings: dict[tuple[int, int], int] = {}  # by number and index; others are 0
@@ -67,7 +67,7 @@ class SoftCard:
             self.id,
             PROTOCOL,
             PROTOCOL,
-            os.urandom(16),
+            DRAWS.randbytes(16),
             1,
             2,
             4,
