@@ -33,8 +33,8 @@ def short() -> Result:
 
 def test_the_package_shows_what_a_user_needs_and_its_folders() -> None:
     shown = dir(motionfmu)
-    assert {"load", "Scenario", "Result", "InputError", "mcc", "robot", "linear"} <= set(shown)
-    assert all(getattr(motionfmu, name) for name in (*motionfmu.__all__, "mcc", "gcode"))
+    assert {"load", "Scenario", "Result", "InputError", "virtual", "analysis"} <= set(shown)
+    assert all(getattr(motionfmu, name) for name in (*motionfmu.__all__, "virtual", "study"))
     with pytest.raises(AttributeError, match="'laod'"):
         _ = motionfmu.laod
 
