@@ -11,7 +11,7 @@ enum { FRAME_AXES = 4, FRAME_FIFO_LARGEST = 2304 };
 
 struct frame {
     int16_t command[FRAME_AXES];    /* [pulses] of one period */
-    uint8_t event;                  /* at its begin; 0 none */
+    uint16_t event;                 /* at its begin; 0 none; 16 bits, as 8 would leave padding */
 };
 
 struct frame_fifo {
