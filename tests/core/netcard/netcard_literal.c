@@ -65,6 +65,19 @@ static void home_during_pause(void)
     shows(" 2>5 >run r");
 }
 
+/* A start gives back what the pause has held. */
+static void start_behind_a_pause(void)
+{
+    begin();
+    send_behind(3, CARD_DO_PAUSE);
+    send_behind(5, CARD_DO_START);
+    CHECK_EQ(c.state, NET_PAUSED);
+    until("r7 ");
+    CHECK_EQ(c.state, NET_RUNNING);
+    shows("r3 !pause >parse >pause p4 p5 !start >parse >pause p6 >run r7 ");
+    CHECK_EQ(c.jobs, 1);
+}
+
 /* The second start stays in its semaphore: the machine runs again after a stop. */
 static void start_twice_then_stop(void)
 {
@@ -103,6 +116,7 @@ int main(void)
     home_during_run();
     home_behind_the_job();
     home_during_pause();
+    start_behind_a_pause();
     start_twice_then_stop();
     pause_while_idle();
     return check_result();

@@ -99,8 +99,31 @@ static void damaged_pages_are_told(void)
     }
 }
 
+/* A job that is given up while frames are still to be read counts until run has left it: the FIFO
+ * that stop empties is its least stock. One whose frames are all read counts no more. */
+static void least_stock_of_a_stop(void)
+{
+    const struct netcard_config config = bench_config();
+
+    bench_make(2000, 100, NULL, 0);
+    for (int all = 0; all < 2; all++) {
+        bench_start(&c, &config);
+        CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
+        bench_pass(&c, all ? 1800 : 700);
+        CHECK_EQ(c.phase, all ? JOB_DRAINING : JOB_PLAYING);
+        const int32_t before = c.least;
+        CHECK(before > 0);
+        CHECK_EQ(bench_order(&c, CARD_DO_STOP), NET_DONE);
+        until(NET_READY, 300);
+        bench_pass(&c, 1);
+        CHECK_EQ(c.phase, JOB_NONE);
+        CHECK_EQ(c.least, all ? before : 0);
+    }
+}
+
 int main(void)
 {
+    least_stock_of_a_stop();
     damaged_pages_are_told();
     words_take_their_time();
     plays_to_its_end();
