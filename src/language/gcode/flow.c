@@ -264,6 +264,13 @@ static enum fault leave_line(const struct flow_step *l)
     return skip_to(l, l->o.label, end, out);
 }
 
+/* o.. do, until its while. */
+static enum fault do_line(const struct flow_step *l)
+{
+    const enum fault f = oword_alone(l->s);
+    return f == FAULT_NONE ? flow_open(l, FLOW_DO, 0) : f;
+}
+
 enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_place here)
 {
     struct flow_step l = { .in = in, .s = s, .here = here, .at = s->at };
@@ -286,8 +293,7 @@ enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_pla
     case OWORD_WHILE:
         return while_line(&l);
     case OWORD_DO:
-        f = oword_alone(s);
-        return f == FAULT_NONE ? flow_open(&l, FLOW_DO, 0) : f;
+        return do_line(&l);
     case OWORD_REPEAT:
         return repeat_line(&l);
     case OWORD_ENDWHILE:

@@ -7,6 +7,7 @@
 
 enum { USED = 6 };
 
+/* clang-format off */
 #define RECORDED(X)                                                                               \
     X(mcc, status, int32_t, 1) X(mcc, homed, bool, 1) X(mcc, done, bool, 1)                       \
     X(mcc, error, int32_t, 1) X(mcc, line, int32_t, 1) X(mcc, command, int32_t, 1)                \
@@ -62,5 +63,6 @@ enum { USED = 6 };
     X(machine, table_speed, double, AXES) X(machine, table_phase, double, AXES)                   \
     X(machine, screw_force, double, AXES) X(machine, home_switch, bool, AXES)                     \
     X(machine, lower_limit, bool, AXES) X(machine, upper_limit, bool, AXES)
+/* clang-format on */
 
 #endif

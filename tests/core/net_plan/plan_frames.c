@@ -175,7 +175,8 @@ static void test_dwell(void)
     static const struct { double dwell; int32_t period_ns, rest; } CASES[] = {
         { 0.03, 1000000, 30 }, { 0.0301, 1000000, 31 }, { 0.0309999, 1000000, 31 },
         { 0.0005, 1000000, 1 }, { 0.0, 1000000, 1 }, { 0.007, 2000000, 4 }, { 0.1, 300000, 334 },
-        { 0.0105, 700000, 15 }              /* the quotient is above 15 in double precision */
+        /* 0.0105: the quotient is above 15 in double precision */
+        { 0.0105, 700000, 15 }
     };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         struct net_plan_config c = config_of(NET_PLAN_OUTPUT);
