@@ -9,7 +9,7 @@
 #include <motionfmu/short_names.h>
 #include <motionfmu/station.h>
 
-static struct station station;  /* 400 kB: not on the stack */
+static struct station station; /* 400 kB: not on the stack */
 
 /* Run and print ten times a second until all rests. */
 static int run(const struct source *program)
@@ -25,8 +25,7 @@ static int run(const struct source *program)
                (int)r.stock[0]);
     } while (!r.stopped);
     printf("pulses %lld %lld %lld, interrupts %d, underflows %d\n", (long long)r.pulses[0],
-           (long long)r.pulses[1], (long long)r.pulses[2], (int)r.interrupts,
-           (int)r.underflows[0]);
+           (long long)r.pulses[1], (long long)r.pulses[2], (int)r.interrupts, (int)r.underflows[0]);
     return 0;
 }
 
@@ -37,8 +36,8 @@ static int calls(struct mcc *mcc)
     MCC_set_fspd(mcc, 25.0);
     MCC_set_acc_type(mcc, 'S');
     MCC_enable_quit(mcc);
-    if (MCC_line(mcc, (double[AXES]){ 20.0, 10.0 }) < 0 || MCC_circle_xy(mcc, 20.0, 15.0, 1) < 0 ||
-        MCC_ptp(mcc, (double[AXES]){ 0.0 }) < 0) {
+    if (MCC_line(mcc, (double[AXES]){ 20.0, 10.0 }) < 0 || MCC_circle_xy(mcc, 20.0, 15.0, 1) < 0
+        || MCC_ptp(mcc, (double[AXES]){ 0.0 }) < 0) {
         return 1;
     }
     printf("a feed of 0 is refused: %d\n", MCC_set_fspd(mcc, 0.0));
@@ -68,7 +67,7 @@ static int part_program(const char *name)
 int main(int argc, char **argv)
 {
     struct station_config config = station_defaults();
-    config.pc.output_mode[0] = STATION_LOOP;    /* X: the card's position loop */
+    config.pc.output_mode[0] = STATION_LOOP; /* X: the card's position loop */
     config.machine.axis[0].p_gain = 200;
     if (station_start(&station, &config) != STATION_OK) {
         return 1;

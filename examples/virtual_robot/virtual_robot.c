@@ -10,7 +10,7 @@
 #include <motionfmu/short_names.h>
 #include <motionfmu/soft_words.h>
 
-static struct robot_station station;    /* 600 kB: not on the stack */
+static struct robot_station station; /* 600 kB: not on the stack */
 static struct inform_points points;
 static struct inform_program jobs;
 
@@ -33,7 +33,10 @@ static void run(const struct orders_text *program)
 /* A line or a circle's end: X Y Z [mm], A B C [deg], feed [mm/s]. */
 static int move(enum robot_kind kind, const double to[6], const double *via)
 {
-    struct robot_move m = { .kind = kind, .feed = 200.0, .share = 0.5, .zone = 2.0,
+    struct robot_move m = { .kind = kind,
+                            .feed = 200.0,
+                            .share = 0.5,
+                            .zone = 2.0,
                             .target = { .branch = ROBOT_ANY_BRANCH, .pose = pose_of(to, to + 3) } };
     struct robot_refusal why;
     char words[SOFT_WORDS];
@@ -41,8 +44,8 @@ static int move(enum robot_kind kind, const double to[6], const double *via)
     for (int i = 0; via && i < 3; i++) {
         m.via[i] = via[i];
     }
-    const enum robot_status status = soft_move(&station.soft, &station.config, &m, &station.tool,
-                                               &why);
+    const enum robot_status status =
+        soft_move(&station.soft, &station.config, &m, &station.tool, &why);
     if (status != ROBOT_OK) {
         soft_refusal_words(status, &why, words);
         printf("%s\n", words);
@@ -85,8 +88,8 @@ static int job(const char *name, const char *points_name)
     const struct orders_text program = { .inform = &jobs, .points = &points };
 
     inform_points_clear(&points);
-    if (inform_points_read(&points, text, read_file(points_name, text), &r) < 0 ||
-        inform_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
+    if (inform_points_read(&points, text, read_file(points_name, text), &r) < 0
+        || inform_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
         inform_message(&r, text, message);
         printf("%s\n", message);
         return 1;

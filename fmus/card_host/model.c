@@ -7,15 +7,15 @@
 
 struct model {
     struct net_host host;
-    int64_t period;         /* [ns] grid of the wires */
-    int64_t instant;        /* [ns] next instant of it */
-    bool    unpublished;    /* what was done at the one before is not shown yet */
-    bool    stored;
-    int64_t stored_at;      /* [ns] */
-    int32_t connection;     /* as read last */
+    int64_t period;   /* [ns] grid of the wires */
+    int64_t instant;  /* [ns] next instant of it */
+    bool unpublished; /* what was done at the one before is not shown yet */
+    bool stored;
+    int64_t stored_at;  /* [ns] */
+    int32_t connection; /* as read last */
     int32_t tx_words[BYTE_RING_WORDS];
     int32_t tx_count, rx_taken;
-    double  owed;           /* packets of the flood */
+    double owed; /* packets of the flood */
     uint32_t asked;
 };
 
@@ -24,7 +24,7 @@ struct model {
 #include "fmu_period.h"
 #include "job_file.h"
 
-static const double second = 1e9;   /* [ns] */
+static const double second = 1e9; /* [ns] */
 
 /* Whole pages, no more than the flash of a card has. */
 static int check_job(struct fmu *f, const struct job_file *job)
@@ -39,9 +39,12 @@ static int give_commands(struct fmu *f)
     const struct vars *v = &f->s.v;
     for (int k = 0; k < NET_HOST_ORDERS; k++) {
         const struct net_host_order order = {
-            .at = llround(v->command_at[k] * second), .type = (uint8_t)v->command[k],
-            .axes = (uint8_t)v->command_axes[k], .mode = v->command_pulse[k],
-            .level = v->command_high[k], .pins = (uint16_t)v->command_pins[k],
+            .at = llround(v->command_at[k] * second),
+            .type = (uint8_t)v->command[k],
+            .axes = (uint8_t)v->command_axes[k],
+            .mode = v->command_pulse[k],
+            .level = v->command_high[k],
+            .pins = (uint16_t)v->command_pins[k],
             .width = (uint32_t)llround(v->command_width[k] * 1e6),
         };
         if (v->command[k] == 0)
@@ -61,7 +64,7 @@ static int model_start(struct fmu *f)
     const struct job_file *job = f->blob;
     struct model *m = &f->s.m;
     const double ticks = v->bus_period * second / FMU_TICK_NS;
-    struct net_host_config c = {.interval = (uint16_t)llround(v->status_interval * 1000.0)};
+    struct net_host_config c = { .interval = (uint16_t)llround(v->status_interval * 1000.0) };
     if (!fmu_is_period(ticks))
         return fmu_fail(f, "bus_period = %.17g s: not a whole number of 20 ns ticks",
                         v->bus_period);
@@ -220,8 +223,8 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     struct model *m = &f->s.m;
     (void)t0;
     if (m->host.job.bytes != job->bytes)
-        return fmu_fail(f, "the job of the state has %u bytes, not %u",
-                        (unsigned)m->host.job.bytes, (unsigned)job->bytes);
+        return fmu_fail(f, "the job of the state has %u bytes, not %u", (unsigned)m->host.job.bytes,
+                        (unsigned)job->bytes);
     for (;;) {
         if (m->unpublished && m->instant <= t1) {
             publish(f);

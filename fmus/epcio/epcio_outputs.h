@@ -26,8 +26,8 @@ static void publish_axes(struct vars *v, const struct epcio *card)
 static void publish_pulse_lines(struct vars *v, const struct epcio *card)
 {
     for (int i = 0; i < EPCIO_AXES; i++) {
-        const struct lines l = pulse_at(&card->config.pulse[i], &card->pulse[i], &card->dda, i,
-                                        card->clock);
+        const struct lines l =
+            pulse_at(&card->config.pulse[i], &card->pulse[i], &card->dda, i, card->clock);
         v->pulse_a[i] = l.a;
         v->pulse_b[i] = l.b;
         v->pulse_clock[i] = (double)pulse_latest(&card->pulse[i], &card->dda, i, card->clock);
@@ -85,8 +85,8 @@ static void publish_local(struct vars *v, const struct epcio *card)
 
 static void publish_remote(struct vars *v, const struct epcio *card)
 {
-    int32_t *const in[] = {v->remote_in_1, v->remote_in_2, v->remote_in_3, v->remote_in_4};
-    int32_t *const port[] = {v->remote_out_1, v->remote_out_2, v->remote_out_3, v->remote_out_4};
+    int32_t *const in[] = { v->remote_in_1, v->remote_in_2, v->remote_in_3, v->remote_in_4 };
+    int32_t *const port[] = { v->remote_out_1, v->remote_out_2, v->remote_out_3, v->remote_out_4 };
     v->remote_ready = 0;
     for (int i = 0; i < EPCIO_SETS * REMOTE_IO_SLAVES; i++) {
         const int set = i / REMOTE_IO_SLAVES, slave = i % REMOTE_IO_SLAVES;

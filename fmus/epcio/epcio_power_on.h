@@ -7,21 +7,21 @@
 static struct epcio_config config_of(const struct vars *v)
 {
     struct epcio_config c = {
-        .loop = {.limit = v->error_limit, .scale = v->p_scale},
-        .adc = {.bits = v->adc_bits, .time = v->adc_time},
-        .remote = {.time = v->rio_time},
+        .loop = { .limit = v->error_limit, .scale = v->p_scale },
+        .adc = { .bits = v->adc_bits, .time = v->adc_time },
+        .remote = { .time = v->rio_time },
     };
     for (int i = 0; i < EPCIO_AXES; i++) {
         c.active[i] = v->active[i];
-        c.pulse[i] = (struct pulse_config){(enum pulse_format)v->pulse_format[i],
-                                           (uint32_t)v->pulse_wiring[i], v->pulse_width[i]};
+        c.pulse[i] = (struct pulse_config){ (enum pulse_format)v->pulse_format[i],
+                                            (uint32_t)v->pulse_wiring[i], v->pulse_width[i] };
     }
     for (int i = 0; i < EPCIO_ENCODERS; i++)
-        c.encoder[i] = (struct encoder_config){(enum encoder_format)v->enc_format[i],
-                                               v->enc_rate[i], (uint32_t)v->enc_wiring[i],
-                                               v->enc_filter[i], v->index_lines[i]};
+        c.encoder[i] = (struct encoder_config){ (enum encoder_format)v->enc_format[i],
+                                                v->enc_rate[i], (uint32_t)v->enc_wiring[i],
+                                                v->enc_filter[i], v->index_lines[i] };
     for (int i = 0; i < ANALOG_DACS; i++)
-        c.trim[i] = (struct analog_trim){v->dac_gain[i], v->dac_offset[i]};
+        c.trim[i] = (struct analog_trim){ v->dac_gain[i], v->dac_offset[i] };
     return c;
 }
 
@@ -43,12 +43,12 @@ static int refuse_config(struct fmu *f, enum epcio_status status)
 }
 
 /* Write count registers from `address` on; -1 after the first that is refused. */
-#define POWER_ON(name, address)                                                                \
-    for (int i = 0; i < (int)(sizeof v->name / sizeof *ELEMENTS(v->name)); i++) {              \
-        const double value = (double)ELEMENTS(v->name)[i];                                     \
-        const enum epcio_status s = epcio_write(card, (address) + i, value);                   \
-        if (s != EPCIO_OK)                                                                     \
-            return fmu_fail(f, "%s[%d] = %g: %s", #name, i + 1, value, epcio_status_text(s));  \
+#define POWER_ON(name, address) \
+    for (int i = 0; i < (int)(sizeof v->name / sizeof *ELEMENTS(v->name)); i++) { \
+        const double value = (double)ELEMENTS(v->name)[i]; \
+        const enum epcio_status s = epcio_write(card, (address) + i, value); \
+        if (s != EPCIO_OK) \
+            return fmu_fail(f, "%s[%d] = %g: %s", #name, i + 1, value, epcio_status_text(s)); \
     }
 
 /* The first element of a scalar, an array or a table. */
@@ -64,7 +64,7 @@ static int write_power_on(struct fmu *f)
     POWER_ON(latch_last, REG_ENC_LATCH_LAST)
     POWER_ON(latch_source, REG_ENC_LATCH)
     POWER_ON(dac_trigger_volts, REG_DAC_TRIGGER_VOLTS)
-    for (int i = 0; i < ANALOG_DACS; i++)   /* bit 31 is a source like the others */
+    for (int i = 0; i < ANALOG_DACS; i++) /* bit 31 is a source like the others */
         epcio_write(card, REG_DAC_TRIGGER + i, (double)(uint32_t)v->dac_trigger[i]);
     POWER_ON(adc_range, REG_ADC_RANGE)
     POWER_ON(adc_compare, REG_ADC_COMPARE)

@@ -10,14 +10,14 @@
 
 struct model {
     struct epcio card;
-    int64_t period;         /* [clocks] sampling grid of loops and host bus */
-    int64_t instant;        /* [clock] next instant of that grid */
-    bool    powered;        /* the first instant has passed */
-    struct mailbox taken;   /* numbers taken last of the host */
-    int32_t reg_seq;        /* taken last from the mailbox of registers */
-    enum epcio_status reg_status;   /* of that transaction */
-    int32_t warned_length;  /* DDA length that was refused last, to say so once */
-    int32_t warned_frames;  /* frames refused when that was last said */
+    int64_t period;               /* [clocks] sampling grid of loops and host bus */
+    int64_t instant;              /* [clock] next instant of that grid */
+    bool powered;                 /* the first instant has passed */
+    struct mailbox taken;         /* numbers taken last of the host */
+    int32_t reg_seq;              /* taken last from the mailbox of registers */
+    enum epcio_status reg_status; /* of that transaction */
+    int32_t warned_length;        /* DDA length that was refused last, to say so once */
+    int32_t warned_frames;        /* frames refused when that was last said */
 };
 
 #include "fmi_model.h"
@@ -30,7 +30,7 @@ static int model_start(struct fmu *f)
     struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     const struct epcio_config c = config_of(v);
-    *m = (struct model){.period = wires_period(f)};
+    *m = (struct model){ .period = wires_period(f) };
     if (m->period == 0)
         return -1;
     enum epcio_status s = epcio_reset(&m->card, &c);
@@ -72,8 +72,7 @@ static int read_host(struct fmu *f)
     LINK_LEVELS_AUX(WIRES_READ)
     const enum epcio_status s = host_take_levels(&m->taken, &m->card, &link);
     if (s == EPCIO_BAD_MINIMUM)
-        return fmu_fail(f, "host_min_stock = %d: %s", (int)v->host_min_stock,
-                        epcio_status_text(s));
+        return fmu_fail(f, "host_min_stock = %d: %s", (int)v->host_min_stock, epcio_status_text(s));
     if (s == EPCIO_BAD_GAIN || s == EPCIO_BAD_VOLTS)
         return fmu_fail(f, "host registers: %s", epcio_status_text(s));
     if (wires_dda(f, s))
@@ -103,9 +102,13 @@ static void read_pins(const struct vars *v, struct epcio_lines *l)
     for (int i = 0; i < 2; i++)
         l->volts[6 + i] = v->io_volts_aux[i];
     l->local = (struct local_io_lines){
-        .ldi = bits_of(v->io_ldi, 8), .dfi = bits_of(v->io_dfi, 7),
-        .home = bits_of(v->io_home, 6), .up = bits_of(v->io_up, 6),
-        .down = bits_of(v->io_down, 6), .stop = v->io_stop, .power = v->io_power,
+        .ldi = bits_of(v->io_ldi, 8),
+        .dfi = bits_of(v->io_dfi, 7),
+        .home = bits_of(v->io_home, 6),
+        .up = bits_of(v->io_up, 6),
+        .down = bits_of(v->io_down, 6),
+        .stop = v->io_stop,
+        .power = v->io_power,
     };
 }
 
@@ -124,7 +127,7 @@ static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct epcio *card = &f->s.m.card;
-    struct epcio_lines lines = {.local.power = false};
+    struct epcio_lines lines = { .local.power = false };
     read_pins(v, &lines);
     if (card->remote_used || v->reg_seq != f->s.m.reg_seq || !f->s.m.powered)
         read_remote(v, &lines);
@@ -135,7 +138,10 @@ static int sample(struct fmu *f)
     const char *name = s == EPCIO_BAD_PHASE ? "enc_phase" : "io_volts";
     const double *value = s == EPCIO_BAD_PHASE ? lines.phase : lines.volts;
     const bool six = s == EPCIO_BAD_PHASE && bad >= 6 && v->enc_phase_six_aux[bad - 6] != 0.0;
-    return fmu_fail(f, "%s%s[%d] = %g: %s", name, bad < 6 ? "" : six ? "_six_aux" : "_aux",
+    return fmu_fail(f, "%s%s[%d] = %g: %s", name,
+                    bad < 6 ? ""
+                    : six   ? "_six_aux"
+                            : "_aux",
                     bad < 6 ? bad + 1 : bad - 5, value[bad], epcio_status_text(s));
 }
 

@@ -6,17 +6,17 @@
 
 struct model {
     struct ethernet link;
-    int64_t  period;        /* [ns] grid of the wires */
-    int64_t  instant;       /* [ns] next instant of it */
-    bool     unpublished;   /* what was read at the one before is not shown yet */
-    bool     wanted;        /* both ends wanted a connection then */
-    uint32_t warned;        /* faults when that was last said */
+    int64_t period;   /* [ns] grid of the wires */
+    int64_t instant;  /* [ns] next instant of it */
+    bool unpublished; /* what was read at the one before is not shown yet */
+    bool wanted;      /* both ends wanted a connection then */
+    uint32_t warned;  /* faults when that was last said */
 };
 
 #include "fmi_model.h"
 #include "fmu_period.h"
 
-static const double second = 1e9;   /* [ns] */
+static const double second = 1e9; /* [ns] */
 
 static int model_start(struct fmu *f)
 {
@@ -64,7 +64,8 @@ static void read_wires(struct fmu *f)
     m->wanted = card->wants && host->wants;
     ethernet_instant(&m->link, m->instant, m->instant + m->period, seen);
     if (m->link.faults != m->warned)
-        fmu_warn(f, "counts that cannot be: card_tx_count = %d, card_rx_taken = %d, "
+        fmu_warn(f,
+                 "counts that cannot be: card_tx_count = %d, card_rx_taken = %d, "
                  "host_tx_count = %d, host_rx_taken = %d; the connection is closed",
                  (int)v->card_tx_count, (int)v->card_rx_taken, (int)v->host_tx_count,
                  (int)v->host_rx_taken);

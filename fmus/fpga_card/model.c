@@ -6,12 +6,12 @@
 
 struct model {
     struct fpga card;
-    int64_t period;     /* [clocks] grid of the wires */
-    int64_t instant;    /* [clock] next instant of that grid */
+    int64_t period;  /* [clocks] grid of the wires */
+    int64_t instant; /* [clock] next instant of that grid */
     struct fpga_taken taken;
-    int64_t warned;     /* refused when that was last said */
-    int64_t dry;        /* underruns when these were last said */
-    double  ai[FPGA_ANALOG];    /* [V] as read last */
+    int64_t warned;         /* refused when that was last said */
+    int64_t dry;            /* underruns when these were last said */
+    double ai[FPGA_ANALOG]; /* [V] as read last */
 };
 
 #include "fmi_model.h"
@@ -71,15 +71,15 @@ static int check_host(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     const struct fpga_taken *m = &f->s.m.taken;
-    if (m->write_seq != v->host_write_seq &&
-        clock_of(f, "host_write_clock", 0, v->host_write_clock) < 0)
+    if (m->write_seq != v->host_write_seq
+        && clock_of(f, "host_write_clock", 0, v->host_write_clock) < 0)
         return -1;
     for (int i = 0; m->out_seq != v->host_out_seq && i < v->host_out_count; i++) {
         if (clock_of(f, "host_out_clock", i + 1, v->host_out_clock[i]) < 0)
             return -1;
     }
-    return m->ao_seq != v->host_ao_seq && clock_of(f, "host_ao_clock", 0, v->host_ao_clock) < 0
-           ? -1 : 0;
+    return m->ao_seq != v->host_ao_seq && clock_of(f, "host_ao_clock", 0, v->host_ao_clock) < 0 ? -1
+                                                                                                : 0;
 }
 
 static int read_host(struct fmu *f)
@@ -132,8 +132,7 @@ static void warn_refused(struct fmu *f)
     m->warned = m->card.refused;
     if (r->status == FPGA_BAD_SLOT)
         fmu_warn(f, "%d refused; write %d of memory %d, slot %d, axis %d: %s", n, (int)r->seq,
-                 (int)r->memory, (int)r->at.slot, (int)r->at.axis + 1,
-                 fpga_status_text(r->status));
+                 (int)r->memory, (int)r->at.slot, (int)r->at.axis + 1, fpga_status_text(r->status));
     else
         fmu_warn(f, "%d refused up to write %d of memory %d: %s", n, (int)r->seq, (int)r->memory,
                  fpga_status_text(r->status));
@@ -148,8 +147,10 @@ static void warn_underruns(struct fmu *f, int64_t clock)
     if (n == 0 || n / 2 < m->dry)
         return;
     m->dry = n;
-    fmu_warn(f, "%d underrun%s by %.9g s: the next pulse memory was not full in time, and the "
-             "pulses stood still", (int)n, n == 1 ? "" : "s", (double)clock / FPGA_CLOCK_HZ);
+    fmu_warn(f,
+             "%d underrun%s by %.9g s: the next pulse memory was not full in time, and the "
+             "pulses stood still",
+             (int)n, n == 1 ? "" : "s", (double)clock / FPGA_CLOCK_HZ);
 }
 
 static void publish(struct fmu *f)

@@ -7,9 +7,9 @@
 
 struct model {
     struct analyser analyser;
-    int64_t instant;        /* [clock] next instant of the wires */
-    bool    unpublished;    /* what was seen at the one before is not shown yet */
-    int64_t held;           /* events so far */
+    int64_t instant;  /* [clock] next instant of the wires */
+    bool unpublished; /* what was seen at the one before is not shown yet */
+    int64_t held;     /* events so far */
 };
 
 #define MODEL_BLOB
@@ -54,7 +54,7 @@ static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     const double period = v->bus_period * CLOCK_HZ;
-    struct analyser_config c = {.enabled = (uint32_t)v->enabled, .seed = v->seed};
+    struct analyser_config c = { .enabled = (uint32_t)v->enabled, .seed = v->seed };
     if (!fmu_is_period(period))
         return fmu_fail(f, "bus_period = %.17g s: not a whole number of 25 ns clocks",
                         v->bus_period);
@@ -75,7 +75,7 @@ static int model_start(struct fmu *f)
 static int record(struct fmu *f, const struct analyser_event *event)
 {
     enum { FIRST = 1024 }; /* events of the first buffer; it doubles when full */
-    const struct analyser_event unknown = {.channel = -1};
+    const struct analyser_event unknown = { .channel = -1 };
     struct events *e = f->blob;
     struct model *m = &f->s.m;
     if (m->held >= e->room) {
@@ -99,7 +99,7 @@ static int record(struct fmu *f, const struct analyser_event *event)
 /* Channels of a group, as one. */
 static void publish_group(struct vars *v, const struct analyser *a, int group)
 {
-    struct analyser_channel all = {.least = INT64_MAX};
+    struct analyser_channel all = { .least = INT64_MAX };
     for (int i = 0; i < ANALYSER_CHANNELS; i++) {
         const struct analyser_channel *c = &a->channel[i];
         if (v->group[i] != group + 1)
@@ -153,11 +153,10 @@ static int read_wires(struct fmu *f)
     struct analyser_event event[ANALYSER_CHANNELS];
     for (int i = 0; i < ANALYSER_CHANNELS; i++) {
         if (!(fabs(v->response_clock[i]) < FMU_TICKS_MAX))
-            return fmu_fail(f, "response_clock[%d] = %g: not a clock", i + 1,
-                            v->response_clock[i]);
+            return fmu_fail(f, "response_clock[%d] = %g: not a clock", i + 1, v->response_clock[i]);
     }
-    const int32_t n = analyser_instant(&m->analyser, m->instant, (uint32_t)v->response,
-                                       v->response_clock, event);
+    const int32_t n =
+        analyser_instant(&m->analyser, m->instant, (uint32_t)v->response, v->response_clock, event);
     for (int32_t k = 0; k < n && v->record_file[0]; k++) {
         if (record(f, &event[k]))
             return -1;

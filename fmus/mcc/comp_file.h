@@ -20,9 +20,9 @@ enum { COMP_CELLS = 4, COMP_LINE = 256 };
 
 struct comp_file {
     struct comp_table table[AXES];
-    int32_t last[AXES];         /* index read last, -1: none yet */
-    int  cells;                 /* of the rows under the latest header, 0 before the first */
-    int  line;
+    int32_t last[AXES]; /* index read last, -1: none yet */
+    int cells;          /* of the rows under the latest header, 0 before the first */
+    int line;
     char said[COMP_LINE + 160]; /* what is wrong */
 };
 

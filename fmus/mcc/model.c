@@ -7,11 +7,11 @@
 
 struct model {
     struct pc pc;
-    int64_t bus;            /* [ns] */
-    int64_t instant;        /* [ns] next instant of the bus grid that reads */
-    bool    unpublished;    /* what was read last shows at that instant */
-    int32_t told_error;     /* run-time error that was reported */
-    bool    told_change;    /* the tool change that is waited for was reported */
+    int64_t bus;        /* [ns] */
+    int64_t instant;    /* [ns] next instant of the bus grid that reads */
+    bool unpublished;   /* what was read last shows at that instant */
+    int32_t told_error; /* run-time error that was reported */
+    bool told_change;   /* the tool change that is waited for was reported */
 };
 
 #define MODEL_BLOB
@@ -25,7 +25,9 @@ struct model {
 
 /* What path_file must not replace. */
 enum { INPUTS = 3 };
-struct inputs { struct output_input of[INPUTS]; };
+struct inputs {
+    struct output_input of[INPUTS];
+};
 
 static struct inputs inputs_of(const struct fmu *f)
 {
@@ -180,8 +182,7 @@ static int set_tools(struct fmu *f)
     }
     const struct fmu_path path = fmu_path(f, v->tool_table, FMU_READ);
     if (v->tool_table[0] && (!path.good || tool_read(&file, path.text, v->rotary_names))) {
-        return fmu_fail(f, "tool_table: %s: %s", v->tool_table,
-                        path.good ? file.said : path.text);
+        return fmu_fail(f, "tool_table: %s: %s", v->tool_table, path.good ? file.said : path.text);
     }
     task_set_tools(mcc, &file.table, stops);
     task_set_dialect(mcc, &dialect);
@@ -202,8 +203,7 @@ static void warn_of_cycle(struct fmu *f)
     case PC_CYCLE_LONG:
         fmu_warn(f, "ipo_period %.9g s is longer than the DDA time %.9g s", cycle, dda);
         break;
-    default:
-        break;
+    default: break;
     }
 }
 
@@ -244,14 +244,18 @@ static void read_bus(struct fmu *f, int64_t at)
     const struct vars *v = &f->s.v;
     struct pc *pc = &f->s.m.pc;
     const struct source source = source_of_program(f);
-    struct pc_panel panel = {
-        .hold = v->hold, .abort = v->abort, .cycle_start = v->cycle_start,
-        .single_block = v->single_block,
-        .override = v->override, .adaptive = v->adaptive_feed, .go_home = v->go_home,
-        .jog_percent = 100.0 * v->jog_speed,
-        .wheel_axis = v->mpg_axis, .wheel_encoder = v->mpg_encoder, .wheel_ratio = v->mpg_ratio,
-        .clear_error = v->clear_error
-    };
+    struct pc_panel panel = { .hold = v->hold,
+                              .abort = v->abort,
+                              .cycle_start = v->cycle_start,
+                              .single_block = v->single_block,
+                              .override = v->override,
+                              .adaptive = v->adaptive_feed,
+                              .go_home = v->go_home,
+                              .jog_percent = 100.0 * v->jog_speed,
+                              .wheel_axis = v->mpg_axis,
+                              .wheel_encoder = v->mpg_encoder,
+                              .wheel_ratio = v->mpg_ratio,
+                              .clear_error = v->clear_error };
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
     memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
     memcpy(panel.jog, v->jog, sizeof panel.jog);
@@ -272,10 +276,11 @@ static int refused_by_card(struct fmu *f)
 {
     const struct pcl *pcl = &f->s.m.pc.pcl;
 
-    return fmu_fail(f, "the card has refused every frame of %d transactions in a row, with %d "
+    return fmu_fail(f,
+                    "the card has refused every frame of %d transactions in a row, with %d "
                     "commands in the FIFO of axis %d: is every axis that is active here active "
-                    "on the card?", PCL_REFUSALS, (int)f->s.v.card_stock[pcl->axis],
-                    (int)pcl->axis + 1);
+                    "on the card?",
+                    PCL_REFUSALS, (int)f->s.v.card_stock[pcl->axis], (int)pcl->axis + 1);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
@@ -320,7 +325,6 @@ static int model_end(struct fmu *f)
     in.tools.table = mcc->tools;
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
-    const char *why = path_write(path.text, inputs.of, INPUTS, &in, &program,
-                                 mcc->mover.started);
+    const char *why = path_write(path.text, inputs.of, INPUTS, &in, &program, mcc->mover.started);
     return why ? cannot_write(f, why) : 0;
 }

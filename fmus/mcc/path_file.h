@@ -50,8 +50,7 @@ static void put_command(FILE *file, const struct command *c)
     fputc('\n', file);
 }
 
-static void put_path(FILE *file, struct interpreter in, const struct program *program,
-                     int32_t last)
+static void put_path(FILE *file, struct interpreter in, const struct program *program, int32_t last)
 {
     struct command c;
     struct fault_report r;
@@ -59,7 +58,8 @@ static void put_path(FILE *file, struct interpreter in, const struct program *pr
     fputs("command,line,type,start_x,start_y,start_z,start_u,start_v,start_w,"
           "end_x,end_y,end_z,end_u,end_v,end_w,centre_x,centre_y,centre_z,"
           "normal_x,normal_y,normal_z,radius,sweep,length,feed,"
-          "inner_0_x,inner_0_y,inner_0_z,inner_1_x,inner_1_y,inner_1_z\n", file);
+          "inner_0_x,inner_0_y,inner_0_z,inner_1_x,inner_1_y,inner_1_z\n",
+          file);
     for (int32_t i = 1; i <= last;) {
         const enum interpreter_result got = interpreter_next(&in, program, &c, &r);
         if (got == INTERPRETER_WAIT) {

@@ -12,8 +12,8 @@ enum { TOOL_LINE = 256 };
 
 struct tool_file {
     struct tool_table table;
-    int  line;
-    char said[2 * TOOL_LINE];   /* what is wrong */
+    int line;
+    char said[2 * TOOL_LINE]; /* what is wrong */
 };
 
 static int tool_bad(struct tool_file *f, const char *why, const char *text, int length)

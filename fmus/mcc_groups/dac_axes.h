@@ -4,25 +4,27 @@
 #define DAC_AXES_H
 
 /* The parameters of a card under the names of the description. */
-#define READ_DACS(K) do { \
-    for (int i = 0; i < GROUP_DACS; i++) { \
-        dac[K - 1][i] = (struct group_dac){ \
-            .axis = { .pitch = v->card##K##_dac_lead[i], \
-                      .gear_ratio = v->card##K##_dac_gear_ratio[i], \
-                      .ppr = v->card##K##_dac_ppr[i], .rpm = v->card##K##_dac_max_rpm[i], \
-                      .inverted = v->card##K##_dac_pos2encoder_dir[i] == 1, \
-                      .track_limit = v->card##K##_dac_track_error_limit[i] }, \
-            .encoder = v->card##K##_dac_encoder[i] - 1, \
-            .position_gain = v->card##K##_dac_position_gain[i], \
-            .speed_per_volt = v->card##K##_dac_speed_per_volt[i], \
-            .feed_forward = v->card##K##_dac_velocity_ff[i], \
-            .lag = v->card##K##_dac_command_lag[i] \
-        }; \
-    } \
-    for (int i = 0; i < AXES; i++) { \
-        mode[K - 1][i] = v->card##K##_loop[i] ? GROUP_COMMAND_VOLTAGE : GROUP_COMMAND_PULSE; \
-    } \
-} while (0)
+#define READ_DACS(K) \
+    do { \
+        for (int i = 0; i < GROUP_DACS; i++) { \
+            dac[K - 1][i] = (struct group_dac){ \
+                .axis = { .pitch = v->card##K##_dac_lead[i], \
+                          .gear_ratio = v->card##K##_dac_gear_ratio[i], \
+                          .ppr = v->card##K##_dac_ppr[i], \
+                          .rpm = v->card##K##_dac_max_rpm[i], \
+                          .inverted = v->card##K##_dac_pos2encoder_dir[i] == 1, \
+                          .track_limit = v->card##K##_dac_track_error_limit[i] }, \
+                .encoder = v->card##K##_dac_encoder[i] - 1, \
+                .position_gain = v->card##K##_dac_position_gain[i], \
+                .speed_per_volt = v->card##K##_dac_speed_per_volt[i], \
+                .feed_forward = v->card##K##_dac_velocity_ff[i], \
+                .lag = v->card##K##_dac_command_lag[i] \
+            }; \
+        } \
+        for (int i = 0; i < AXES; i++) { \
+            mode[K - 1][i] = v->card##K##_loop[i] ? GROUP_COMMAND_VOLTAGE : GROUP_COMMAND_PULSE; \
+        } \
+    } while (0)
 
 /* Before a group is created. */
 static int set_dacs(struct fmu *f)
@@ -51,17 +53,23 @@ static int set_dacs(struct fmu *f)
 static int refuse_channels(struct fmu *f, int n, int card, bool voltage, int code)
 {
     if (code == MCC_VOLTAGE_COMMAND_CHANNEL) {
-        return fmu_fail(f, "group%d_channel: card%d_loop has the position loop of card %d at a DAC "
-                        "that is the voltage of an axis", n + 1, card, card);
+        return fmu_fail(f,
+                        "group%d_channel: card%d_loop has the position loop of card %d at a DAC "
+                        "that is the voltage of an axis",
+                        n + 1, card, card);
     }
     if (voltage) {
-        return fmu_fail(f, "group%d_channel: no axis at all, or a DAC of card %d that is named "
+        return fmu_fail(f,
+                        "group%d_channel: no axis at all, or a DAC of card %d that is named "
                         "twice, belongs to another group, or whose counter (card%d_dac_encoder) "
-                        "closes another loop", n + 1, card, card);
+                        "closes another loop",
+                        n + 1, card, card);
     }
-    return fmu_fail(f, "group%d_channel: no axis at all, or a channel of card %d that it does not "
+    return fmu_fail(f,
+                    "group%d_channel: no axis at all, or a channel of card %d that it does not "
                     "have, is named twice, belongs to another group, or whose counter closes "
-                    "another loop (card%d_loop)", n + 1, card, card);
+                    "another loop (card%d_loop)",
+                    n + 1, card, card);
 }
 
 /* Voltages that no axis has. At the start each must find its DAC free; later one that does not is
@@ -82,8 +90,10 @@ static int put_out(struct fmu *f, bool start)
                 continue;
             }
             if (start) {
-                return fmu_fail(f, "card%d_dac_output[%d] = %g V: the DAC is the voltage command "
-                                "of an axis", k + 1, i + 1, output[k][i]);
+                return fmu_fail(f,
+                                "card%d_dac_output[%d] = %g V: the DAC is the voltage command "
+                                "of an axis",
+                                k + 1, i + 1, output[k][i]);
             }
             fmu_warn(f, "card%d_dac_output[%d] = %g V: the DAC is the voltage command of an axis",
                      k + 1, i + 1, output[k][i]);
@@ -92,14 +102,15 @@ static int put_out(struct fmu *f, bool start)
     return 0;
 }
 
-#define PUBLISH_DACS(K) do { \
-    const struct group_card *d = &m->groups.card[K - 1]; \
-    memcpy(v->card##K##_dac_command, d->command, sizeof v->card##K##_dac_command); \
-    memcpy(v->card##K##_dac_error, d->error, sizeof v->card##K##_dac_error); \
-    v->card##K##_dac_command_7 = d->command[6]; \
-    v->card##K##_dac_command_8 = d->command[7]; \
-    v->card##K##_dac_error_7 = d->error[6]; \
-    v->card##K##_dac_error_8 = d->error[7]; \
-} while (0)
+#define PUBLISH_DACS(K) \
+    do { \
+        const struct group_card *d = &m->groups.card[K - 1]; \
+        memcpy(v->card##K##_dac_command, d->command, sizeof v->card##K##_dac_command); \
+        memcpy(v->card##K##_dac_error, d->error, sizeof v->card##K##_dac_error); \
+        v->card##K##_dac_command_7 = d->command[6]; \
+        v->card##K##_dac_command_8 = d->command[7]; \
+        v->card##K##_dac_error_7 = d->error[6]; \
+        v->card##K##_dac_error_8 = d->error[7]; \
+    } while (0)
 
 #endif

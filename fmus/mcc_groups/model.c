@@ -8,24 +8,28 @@
 
 struct model {
     struct groups groups;
-    int32_t index[GROUP_MAX];   /* of the description's groups in the library; -1 none */
-    int64_t bus;            /* [ns] */
-    int64_t instant;        /* [ns] next instant of the bus grid that reads */
-    bool    unpublished;    /* what was read last shows at that instant */
-    int32_t told_error[GROUP_MAX];      /* run-time errors that were reported */
-    double  output[GROUP_CARDS][GROUP_DACS];    /* [V] of dac_output, as seen last */
+    int32_t index[GROUP_MAX];      /* of the description's groups in the library; -1 none */
+    int64_t bus;                   /* [ns] */
+    int64_t instant;               /* [ns] next instant of the bus grid that reads */
+    bool unpublished;              /* what was read last shows at that instant */
+    int32_t told_error[GROUP_MAX]; /* run-time errors that were reported */
+    double output[GROUP_CARDS][GROUP_DACS]; /* [V] of dac_output, as seen last */
 };
 
 #define MODEL_BLOB
-#define GROUP_IN_USE(one)                                                                         \
-    FMU_WHEN(one.mcc, one.used, 1, 1)                                                             \
-    MCC_IN_USE(one.mcc)                                                                           \
-    FMU_WHEN(one.servo, one.used, 1, 1)                                                           \
-    FMU_WHEN(one.servo, one.voltage, 1, 1)                                                        \
+#define GROUP_IN_USE(one) \
+    FMU_WHEN(one.mcc, one.used, 1, 1) \
+    MCC_IN_USE(one.mcc) \
+    FMU_WHEN(one.servo, one.used, 1, 1) \
+    FMU_WHEN(one.servo, one.voltage, 1, 1) \
     VOLTAGE_IN_USE(one.servo.voltage)
-#define MODEL_IN_USE                                                                              \
-    GROUP_IN_USE(groups.group[0]) GROUP_IN_USE(groups.group[1]) GROUP_IN_USE(groups.group[2])     \
-    GROUP_IN_USE(groups.group[3]) GROUP_IN_USE(groups.group[4]) GROUP_IN_USE(groups.group[5])
+#define MODEL_IN_USE \
+    GROUP_IN_USE(groups.group[0]) \
+    GROUP_IN_USE(groups.group[1]) \
+    GROUP_IN_USE(groups.group[2]) \
+    GROUP_IN_USE(groups.group[3]) \
+    GROUP_IN_USE(groups.group[4]) \
+    GROUP_IN_USE(groups.group[5])
 _Static_assert(GROUP_MAX == 6, "a row of each group's arrays");
 #include "fmi_model.h"
 #include "fmu_period.h"
@@ -40,24 +44,25 @@ static double clocks(double seconds)
 /* What the description says of a group. */
 struct wanted {
     const char *program;
-    int32_t card;               /* from 1 */
-    const int32_t *channel;     /* from 1 */
+    int32_t card;           /* from 1 */
+    const int32_t *channel; /* from 1 */
 };
 
 static struct wanted wanted(const struct vars *v, int n)
 {
-    const struct wanted all[GROUP_MAX] = {
-        { v->group1_program, v->group1_card, v->group1_channel },
-        { v->group2_program, v->group2_card, v->group2_channel },
-        { v->group3_program, v->group3_card, v->group3_channel },
-        { v->group4_program, v->group4_card, v->group4_channel },
-        { v->group5_program, v->group5_card, v->group5_channel },
-        { v->group6_program, v->group6_card, v->group6_channel }
-    };
+    const struct wanted all[GROUP_MAX] = { { v->group1_program, v->group1_card, v->group1_channel },
+                                           { v->group2_program, v->group2_card, v->group2_channel },
+                                           { v->group3_program, v->group3_card, v->group3_channel },
+                                           { v->group4_program, v->group4_card, v->group4_channel },
+                                           { v->group5_program, v->group5_card, v->group5_channel },
+                                           { v->group6_program, v->group6_card,
+                                             v->group6_channel } };
     return all[n];
 }
 
-struct programs { struct program_file *of[GROUP_MAX]; };
+struct programs {
+    struct program_file *of[GROUP_MAX];
+};
 
 static int model_open(struct fmu *f)
 {
@@ -132,21 +137,25 @@ static void cards_of(const struct vars *v, struct machine card[GROUP_CARDS])
     for (int k = 0; k < GROUP_CARDS; k++) {
         card[k] = (struct machine){ .dda_time = v->dda_time, .dda_length = v->dda_length };
         for (int i = 0; i < AXES; i++) {
-            card[k].axis[i] = (struct machine_axis){
-                .pitch = lead[k][i], .gear_ratio = gear[k][i], .ppr = ppr[k][i],
-                .rpm = rpm[k][i], .p_gain = gain[k][i]
-            };
+            card[k].axis[i] = (struct machine_axis){ .pitch = lead[k][i],
+                                                     .gear_ratio = gear[k][i],
+                                                     .ppr = ppr[k][i],
+                                                     .rpm = rpm[k][i],
+                                                     .p_gain = gain[k][i] };
         }
     }
 }
 
 static struct machine motion_of(const struct vars *v, int n)
 {
-    return (struct machine){
-        .queue_depth = v->queue_depth, .feed = v->feed[n] / 60.0,
-        .max_feed = v->max_feed[n] / 60.0, .acc_time = v->acc_time[n], .dec_time = v->dec_time[n],
-        .acc_type = 'T', .dec_type = 'T', .jerk_share = 0.5
-    };
+    return (struct machine){ .queue_depth = v->queue_depth,
+                             .feed = v->feed[n] / 60.0,
+                             .max_feed = v->max_feed[n] / 60.0,
+                             .acc_time = v->acc_time[n],
+                             .dec_time = v->dec_time[n],
+                             .acc_type = 'T',
+                             .dec_type = 'T',
+                             .jerk_share = 0.5 };
 }
 
 static int create(struct fmu *f, int n)
@@ -160,15 +169,17 @@ static int create(struct fmu *f, int n)
 
     m->index[n] = -1;
     if (w.card == 0) {
-        return programs->of[n] ? fmu_fail(f, "group%d_program: group%d_card is 0, there is no "
-                                          "such group", n + 1, n + 1) : 0;
+        return programs->of[n] ? fmu_fail(f,
+                                          "group%d_program: group%d_card is 0, there is no "
+                                          "such group",
+                                          n + 1, n + 1)
+                               : 0;
     }
     for (int i = 0; i < AXES; i++) {
         channel[i] = w.channel[i] - 1;
     }
-    const int code = v->voltage[n]
-                   ? group_create_voltage(&m->groups, w.card - 1, channel, &motion)
-                   : group_create(&m->groups, w.card - 1, channel, &motion);
+    const int code = v->voltage[n] ? group_create_voltage(&m->groups, w.card - 1, channel, &motion)
+                                   : group_create(&m->groups, w.card - 1, channel, &motion);
     if (code == MCC_GROUP_PARAMETER || code == MCC_VOLTAGE_COMMAND_CHANNEL) {
         return refuse_channels(f, n, (int)w.card, v->voltage[n], code);
     }
@@ -198,11 +209,13 @@ static int model_start(struct fmu *f)
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     struct machine card[GROUP_CARDS];
-    const struct group_config config = {
-        .bus = (int64_t)round(clocks(v->bus_period)), .ipo = (int64_t)round(clocks(v->ipo_period)),
-        .latency = clocks(v->irq_latency), .jitter = clocks(v->irq_jitter), .seed = v->seed,
-        .min_stock = v->min_stock, .batch = v->batch
-    };
+    const struct group_config config = { .bus = (int64_t)round(clocks(v->bus_period)),
+                                         .ipo = (int64_t)round(clocks(v->ipo_period)),
+                                         .latency = clocks(v->irq_latency),
+                                         .jitter = clocks(v->irq_jitter),
+                                         .seed = v->seed,
+                                         .min_stock = v->min_stock,
+                                         .batch = v->batch };
 
     if (check_parameters(f)) {
         return -1;
@@ -233,19 +246,20 @@ static int model_start(struct fmu *f)
  * the seventh error counter. */
 #define SHOW_1(type, name, elements) LINK_CARRY(v->card1_##name, link.name)
 #define SHOW_2(type, name, elements) LINK_CARRY(v->card2_##name, link.name)
-#define PUBLISH_CARD(K) do { \
-    struct link_host link; \
-    link.cmd_seq = v->card##K##_cmd_seq; \
-    link.command_aux = v->card##K##_command_aux; \
-    groups_publish(&m->groups, K - 1, &link); \
-    LINK_LEVELS(SHOW_##K) \
-    LINK_LEVELS_AUX(SHOW_##K) \
-    if (link.cmd_seq != v->card##K##_cmd_seq) { \
-        LINK_WRITE(SHOW_##K) \
-    } \
-    v->card##K##_services = m->groups.card[K - 1].pcl.services; \
-    PUBLISH_DACS(K); \
-} while (0)
+#define PUBLISH_CARD(K) \
+    do { \
+        struct link_host link; \
+        link.cmd_seq = v->card##K##_cmd_seq; \
+        link.command_aux = v->card##K##_command_aux; \
+        groups_publish(&m->groups, K - 1, &link); \
+        LINK_LEVELS(SHOW_##K) \
+        LINK_LEVELS_AUX(SHOW_##K) \
+        if (link.cmd_seq != v->card##K##_cmd_seq) { \
+            LINK_WRITE(SHOW_##K) \
+        } \
+        v->card##K##_services = m->groups.card[K - 1].pcl.services; \
+        PUBLISH_DACS(K); \
+    } while (0)
 
 static void publish_group(struct fmu *f, int n)
 {
@@ -267,8 +281,8 @@ static void publish_group(struct fmu *f, int n)
     if (v->error[n] != m->told_error[n]) {
         m->told_error[n] = v->error[n];
         (v->error[n] != 0 ? fmu_warn : fmu_event)(f,
-            "group %d: run-time error 0x%04X after line %d", n + 1, (unsigned)v->error[n],
-            (int)v->line[n]);
+                                                  "group %d: run-time error 0x%04X after line %d",
+                                                  n + 1, (unsigned)v->error[n], (int)v->line[n]);
     }
 }
 
@@ -286,13 +300,14 @@ static void publish(struct fmu *f)
 
 #define READ_1(type, name, elements) LINK_CARRY(link.name, v->card1_##name)
 #define READ_2(type, name, elements) LINK_CARRY(link.name, v->card2_##name)
-#define READ_CARD(K) do { \
-    struct link_card link; \
-    LINK_SHOWN(READ_##K) \
-    LINK_CARRY(link.pulse_count, v->card##K##_pulse_count) \
-    card[K - 1] = card_of(&m->groups.card[K - 1].pcl, &link); \
-    groups_counters(&m->groups, K - 1, &link); \
-} while (0)
+#define READ_CARD(K) \
+    do { \
+        struct link_card link; \
+        LINK_SHOWN(READ_##K) \
+        LINK_CARRY(link.pulse_count, v->card##K##_pulse_count) \
+        card[K - 1] = card_of(&m->groups.card[K - 1].pcl, &link); \
+        groups_counters(&m->groups, K - 1, &link); \
+    } while (0)
 
 /* Read the wires at an instant of the bus grid and let the PC work. */
 static void read_bus(struct fmu *f, int64_t at)
@@ -309,11 +324,12 @@ static void read_bus(struct fmu *f, int64_t at)
     for (int n = 0; n < GROUP_MAX; n++) {
         if (m->index[n] >= 0) {
             source[m->index[n]] = source_of_group(f, n);
-            panel[m->index[n]] = (struct group_panel){
-                .hold = v->hold[n], .abort = v->abort[n], .cycle_start = v->cycle_start[n],
-                .override = v->override[n], .probe = v->probe_in[n],
-                .digital = (uint32_t)v->digital_in[n]
-            };
+            panel[m->index[n]] = (struct group_panel){ .hold = v->hold[n],
+                                                       .abort = v->abort[n],
+                                                       .cycle_start = v->cycle_start[n],
+                                                       .override = v->override[n],
+                                                       .probe = v->probe_in[n],
+                                                       .digital = (uint32_t)v->digital_in[n] };
             memcpy(panel[m->index[n]].analog, v->analog_in[n], sizeof v->analog_in[n]);
         }
     }
@@ -322,8 +338,10 @@ static void read_bus(struct fmu *f, int64_t at)
 
 static int refused_by_card(struct fmu *f, int card)
 {
-    return fmu_fail(f, "card %d has refused every frame of %d transactions in a row: is every "
-                    "channel of a group active on it?", card + 1, PCL_REFUSALS);
+    return fmu_fail(f,
+                    "card %d has refused every frame of %d transactions in a row: is every "
+                    "channel of a group active on it?",
+                    card + 1, PCL_REFUSALS);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)

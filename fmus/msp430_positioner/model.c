@@ -8,13 +8,13 @@
 
 struct model {
     struct msp430 chip;
-    double  voltage;            /* [V] mean over the pin period that ended at the latest instant */
-    int64_t clock_ns;           /* [ns] */
-    int64_t period;             /* [clocks] pin grid */
-    int64_t instant;            /* [clock] next instant of that grid */
-    double  phase;              /* [line periods] as the chip last saw it */
-    double  missed;             /* [line periods] whole ones, moved while the plug was out */
-    bool    unplugged;          /* at the latest instant */
+    double voltage;   /* [V] mean over the pin period that ended at the latest instant */
+    int64_t clock_ns; /* [ns] */
+    int64_t period;   /* [clocks] pin grid */
+    int64_t instant;  /* [clock] next instant of that grid */
+    double phase;     /* [line periods] as the chip last saw it */
+    double missed;    /* [line periods] whole ones, moved while the plug was out */
+    bool unplugged;   /* at the latest instant */
 };
 
 #include "fmi_model.h"
@@ -58,16 +58,17 @@ static int set_times(struct fmu *f, struct msp430_config *c)
     struct model *m = &f->s.m;
     if (!whole(1e9 / v->clock, &m->clock_ns))
         return fmu_fail(f, "clock = %.17g Hz: not a whole number of ns per clock", v->clock);
-    if (set_period(f, "pin_period", v->pin_period, &m->period) ||
-        set_period(f, "timer_period", v->timer_period, &c->timer_period))
+    if (set_period(f, "pin_period", v->pin_period, &m->period)
+        || set_period(f, "timer_period", v->timer_period, &c->timer_period))
         return -1;
     if (m->period * m->clock_ns % FMU_TICK_NS)
         return fmu_fail(f, "pin_period = %.17g s: not a whole number of %d ns", v->pin_period,
                         FMU_TICK_NS);
     if (PORT_LATENCY + v->timer_cycles >= c->timer_period)
-        return fmu_fail(f, "timer_cycles = %d: with the latency of %d not less than the timer "
-                        "period of %d clocks", (int)v->timer_cycles, (int)PORT_LATENCY,
-                        (int)c->timer_period);
+        return fmu_fail(f,
+                        "timer_cycles = %d: with the latency of %d not less than the timer "
+                        "period of %d clocks",
+                        (int)v->timer_cycles, (int)PORT_LATENCY, (int)c->timer_period);
     c->timer_cycles = v->timer_cycles;
     return 0;
 }
@@ -86,9 +87,9 @@ static int set_motion(struct fmu *f, struct sequence_config *c)
 {
     const struct vars *v = &f->s.v;
     const double t = v->timer_period;
-    if (to_fixed(f, "speed", v->speed, t, &c->speed) ||
-        to_fixed(f, "home_speed", v->home_speed, t, &c->home_speed) ||
-        to_fixed(f, "acceleration", v->acceleration, t * t, &c->acceleration))
+    if (to_fixed(f, "speed", v->speed, t, &c->speed)
+        || to_fixed(f, "home_speed", v->home_speed, t, &c->home_speed)
+        || to_fixed(f, "acceleration", v->acceleration, t * t, &c->acceleration))
         return -1;
     const int32_t fastest = c->speed > c->home_speed ? c->speed : c->home_speed;
     if (fastest / c->acceleration >= TRAPEZOID_TICKS_MAX)
@@ -110,8 +111,12 @@ static int set_motion(struct fmu *f, struct sequence_config *c)
 static struct regulator_config law_of(const struct vars *v)
 {
     return (struct regulator_config){
-        .kind = (enum regulator_kind)v->law, .p_gain = (int16_t)v->p_gain, .p_shift = v->p_shift,
-        .i_gain = (int16_t)v->i_gain, .i_shift = v->i_shift, .band = (int16_t)v->band,
+        .kind = (enum regulator_kind)v->law,
+        .p_gain = (int16_t)v->p_gain,
+        .p_shift = v->p_shift,
+        .i_gain = (int16_t)v->i_gain,
+        .i_shift = v->i_shift,
+        .band = (int16_t)v->band,
         .outside = (enum regulator_outside)v->band_outside,
     };
 }
@@ -153,20 +158,30 @@ static int model_start(struct fmu *f)
     struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     struct msp430_config c = {
-        .sequence = {.law = law_of(v), .home_way = v->home_direction,
-                     .home_search = v->home_search, .low_limit = v->low_limit,
-                     .high_limit = v->high_limit, .error_limit = (int16_t)v->error_limit,
-                     .step = v->step_target},
-        .pwm = {.period = v->pwm_counts, .tau = v->filter_time * v->clock, .high = v->pwm_high,
-                .offset = v->pwm_offset, .gain = v->amplifier_gain, .limit = v->amplifier_limit},
-        .clear = (enum port_clear)v->flag_clear, .homed = v->start_homed,
+        .sequence = { .law = law_of(v),
+                      .home_way = v->home_direction,
+                      .home_search = v->home_search,
+                      .low_limit = v->low_limit,
+                      .high_limit = v->high_limit,
+                      .error_limit = (int16_t)v->error_limit,
+                      .step = v->step_target },
+        .pwm = { .period = v->pwm_counts,
+                 .tau = v->filter_time * v->clock,
+                 .high = v->pwm_high,
+                 .offset = v->pwm_offset,
+                 .gain = v->amplifier_gain,
+                 .limit = v->amplifier_limit },
+        .clear = (enum port_clear)v->flag_clear,
+        .homed = v->start_homed,
         .home_always = v->home_always,
-        .adc_on = v->adc_on, .adc_reference = v->adc_reference, .filter_start = v->filter_start,
+        .adc_on = v->adc_on,
+        .adc_reference = v->adc_reference,
+        .filter_start = v->filter_start,
     };
-    *m = (struct model){0};
+    *m = (struct model){ 0 };
     if (set_times(f, &c) || set_motion(f, &c.sequence))
         return -1;
-    const double span = v->amplifier_gain * v->pwm_high;    /* [V] of the whole duty */
+    const double span = v->amplifier_gain * v->pwm_high; /* [V] of the whole duty */
     c.sequence.scale_open = (int32_t)el_min(ceil(v->scale_open / span * v->pwm_counts), INT32_MAX);
     msp430_reset(&m->chip, &c);
     m->voltage = pwm_voltage(&m->chip.pwm, &c.pwm);
@@ -177,9 +192,14 @@ static int model_start(struct fmu *f)
 static void tell_stage(struct fmu *f, enum sequence_code before)
 {
     static const char *const TEXT[] = {
-        "cleared", "PB2 before homing", "target outside the stroke", "following error",
-        "no edges while the valve is open", "home switch does not release",
-        "home switch not found", "home interrupt lost",
+        "cleared",
+        "PB2 before homing",
+        "target outside the stroke",
+        "following error",
+        "no edges while the valve is open",
+        "home switch does not release",
+        "home switch not found",
+        "home interrupt lost",
     };
     const struct model *m = &f->s.m;
     const enum sequence_code code = m->chip.sequence.code;
@@ -203,12 +223,12 @@ static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    const struct msp430_pins pins = {.home = v->home, .pb1 = v->pb1, .pb2 = v->pb2,
-                                     .target = v->target, .volts = v->adc};
+    const struct msp430_pins pins = {
+        .home = v->home, .pb1 = v->pb1, .pb2 = v->pb2, .target = v->target, .volts = v->adc
+    };
     const enum sequence_code code = m->chip.sequence.code;
     m->chip.config.sequence.law = law_of(v);
-    const enum quadrature_status status = msp430_sample(&m->chip, plugged(m, v), &pins,
-                                                   m->instant);
+    const enum quadrature_status status = msp430_sample(&m->chip, plugged(m, v), &pins, m->instant);
     if (status == QUADRATURE_TOO_FAST)
         return fmu_fail(f, "scale_phase = %.17g: more than one edge per clock since %.17g",
                         v->scale_phase, m->chip.scale.to);

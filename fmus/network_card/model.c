@@ -7,10 +7,10 @@
 
 struct model {
     struct netcard card;
-    int64_t period;         /* [ns] grid of the wires */
-    int64_t instant;        /* [ns] next instant of that grid */
-    int32_t connection;     /* as read last */
-    int32_t seq;            /* command taken last */
+    int64_t period;     /* [ns] grid of the wires */
+    int64_t instant;    /* [ns] next instant of that grid */
+    int32_t connection; /* as read last */
+    int32_t seq;        /* command taken last */
 };
 
 #define MODEL_BLOB
@@ -20,7 +20,7 @@ struct model {
 #include "job_file.h"
 
 _Static_assert(FLASH_SECTORS / 2 < FMU_SPANS, "every other sector may be left out");
-_Static_assert(sizeof ((struct job_file *)0)->byte == FLASH_BYTES + 1, "a whole flash");
+_Static_assert(sizeof((struct job_file *)0)->byte == FLASH_BYTES + 1, "a whole flash");
 _Static_assert(NET_RESET - NET_START == (int)CARD_DO_RESET, "commands are those of the link");
 
 static int read_settings(struct fmu *f, struct netcard_config *c)

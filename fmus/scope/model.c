@@ -14,20 +14,20 @@ struct model {
 #include "fmu_output.h"
 
 enum {
-    GROUP     = 6,   /* channels of an axes_ input */
-    TRIPLE    = 3,   /* channels of a triple_ input */
-    QUAD      = 4,   /* channels of a quad_ input */
-    REAL_AXES = 60,  /* channels before real_1 */
-    INT_AXES  = 54,  /* channels before int_1 */
-    FIRST     = 1024 /* rows of the first buffer; it doubles when full */
+    GROUP = 6,      /* channels of an axes_ input */
+    TRIPLE = 3,     /* channels of a triple_ input */
+    QUAD = 4,       /* channels of a quad_ input */
+    REAL_AXES = 60, /* channels before real_1 */
+    INT_AXES = 54,  /* channels before int_1 */
+    FIRST = 1024    /* rows of the first buffer; it doubles when full */
 };
 
 /* Rows recorded so far. A restored FMU state may stand before or after the last of them. */
 struct rows {
-    double  *real; /* rows x real_columns */
+    double *real;  /* rows x real_columns */
     int32_t *ints; /* rows x int_columns */
-    int64_t  room; /* rows there is memory for */
-    int64_t  held; /* rows recorded */
+    int64_t room;  /* rows there is memory for */
+    int64_t held;  /* rows recorded */
 };
 
 enum { FILES = 3 };
@@ -37,9 +37,9 @@ static const struct {
     const char *ending;
     bool (*write)(FILE *file, const struct trace *t);
 } files[FILES] = {
-    {".real.npy", trace_write_real},
-    {".int.npy", trace_write_int},
-    {".csv", trace_write_csv},
+    { ".real.npy", trace_write_real },
+    { ".int.npy", trace_write_int },
+    { ".csv", trace_write_csv },
 };
 
 /* The channels of one type follow one another in struct vars, as the files' columns do. */
@@ -235,8 +235,8 @@ static int model_end(struct fmu *f)
         return -1;
     }
     fill_gap(v, r, v->rows);
-    struct trace t = {r->real, r->ints, v->rows, real_columns(v), int_columns(v), f->s.m.period};
-    struct output out[FILES] = {0};
+    struct trace t = { r->real, r->ints, v->rows, real_columns(v), int_columns(v), f->s.m.period };
+    struct output out[FILES] = { 0 };
     const int n = files_of(v);
     const char *why = NULL;
     int begun = 0, bad = 0;

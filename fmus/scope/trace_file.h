@@ -12,11 +12,11 @@
 #include "npy_head.h"
 
 struct trace {
-    const double  *real;
+    const double *real;
     const int32_t *ints;
-    int64_t        rows;
-    size_t         real_columns, int_columns;
-    int64_t        period; /* [ns] between two rows */
+    int64_t rows;
+    size_t real_columns, int_columns;
+    int64_t period; /* [ns] between two rows */
 };
 
 /* Head of a .npy file. `type`: f8 or i4. */

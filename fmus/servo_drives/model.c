@@ -7,10 +7,10 @@
 enum { CHANNELS = 6 };
 
 struct model {
-    struct drive_state  drive[CHANNELS];
-    struct drive_output next[CHANNELS];     /* computed at the latest instant, shown at the next */
-    int64_t period;                         /* [ns] sampling grid */
-    int64_t instant;                        /* [ns] next instant of that grid */
+    struct drive_state drive[CHANNELS];
+    struct drive_output next[CHANNELS]; /* computed at the latest instant, shown at the next */
+    int64_t period;                     /* [ns] sampling grid */
+    int64_t instant;                    /* [ns] next instant of that grid */
 };
 
 #include "fmi_model.h"
@@ -59,9 +59,8 @@ static int model_start(struct fmu *f)
     struct model *m = &f->s.m;
     double ticks = v->period * (1e9 / FMU_TICK_NS);
     if (!fmu_is_period(ticks))
-        return fmu_fail(f, "period = %.17g s: not a whole number of %d ns", v->period,
-                        FMU_TICK_NS);
-    *m = (struct model){.period = (int64_t)round(ticks) * FMU_TICK_NS};
+        return fmu_fail(f, "period = %.17g s: not a whole number of %d ns", v->period, FMU_TICK_NS);
+    *m = (struct model){ .period = (int64_t)round(ticks) * FMU_TICK_NS };
     publish(v, m);
     return 0;
 }
@@ -74,16 +73,17 @@ static int sample(struct fmu *f)
         if (!v->active[i])
             continue;
         struct drive_config c = config(v, i);
-        struct drive_input in = {v->enable[i], v->alarm_reset[i], v->dac[i], v->pulse_count[i],
-                                 v->phase[i]};
+        struct drive_input in = { v->enable[i], v->alarm_reset[i], v->dac[i], v->pulse_count[i],
+                                  v->phase[i] };
         int32_t alarm = m->drive[i].alarm;
         if (drive_tick(&c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
             return fmu_fail(f, "phase[%d] = %g: more counts than a number can hold exactly", i + 1,
                             v->phase[i]);
         if (m->next[i].alarm == DRIVE_OVERLOAD && alarm != DRIVE_OVERLOAD)
-            fmu_warn(f, "axis %d: overload at %.9f s: its torque was at its limit of %g N.m for "
-                     "more than overload_time = %g s", i + 1, (double)m->instant * 1e-9,
-                     v->torque_limit[i], v->overload_time[i]);
+            fmu_warn(f,
+                     "axis %d: overload at %.9f s: its torque was at its limit of %g N.m for "
+                     "more than overload_time = %g s",
+                     i + 1, (double)m->instant * 1e-9, v->torque_limit[i], v->overload_time[i]);
         else if (m->next[i].alarm != alarm)
             fmu_event(f, "axis %d: alarm %d at %.9f s", i + 1, (int)m->next[i].alarm,
                       (double)m->instant * 1e-9);

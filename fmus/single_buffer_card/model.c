@@ -7,11 +7,11 @@
 
 struct model {
     struct single_buffer card;
-    int64_t period;         /* [clocks] grid of the host bus */
-    int64_t instant;        /* [clock] next instant of that grid */
-    struct mailbox taken;   /* numbers taken last of the host */
-    int32_t warned_length;  /* DDA length that was refused last, to say so once */
-    int32_t warned_frames;  /* frames refused when that was last said */
+    int64_t period;        /* [clocks] grid of the host bus */
+    int64_t instant;       /* [clock] next instant of that grid */
+    struct mailbox taken;  /* numbers taken last of the host */
+    int32_t warned_length; /* DDA length that was refused last, to say so once */
+    int32_t warned_frames; /* frames refused when that was last said */
 };
 
 #include "fmi_model.h"
@@ -21,7 +21,7 @@ static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    struct single_buffer_config c = {.latched = v->latched};
+    struct single_buffer_config c = { .latched = v->latched };
     for (int i = 0; i < EPCIO_AXES; i++)
         c.active[i] = v->active[i];
     m->period = wires_period(f);

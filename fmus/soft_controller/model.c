@@ -9,20 +9,20 @@
 
 struct model {
     struct soft soft;
-    int64_t instant;        /* [ns] next instant of the bus grid that reads */
-    bool    unpublished;    /* what was read last shows at that instant */
-    int32_t told;           /* error that was reported */
-    uint64_t text;          /* digest of the jobs it runs */
+    int64_t instant;  /* [ns] next instant of the bus grid that reads */
+    bool unpublished; /* what was read last shows at that instant */
+    int32_t told;     /* error that was reported */
+    uint64_t text;    /* digest of the jobs it runs */
 };
 
 #define MODEL_BLOB
-#define MODEL_IN_USE                                                                              \
-    RING_IN_USE(soft.robot.ring)                                                                  \
-    MEAN_IN_USE(soft.robot.mean, soft.robot.mover)                                                \
-    FMU_LIST(soft.robot.course.move, soft.robot.course.count)                                     \
-    FMU_LIST(soft.robot.way.piece, soft.robot.way.count)                                          \
-    INTERPRETER_IN_USE(soft.orders.gcode)                                                         \
-    FMU_RING(soft.queue, soft.heads, soft.count, 0)                                               \
+#define MODEL_IN_USE \
+    RING_IN_USE(soft.robot.ring) \
+    MEAN_IN_USE(soft.robot.mean, soft.robot.mover) \
+    FMU_LIST(soft.robot.course.move, soft.robot.course.count) \
+    FMU_LIST(soft.robot.way.piece, soft.robot.way.count) \
+    INTERPRETER_IN_USE(soft.orders.gcode) \
+    FMU_RING(soft.queue, soft.heads, soft.count, 0) \
     FMU_LIST(soft.taught, soft.taught_count)
 #include "fmi_model.h"
 #include "fmu_period.h"
@@ -119,12 +119,17 @@ static void publish_card(struct vars *v, struct soft *s, const struct soft_confi
 
 static struct soft_panel panel_of(const struct vars *v)
 {
-    struct soft_panel p = {
-        .hold = v->hold, .abort = v->abort, .start = v->start, .single = v->single,
-        .reset = v->reset, .teach = v->teach, .replay = v->replay, .override = v->override,
-        .frame = (enum robot_frame)v->jog_frame, .jog_speed = v->jog_speed,
-        .jog_way = v->jog_way
-    };
+    struct soft_panel p = { .hold = v->hold,
+                            .abort = v->abort,
+                            .start = v->start,
+                            .single = v->single,
+                            .reset = v->reset,
+                            .teach = v->teach,
+                            .replay = v->replay,
+                            .override = v->override,
+                            .frame = (enum robot_frame)v->jog_frame,
+                            .jog_speed = v->jog_speed,
+                            .jog_way = v->jog_way };
     memcpy(p.jog, v->jog, sizeof p.jog);
     return p;
 }
@@ -146,7 +151,7 @@ static void publish(struct fmu *f)
     v->reached = (int32_t)s->reached;
     v->taught = s->taught_count;
     v->queue = s->count;
-    if (cycle) {        /* nothing of this changes between */
+    if (cycle) { /* nothing of this changes between */
         publish_times(v, s);
         publish_arm(v, s, &b->config);
     }
@@ -225,8 +230,8 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     const struct vars *v = &f->s.v;
 
     (void)t0;
-    if (!(fabs(v->card_irq_clock) < FMU_TICKS_MAX &&
-          fabs(v->card_input_irq_clock) < FMU_TICKS_MAX)) {
+    if (!(fabs(v->card_irq_clock) < FMU_TICKS_MAX
+          && fabs(v->card_input_irq_clock) < FMU_TICKS_MAX)) {
         return fmu_fail(f, "card_irq_clock = %g, card_input_irq_clock = %g: not clocks",
                         v->card_irq_clock, v->card_input_irq_clock);
     }

@@ -5,7 +5,10 @@
 #include <math.h>
 
 /* Waits of interrupts, figures of LatencyMon reports of ordinary PCs [s]. */
-static const struct pc_wait { const char *name; double mean, rare, most; } PC_WAIT[] = {
+static const struct pc_wait {
+    const char *name;
+    double mean, rare, most;
+} PC_WAIT[] = {
     { "document", 0.0, 0.0, 0.0 },
     { "good", 1.2e-6, 1e-5, 160e-6 },
     { "graphics", 2.7e-6, 1e-5, 667e-6 },
@@ -24,7 +27,8 @@ static int set_wait(struct fmu *f, struct soft_settings *s)
         }
     }
     return strcmp(pc, "own") == 0
-         ? 0 : fmu_fail(f, "pc = \"%s\": one of document, good, graphics, own is wanted", pc);
+               ? 0
+               : fmu_fail(f, "pc = \"%s\": one of document, good, graphics, own is wanted", pc);
 }
 
 static int config_of(struct fmu *f, struct soft_config *c)
@@ -44,8 +48,10 @@ static int config_of(struct fmu *f, struct soft_config *c)
     }
     soft_configure(&s, c);
     if (2 * c->bus > c->slots * c->slot) {
-        fmu_warn(f, "bus_period = %g s is more than half of the %g s that a memory plays: its "
-                 "slots come too late", v->bus_period, c->robot.cycle);
+        fmu_warn(f,
+                 "bus_period = %g s is more than half of the %g s that a memory plays: its "
+                 "slots come too late",
+                 v->bus_period, c->robot.cycle);
     }
     return 0;
 }

@@ -12,16 +12,16 @@ struct soft_blob {
     struct soft_config config;
     struct program_file *gcode;
     struct source source;
-    bool   has_inform;
+    bool has_inform;
     struct inform_program inform;
     struct inform_points points;
-    uint64_t text;              /* digest of the jobs' text, 0 without jobs */
+    uint64_t text; /* digest of the jobs' text, 0 without jobs */
 };
 
 static struct orders_text text_of(const struct soft_blob *b)
 {
-    return (struct orders_text){ b->gcode ? &b->source : NULL,
-                                 b->has_inform ? &b->inform : NULL, &b->points };
+    return (struct orders_text){ b->gcode ? &b->source : NULL, b->has_inform ? &b->inform : NULL,
+                                 &b->points };
 }
 
 /* The whole of a text file, to be freed. NULL after fmu_fail(). */
@@ -104,7 +104,8 @@ static int read_jobs(struct fmu *f, struct soft_blob *b)
     if (code == 0 && job[0]) {
         b->config.orders.start.job = inform_job(&b->inform, job);
         code = b->config.orders.start.job < 0
-             ? fmu_fail(f, "job = \"%s\": no such job in %s", job, name) : 0;
+                   ? fmu_fail(f, "job = \"%s\": no such job in %s", job, name)
+                   : 0;
     }
     b->has_inform = code == 0;
     return code;
@@ -122,7 +123,8 @@ static int language_of(struct fmu *f, bool *gcode)
     }
     *gcode = strcmp(v->language, "gcode") == 0;
     return *gcode || strcmp(v->language, "inform") == 0
-         ? 0 : fmu_fail(f, "language = \"%s\": auto, inform or gcode is wanted", v->language);
+               ? 0
+               : fmu_fail(f, "language = \"%s\": auto, inform or gcode is wanted", v->language);
 }
 
 static int read_files(struct fmu *f, struct soft_blob *b)
@@ -142,7 +144,9 @@ static int read_files(struct fmu *f, struct soft_blob *b)
 }
 
 enum { SOFT_INPUTS = 2 };
-struct soft_inputs { struct output_input of[SOFT_INPUTS]; };
+struct soft_inputs {
+    struct output_input of[SOFT_INPUTS];
+};
 
 /* What teach_file must not replace. */
 static struct soft_inputs inputs_of(const struct fmu *f)

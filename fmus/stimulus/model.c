@@ -3,7 +3,7 @@
 #include "vars.h"
 
 struct model {
-    int32_t steps;      /* of the table that are in use */
+    int32_t steps; /* of the table that are in use */
 };
 
 #include "fmi_model.h"
@@ -11,15 +11,15 @@ struct model {
 
 enum { ROWS = 128, EACH = 32, SIGNALS = 3 * EACH };
 
-_Static_assert(sizeof ((struct vars *)0)->at == ROWS * sizeof(double), "rows of the table");
-_Static_assert(sizeof ((struct vars *)0)->real == EACH * sizeof(double), "signals of a type");
+_Static_assert(sizeof((struct vars *)0)->at == ROWS * sizeof(double), "rows of the table");
+_Static_assert(sizeof((struct vars *)0)->real == EACH * sizeof(double), "signals of a type");
 
 /* What is in force at an instant [ns]. */
 static void show(struct fmu *f, int64_t now)
 {
     struct vars *v = &f->s.v;
-    int64_t latest[SIGNALS] = {0};
-    double value[SIGNALS] = {0};
+    int64_t latest[SIGNALS] = { 0 };
+    double value[SIGNALS] = { 0 };
     for (int k = 0; k < f->s.m.steps; k++) {
         const int signal = v->signal[k] - 1;
         const int64_t at = llround(v->at[k] * 1e9);

@@ -34,8 +34,7 @@ static int wires_dda(struct fmu *f, enum epcio_status s)
         return fmu_fail(f, "host_dda_divider = %d: %s", (int)v->host_dda_divider,
                         card_status_text(s));
     if (waits && m->warned_length != v->host_dda_length)
-        fmu_warn(f, "host_dda_length = %d waits: %s", (int)v->host_dda_length,
-                 card_status_text(s));
+        fmu_warn(f, "host_dda_length = %d waits: %s", (int)v->host_dda_length, card_status_text(s));
     m->warned_length = waits ? v->host_dda_length : 0;
     return 0;
 }
@@ -91,7 +90,7 @@ static void wires_publish(struct fmu *f)
     v->frames_taken = f->s.m.card.frames_taken;
     v->frames_refused = f->s.m.card.frames_refused;
 }
-_Static_assert(sizeof ((struct vars *)0)->irq_flags == sizeof ((struct irq *)0)->flags,
+_Static_assert(sizeof((struct vars *)0)->irq_flags == sizeof((struct irq *)0)->flags,
                "the wires are as wide as the card's registers");
 
 #endif

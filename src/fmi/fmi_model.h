@@ -31,14 +31,14 @@
 
 /* Everything getFMUState keeps, but for what MODEL_IN_USE leaves out. */
 struct state {
-    struct vars  v;     /* every variable of the description, by its name */
+    struct vars v; /* every variable of the description, by its name */
     struct model m;
-    int64_t      now;   /* [ns] since startTime */
+    int64_t now; /* [ns] since startTime */
 };
 
 struct fmu {
     struct state s;
-    void        *blob;  /* what model_open made; NULL without MODEL_BLOB */
+    void *blob; /* what model_open made; NULL without MODEL_BLOB */
 };
 
 /* The model's own functions. They return 0, or -1 after fmu_fail(). */
@@ -71,23 +71,27 @@ static void model_close(struct fmu *f);
 #if defined(__GNUC__)
 __attribute__((format(FMU_PRINTF, 2, 3)))
 #endif
-static int fmu_fail(struct fmu *f, const char *format, ...);
+static int
+fmu_fail(struct fmu *f, const char *format, ...);
 
 /* Tell the importer something worth knowing (category logEvents, or logStatusWarning). */
 #if defined(__GNUC__)
 __attribute__((format(FMU_PRINTF, 2, 3), unused))
 #endif
-static void fmu_event(struct fmu *f, const char *format, ...);
+static void
+fmu_event(struct fmu *f, const char *format, ...);
 #if defined(__GNUC__)
 __attribute__((format(FMU_PRINTF, 2, 3), unused))
 #endif
-static void fmu_warn(struct fmu *f, const char *format, ...);
+static void
+fmu_warn(struct fmu *f, const char *format, ...);
 
 /* Folder of the unpacked FMU's resources, ending in a separator, or "" if unknown. */
 #if defined(__GNUC__)
 __attribute__((unused))
 #endif
-static const char *fmu_resources(const struct fmu *f);
+static const char *
+fmu_resources(const struct fmu *f);
 
 /* Where a file is, or in words why it is nowhere. */
 enum { FMU_PATH_MAX = 4096 };
@@ -104,6 +108,7 @@ enum fmu_use { FMU_READ, FMU_WRITTEN };
 #if defined(__GNUC__)
 __attribute__((unused))
 #endif
-static struct fmu_path fmu_path(const struct fmu *f, const char *given, enum fmu_use use);
+static struct fmu_path
+fmu_path(const struct fmu *f, const char *given, enum fmu_use use);
 
 #endif

@@ -15,13 +15,13 @@ enum var_variability { VARY_FIXED, VARY_TUNABLE, VARY_DISCRETE, VARY_CONTINUOUS 
 
 struct var_info {
     const char *name;
-    uint32_t ref;         /* value reference of the first element; the others follow */
-    uint32_t count;       /* elements, row-major */
-    uint32_t offset;      /* [byte] of the first element in struct vars */
-    uint8_t  type;        /* enum var_type */
-    uint8_t  causality;   /* enum var_causality */
-    uint8_t  variability; /* enum var_variability */
-    double   min, max;    /* -DBL_MAX, DBL_MAX where there is no limit: finite at least */
+    uint32_t ref;        /* value reference of the first element; the others follow */
+    uint32_t count;      /* elements, row-major */
+    uint32_t offset;     /* [byte] of the first element in struct vars */
+    uint8_t type;        /* enum var_type */
+    uint8_t causality;   /* enum var_causality */
+    uint8_t variability; /* enum var_variability */
+    double min, max;     /* -DBL_MAX, DBL_MAX where there is no limit: finite at least */
 };
 
 #endif

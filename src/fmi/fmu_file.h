@@ -28,15 +28,21 @@ typedef struct _stat64 file_stat;
 
 /* A name in UTF-16. */
 enum { FILE_WIDE = 4096, FILE_SHORT = 248 }; /* a folder of that length is too long already */
-struct file_wide { wchar_t text[FILE_WIDE + 10]; }; /* with a head, and a pattern behind it */
+struct file_wide {
+    wchar_t text[FILE_WIDE + 10];
+}; /* with a head, and a pattern behind it */
 
 /* The character at p, which moves behind it; 0 at the end, UINT32_MAX if there is none. */
 static inline uint32_t file_character(const char **p)
 {
     const unsigned char *at = (const unsigned char *)*p;
     const uint32_t head = at[0];
-    const int more = head < 0x80 ? 0 : head < 0xc2 ? -1 : head < 0xe0 ? 1 : head < 0xf0 ? 2
-                   : head < 0xf5 ? 3 : -1;
+    const int more = head < 0x80   ? 0
+                     : head < 0xc2 ? -1
+                     : head < 0xe0 ? 1
+                     : head < 0xf0 ? 2
+                     : head < 0xf5 ? 3
+                                   : -1;
     uint32_t c = more <= 0 ? head : head & (0x3fu >> more);
     for (int i = 1; i <= more; i++) {
         if ((at[i] & 0xc0) != 0x80) {
@@ -111,7 +117,8 @@ static inline FILE *file_create(const char *name)
 {
     struct file_wide w;
     const int fd = file_widen(&w, name) ? _wopen(w.text, _O_WRONLY | _O_CREAT | _O_EXCL | _O_BINARY,
-                                                 _S_IREAD | _S_IWRITE) : -1;
+                                                 _S_IREAD | _S_IWRITE)
+                                        : -1;
     FILE *file = fd >= 0 ? _fdopen(fd, "wb") : NULL;
     if (fd >= 0 && !file) {
         _close(fd);
@@ -144,7 +151,9 @@ static inline int file_remove_folder(const char *name)
 }
 
 /* Of windows.h, whose macros would meet the names of the cores: BY_HANDLE_FILE_INFORMATION. */
-struct file_identity { unsigned long before[7], volume, between[3], number[2]; };
+struct file_identity {
+    unsigned long before[7], volume, between[3], number[2];
+};
 __declspec(dllimport) int __stdcall GetFileInformationByHandle(void *, struct file_identity *);
 
 static inline bool file_identify(const char *name, struct file_identity *i)
@@ -169,9 +178,9 @@ static inline bool file_same(const char *a, const char *b)
 /* The entries of a folder, one after the other. */
 struct file_folder {
     intptr_t handle;
-    bool     first;
+    bool first;
     struct _wfinddata64_t found;
-    char     name[4 * _MAX_PATH]; /* in UTF-8 */
+    char name[4 * _MAX_PATH]; /* in UTF-8 */
 };
 
 static inline bool file_folder_open(struct file_folder *f, const char *name)
@@ -259,7 +268,9 @@ static inline bool file_same(const char *a, const char *b)
     return stat(a, &s) == 0 && stat(b, &t) == 0 && s.st_dev == t.st_dev && s.st_ino == t.st_ino;
 }
 
-struct file_folder { DIR *handle; };
+struct file_folder {
+    DIR *handle;
+};
 
 static inline bool file_folder_open(struct file_folder *f, const char *name)
 {
@@ -282,8 +293,9 @@ static inline void file_folder_close(struct file_folder *f)
 /* NULL, or what it is instead of a regular file. */
 static inline const char *file_regular(const file_stat *s)
 {
-    return S_ISREG(s->st_mode) ? NULL
-           : S_ISDIR(s->st_mode) ? strerror(EISDIR) : "not a regular file";
+    return S_ISREG(s->st_mode)   ? NULL
+           : S_ISDIR(s->st_mode) ? strerror(EISDIR)
+                                 : "not a regular file";
 }
 
 #endif

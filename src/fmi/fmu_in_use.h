@@ -27,31 +27,30 @@ enum fmu_row_kind { FMU_ROW_RING, FMU_ROW_BETWEEN, FMU_ROW_TO_END, FMU_ROW_FLAGS
 
 /* A row; places are bytes in struct state. */
 struct fmu_row {
-    uint32_t at, each, elements;    /* the array: place, [byte] of an element, their number */
-    uint32_t first, first_size;     /* the member `first`, `from` or `flags`; size 0: it is 0 */
-    uint32_t count, count_size;     /* the member `count`, `to` or `flag` */
-    int32_t  low, high;             /* of `flag`; low is also `kept`, `more` or `each` */
+    uint32_t at, each, elements; /* the array: place, [byte] of an element, their number */
+    uint32_t first, first_size;  /* the member `first`, `from` or `flags`; size 0: it is 0 */
+    uint32_t count, count_size;  /* the member `count`, `to` or `flag` */
+    int32_t low, high;           /* of `flag`; low is also `kept`, `more` or `each` */
     enum fmu_row_kind kind;
 };
 
-#define FMU_PLACE(member) ((uint32_t)offsetof(struct state, m.member))
-#define FMU_BYTES(member) ((uint32_t)sizeof(((struct state *)0)->m.member))
+#define FMU_PLACE(member)  ((uint32_t)offsetof(struct state, m.member))
+#define FMU_BYTES(member)  ((uint32_t)sizeof(((struct state *)0)->m.member))
 #define FMU_MEMBER(member) FMU_PLACE(member), FMU_BYTES(member)
-#define FMU_ARRAY(array)                                                                          \
+#define FMU_ARRAY(array) \
     FMU_PLACE(array), FMU_BYTES(array[0]), FMU_BYTES(array) / FMU_BYTES(array[0])
 
-#define FMU_LIST(array, count)                                                                    \
-    {FMU_ARRAY(array), 0, 0, FMU_MEMBER(count), 0, 0, FMU_ROW_RING},
-#define FMU_RING(array, first, count, kept)                                                       \
-    {FMU_ARRAY(array), FMU_MEMBER(first), FMU_MEMBER(count), kept, 0, FMU_ROW_RING},
-#define FMU_BETWEEN(array, from, to, more)                                                        \
-    {FMU_ARRAY(array), FMU_MEMBER(from), FMU_MEMBER(to), more, 0, FMU_ROW_BETWEEN},
-#define FMU_TO_END(array, first)                                                                  \
-    {FMU_ARRAY(array), FMU_MEMBER(first), 0, 0, 0, 0, FMU_ROW_TO_END},
-#define FMU_FLAGS(array, each, flags)                                                             \
-    {FMU_ARRAY(array), FMU_PLACE(flags), FMU_BYTES(flags[0]), 0, 0, each, 0, FMU_ROW_FLAGS},
-#define FMU_WHEN(member, flag, low, high)                                                         \
-    {FMU_PLACE(member), FMU_BYTES(member), 1, 0, 0, FMU_MEMBER(flag), low, high, FMU_ROW_WHEN},
+#define FMU_LIST(array, count) { FMU_ARRAY(array), 0, 0, FMU_MEMBER(count), 0, 0, FMU_ROW_RING },
+#define FMU_RING(array, first, count, kept) \
+    { FMU_ARRAY(array), FMU_MEMBER(first), FMU_MEMBER(count), kept, 0, FMU_ROW_RING },
+#define FMU_BETWEEN(array, from, to, more) \
+    { FMU_ARRAY(array), FMU_MEMBER(from), FMU_MEMBER(to), more, 0, FMU_ROW_BETWEEN },
+#define FMU_TO_END(array, first) \
+    { FMU_ARRAY(array), FMU_MEMBER(first), 0, 0, 0, 0, FMU_ROW_TO_END },
+#define FMU_FLAGS(array, each, flags) \
+    { FMU_ARRAY(array), FMU_PLACE(flags), FMU_BYTES(flags[0]), 0, 0, each, 0, FMU_ROW_FLAGS },
+#define FMU_WHEN(member, flag, low, high) \
+    { FMU_PLACE(member), FMU_BYTES(member), 1, 0, 0, FMU_MEMBER(flag), low, high, FMU_ROW_WHEN },
 
 /* A part of a state that is left out. [byte], multiples of 8 */
 struct fmu_span {
@@ -59,8 +58,8 @@ struct fmu_span {
 };
 
 enum {
-    FMU_SPANS    = 512, /* the most; what is not named is kept */
-    FMU_SPAN_MIN = 64   /* [byte] a shorter one is not worth its place in the list */
+    FMU_SPANS = 512,  /* the most; what is not named is kept */
+    FMU_SPAN_MIN = 64 /* [byte] a shorter one is not worth its place in the list */
 };
 
 /* List one more of `n`, in the order of places; returns how many there are. */
@@ -68,7 +67,7 @@ static inline size_t fmu_span_add(struct fmu_span *span, size_t n, size_t from, 
 {
     const size_t a = (from + 7u) / 8u * 8u, b = to / 8u * 8u;
     if (n < FMU_SPANS && a + FMU_SPAN_MIN <= b) {
-        span[n++] = (struct fmu_span){(uint32_t)a, (uint32_t)b};
+        span[n++] = (struct fmu_span){ (uint32_t)a, (uint32_t)b };
     }
     return n;
 }
@@ -77,16 +76,16 @@ static inline size_t fmu_span_add(struct fmu_span *span, size_t n, size_t from, 
 static inline int64_t fmu_row_member(const char *state, uint32_t at, uint32_t size)
 {
     switch (size) {
-    case sizeof(uint8_t):  return *(const uint8_t *)(state + at);
-    case sizeof(int32_t):  return *(const int32_t *)(const void *)(state + at);
-    case sizeof(int64_t):  return *(const int64_t *)(const void *)(state + at);
-    default:               return 0;
+    case sizeof(uint8_t): return *(const uint8_t *)(state + at);
+    case sizeof(int32_t): return *(const int32_t *)(const void *)(state + at);
+    case sizeof(int64_t): return *(const int64_t *)(const void *)(state + at);
+    default:              return 0;
     }
 }
 
 /* Leave out of an array at `at` all but `used` elements from `first` on. */
-static inline size_t fmu_row_ring(const struct fmu_row *row, size_t at, int64_t first,
-                                  int64_t used, struct fmu_span *span, size_t n)
+static inline size_t fmu_row_ring(const struct fmu_row *row, size_t at, int64_t first, int64_t used,
+                                  struct fmu_span *span, size_t n)
 {
     const int64_t elements = row->elements, end = first + used;
     if (used >= elements) {
@@ -97,8 +96,7 @@ static inline size_t fmu_row_ring(const struct fmu_row *row, size_t at, int64_t 
                             at + (size_t)first * row->each);
     }
     n = fmu_span_add(span, n, at, at + (size_t)first * row->each);
-    return fmu_span_add(span, n, at + (size_t)end * row->each,
-                        at + (size_t)elements * row->each);
+    return fmu_span_add(span, n, at + (size_t)end * row->each, at + (size_t)elements * row->each);
 }
 
 /* Leave out the elements without a flag. */
@@ -144,9 +142,7 @@ static inline size_t fmu_spans(const void *state, size_t base, const struct fmu_
         case FMU_ROW_TO_END:
             n = fmu_row_ring(row, at, first % elements, elements - first, span, n);
             break;
-        case FMU_ROW_FLAGS:
-            n = fmu_row_flags(row, at, s, span, n);
-            break;
+        case FMU_ROW_FLAGS: n = fmu_row_flags(row, at, s, span, n); break;
         case FMU_ROW_WHEN:
             if (number < row->low || number > row->high) {
                 n = fmu_span_add(span, n, at, at + row->each);

@@ -10,15 +10,15 @@
 /* A file that the same instance reads, "" if none, and what to say if it would be replaced. */
 struct output_input {
     struct fmu_path path;
-    const char     *words;
+    const char *words;
 };
 
 /* A file on its way: it is written under the name `part`. */
 struct output {
-    char  name[FMU_STRING_MAX + 16];
-    char  part[FMU_STRING_MAX + 48];
-    bool  shown;                        /* it has the name */
-    char  old[FMU_STRING_MAX + 48];     /* what had the name before is kept here, "" if nothing */
+    char name[FMU_STRING_MAX + 16];
+    char part[FMU_STRING_MAX + 48];
+    bool shown;                    /* it has the name */
+    char old[FMU_STRING_MAX + 48]; /* what had the name before is kept here, "" if nothing */
     FILE *file;
 };
 
@@ -105,9 +105,9 @@ static const char *output_set_aside(struct output *o)
 static const char *output_show(struct output *o, int n, int *bad)
 {
 #ifdef _WIN32
-    const int aside = n;        /* rename does not replace there */
+    const int aside = n; /* rename does not replace there */
 #else
-    const int aside = n - 1;    /* behind the last one nothing can fail any more */
+    const int aside = n - 1; /* behind the last one nothing can fail any more */
 #endif
     for (int k = 0; k < n; k++) {
         *bad = k;

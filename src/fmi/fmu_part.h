@@ -22,9 +22,9 @@ enum fmu_message { FMU_ERROR, FMU_WARNING, FMU_EVENT };
 
 /* Who runs a part, as one component of a system. */
 struct fmu_host {
-    void       *owner;
-    const char *name;       /* of the component */
-    const char *resources;  /* folder of the FMU's resources, ends in a separator; "" if none */
+    void *owner;
+    const char *name;      /* of the component */
+    const char *resources; /* folder of the FMU's resources, ends in a separator; "" if none */
     void (*tell)(const struct fmu_host *host, enum fmu_message kind, const char *format,
                  va_list args);
 };
@@ -38,23 +38,23 @@ struct fmu_part {
         char mark[sizeof FMU_PART_MARK - 1];
         char instance[FMU_PART_DIGITS]; /* [byte] */
         char space;
-        char vars[FMU_PART_DIGITS];     /* [byte] of struct vars */
+        char vars[FMU_PART_DIGITS]; /* [byte] of struct vars */
         char end;
     } sizes;
-    size_t size;                        /* [byte] of an instance */
+    size_t size; /* [byte] of an instance */
 
     /* Cleared memory becomes an instance whose variables have their start values. */
     void (*clear)(void *part);
 
     /* Give an instance its host and what `open` made; take both away: returns what `open` made. */
-    void  (*attach)(void *part, const struct fmu_host *host, void *blob);
+    void (*attach)(void *part, const struct fmu_host *host, void *blob);
     void *(*detach)(void *part);
 
     /* As the functions of fmi_model.h. `open` is followed by `close`, also if it failed. */
-    int  (*open)(void *part);
-    int  (*start)(void *part);
-    int  (*step)(void *part, int64_t t0, int64_t t1);
-    int  (*end)(void *part);
+    int (*open)(void *part);
+    int (*start)(void *part);
+    int (*step)(void *part, int64_t t0, int64_t t1);
+    int (*end)(void *part);
     void (*close)(void *part);
 
     /* Warn once of communication steps [ns] that do not go with the FMU's own grid. */

@@ -14,8 +14,8 @@
 /* Whether so many ticks are a period: whole, and at least one. */
 static inline bool fmu_is_period(double ticks)
 {
-    return ticks >= 1.0 && ticks < FMU_TICKS_MAX &&
-           fabs(ticks - round(ticks)) < FMU_PERIOD_TOLERANCE;
+    return ticks >= 1.0 && ticks < FMU_TICKS_MAX
+           && fabs(ticks - round(ticks)) < FMU_PERIOD_TOLERANCE;
 }
 
 #endif

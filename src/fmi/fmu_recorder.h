@@ -16,24 +16,24 @@
 struct recorder_column {
     const char *name;
     const void *value; /* where its values are when a row is recorded */
-    char        kind;  /* 'd' double, 'i' int32_t, 'b' bool */
-    int32_t     count; /* values; of 1 the shape is (rows,) */
+    char kind;         /* 'd' double, 'i' int32_t, 'b' bool */
+    int32_t count;     /* values; of 1 the shape is (rows,) */
 };
 
 /* A column on its way to its file. */
 struct recorder_stream {
     const char *value;
-    char       *block;
-    int         column;
-    FILE       *file;
-    int64_t     ahead; /* [byte] of the file to which there is room on the disk */
+    char *block;
+    int column;
+    FILE *file;
+    int64_t ahead; /* [byte] of the file to which there is room on the disk */
 };
 
 /* Columns whose rows have the same size: their blocks are full at the same time. */
 struct recorder_group {
     struct recorder_stream *streams;
-    int     count;
-    size_t  width; /* [byte] of a row */
+    int count;
+    size_t width;  /* [byte] of a row */
     int64_t first; /* row at the begin of the blocks */
     int64_t room;  /* rows in a block */
 };
@@ -42,22 +42,22 @@ struct recorder {
     struct recorder_folder folder;
     const struct recorder_column *columns; /* the caller's, as long as it is open */
     struct recorder_stream *streams;       /* time.npy among them */
-    struct recorder_group  *groups;
-    char    *blocks;
-    int      count, group_count;
-    double   time, period; /* [s] */
-    int64_t  row;          /* the next one */
-    int64_t  full;         /* no block is full before that many rows */
-    char     why[RECORDER_WHY];
+    struct recorder_group *groups;
+    char *blocks;
+    int count, group_count;
+    double time, period; /* [s] */
+    int64_t row;         /* the next one */
+    int64_t full;        /* no block is full before that many rows */
+    char why[RECORDER_WHY];
 };
 
 enum {
-    RECORDER_PAGE  = 4096,
-    RECORDER_HEAD  = RECORDER_PAGE, /* of a file, so that its other pages are whole ones of data */
-    RECORDER_BLOCK = 64 * 1024,     /* [byte] at most, in whole pages: half of it costs the kernel a
-                                     * half more, four times as much a tenth less, and the caches */
-    RECORDER_AHEAD = 1024 * 1024,   /* [byte] of room that is taken at once, at most */
-    RECORDER_LINE  = 64             /* of a cache: blocks a power of two apart would share few */
+    RECORDER_PAGE = 4096,
+    RECORDER_HEAD = RECORDER_PAGE, /* of a file, so that its other pages are whole ones of data */
+    RECORDER_BLOCK = 64 * 1024,    /* [byte] at most, in whole pages: half of it costs the kernel a
+                                    * half more, four times as much a tenth less, and the caches */
+    RECORDER_AHEAD = 1024 * 1024,  /* [byte] of room that is taken at once, at most */
+    RECORDER_LINE = 64             /* of a cache: blocks a power of two apart would share few */
 };
 
 static inline size_t recorder_size(char kind)
@@ -68,7 +68,7 @@ static inline size_t recorder_size(char kind)
 
 static inline struct recorder_column recorder_column_of(const struct recorder *r, int column)
 {
-    return column < 0 ? (struct recorder_column){"time", &r->time, 'd', 1} : r->columns[column];
+    return column < 0 ? (struct recorder_column){ "time", &r->time, 'd', 1 } : r->columns[column];
 }
 
 static inline int recorder_fail(struct recorder *r, const char *name, const char *error)
@@ -90,8 +90,8 @@ static inline void recorder_close(struct recorder *r)
         }
         if (r->folder.part[0]) {
             char name[RECORDER_FILE];
-            file_remove(recorder_file(name, &r->folder,
-                                      recorder_column_of(r, r->streams[k].column).name));
+            file_remove(
+                recorder_file(name, &r->folder, recorder_column_of(r, r->streams[k].column).name));
         }
     }
     recorder_folder_drop(&r->folder);
@@ -106,8 +106,11 @@ static inline bool recorder_head(const struct recorder *r, const struct recorder
 {
     const struct recorder_column c = recorder_column_of(r, s->column);
     char head[RECORDER_HEAD];
-    npy_head(head, sizeof head, c.kind == 'd' ? "f8" : c.kind == 'i' ? "i4" : "b1", r->row,
-             c.count == 1 ? -1 : c.count);
+    npy_head(head, sizeof head,
+             c.kind == 'd'   ? "f8"
+             : c.kind == 'i' ? "i4"
+                             : "b1",
+             r->row, c.count == 1 ? -1 : c.count);
     return recorder_seek(s->file, 0) == 0 && fwrite(head, 1, sizeof head, s->file) == sizeof head;
 }
 
@@ -131,7 +134,8 @@ static inline bool recorder_layout(struct recorder *r)
 {
     size_t bytes = 0;
     for (int k = 0; k < r->count; k++) {
-        const struct recorder_stream s = {recorder_column_of(r, k - 1).value, NULL, k - 1, NULL, 0};
+        const struct recorder_stream s = { recorder_column_of(r, k - 1).value, NULL, k - 1, NULL,
+                                           0 };
         const size_t width = recorder_width(r, &s);
         int place = k;
         for (; place > 0 && recorder_width(r, &r->streams[place - 1]) > width; place--) {
@@ -147,7 +151,7 @@ static inline bool recorder_layout(struct recorder *r)
         struct recorder_group *g = &r->groups[r->group_count - (r->group_count > 0)];
         if (g->width != width) {
             g = &r->groups[r->group_count++];
-            *g = (struct recorder_group){s, 0, width, 0, recorder_room(width)};
+            *g = (struct recorder_group){ s, 0, width, 0, recorder_room(width) };
         }
         g->count++;
         s->block = at;
@@ -232,8 +236,8 @@ static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
             recorder_make_room(s, next - (int64_t)size, size, empty);
         }
         errno = 0;
-        const bool good = empty ? recorder_seek(s->file, next) == 0
-                                : fwrite(s->block, 1, size, s->file) == size;
+        const bool good =
+            empty ? recorder_seek(s->file, next) == 0 : fwrite(s->block, 1, size, s->file) == size;
         if (!good) {
             return recorder_fail(r, recorder_column_of(r, s->column).name,
                                  strerror(errno ? errno : EIO));

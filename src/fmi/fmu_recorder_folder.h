@@ -14,7 +14,7 @@
 enum {
     RECORDER_PATH = 1100,                /* [byte] of a folder's name */
     RECORDER_FILE = RECORDER_PATH + 300, /* of a file's in it */
-    RECORDER_WHY  = RECORDER_FILE + 200
+    RECORDER_WHY = RECORDER_FILE + 200
 };
 
 struct recorder_folder {

@@ -29,21 +29,21 @@
 struct vars;
 
 struct system_part {
-    const char *name;                                   /* of the component */
+    const char *name; /* of the component */
     const struct fmu_part *part;
-    size_t at;                                          /* of its instance, in struct model */
-    void (*give)(void *part, const struct vars *v);     /* all values that are set before a run */
+    size_t at;                                      /* of its instance, in struct model */
+    void (*give)(void *part, const struct vars *v); /* all values that are set before a run */
 };
 
 struct system_wire {
-    int    to;  /* part */
-    size_t at;  /* of the input, in the part's struct vars */
+    int to;    /* part */
+    size_t at; /* of the input, in the part's struct vars */
 };
 
 struct system_column {
     const char *name;
-    size_t  at; /* in struct model */
-    char    kind;
+    size_t at; /* in struct model */
+    char kind;
     int32_t count;
 };
 
@@ -54,18 +54,18 @@ struct system_column {
 #define SYSTEM_PART(name) extern const struct fmu_part name
 #endif
 
-#define SYSTEM_COPY(to, from)                                                       \
-    do {                                                                            \
-        _Static_assert(sizeof(to) == sizeof(from), "one type, one size");           \
-        memcpy(&(to), &(from), sizeof(to));                                         \
+#define SYSTEM_COPY(to, from) \
+    do { \
+        _Static_assert(sizeof(to) == sizeof(from), "one type, one size"); \
+        memcpy(&(to), &(from), sizeof(to)); \
     } while (0)
 
 /* What the values that all wires have brought are together, so that it is asked once. Most need
  * only be finite: x * 0 is 0 of these and no number of all others. */
 struct system_check {
-    double   off[2];    /* sums of x * 0, of every other element */
-    uint32_t bits;      /* that no whole number may have */
-    bool     good;      /* those with other limits are within them */
+    double off[2]; /* sums of x * 0, of every other element */
+    uint32_t bits; /* that no whole number may have */
+    bool good;     /* those with other limits are within them */
 };
 
 #define SYSTEM_FINITE(x) system_finite(&check, (const double *)&(x), sizeof(x) / sizeof(double))

@@ -10,8 +10,8 @@ enum { JOB_FILE_MOST = 1 << 21, JOB_KEY_BYTES = 32 };
 
 /* One byte more than the flash has tells a file that is too long. */
 struct job_file {
-    uint32_t bytes;         /* 0: none */
-    uint8_t  byte[JOB_FILE_MOST + 1];
+    uint32_t bytes; /* 0: none */
+    uint8_t byte[JOB_FILE_MOST + 1];
 };
 
 static int model_open(struct fmu *f)
@@ -53,8 +53,10 @@ static int model_end(struct fmu *f)
 
 static int job_key_digit(char c)
 {
-    return c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
 }
 
 /* The parameter `key`, 64 hexadecimal digits; zeros without one. */

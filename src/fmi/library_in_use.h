@@ -6,13 +6,13 @@
 #include "fmu_in_use.h"
 
 /* A struct interpreter. */
-#define INTERPRETER_IN_USE(in)                                                                    \
-    FMU_RING(in.cutter.held, in.cutter.first, in.cutter.count, 0)                                 \
-    FMU_LIST(in.tools.table.tool, in.tools.table.count)                                           \
-    FMU_FLAGS(in.parameters.value, PARAMETERS_PAGE, in.parameters.given)                          \
-    FMU_LIST(in.parameters.named, in.parameters.names)                                            \
-    FMU_LIST(in.flow.open, in.flow.opens)                                                         \
-    FMU_LIST(in.flow.call, in.flow.level)                                                         \
+#define INTERPRETER_IN_USE(in) \
+    FMU_RING(in.cutter.held, in.cutter.first, in.cutter.count, 0) \
+    FMU_LIST(in.tools.table.tool, in.tools.table.count) \
+    FMU_FLAGS(in.parameters.value, PARAMETERS_PAGE, in.parameters.given) \
+    FMU_LIST(in.parameters.named, in.parameters.names) \
+    FMU_LIST(in.flow.open, in.flow.opens) \
+    FMU_LIST(in.flow.call, in.flow.level) \
     FMU_LIST(in.made, in.count)
 
 /* A struct ring, and the struct track_mean of a mover. */
@@ -20,28 +20,28 @@
 #define MEAN_IN_USE(mean, mover) FMU_WHEN(mean, mover.motion, MOVER_CHAIN, MOVER_CHAIN)
 
 /* A struct curve_plan: shape and pace are made when a curve begins. */
-#define CURVE_IN_USE(curve, mover)                                                                \
-    FMU_WHEN(curve.shape, mover.motion, MOVER_CURVE, MOVER_CURVE)                                 \
-    FMU_WHEN(curve.shape.run.vertex, curve.shape.running, 1, 1)                                   \
-    FMU_LIST(curve.shape.run.vertex, curve.shape.run.vertices)                                    \
-    FMU_BETWEEN(curve.shape.piece, curve.shape.gone, curve.shape.made, 0)                         \
-    FMU_BETWEEN(curve.shape.mark, curve.shape.marks_gone, curve.shape.marks, 0)                   \
-    FMU_WHEN(curve.pace, mover.motion, MOVER_CURVE, MOVER_CURVE)                                  \
-    FMU_RING(curve.pace.ring, curve.pace.at.head, curve.pace.count, PACE_KEPT)                    \
-    FMU_TO_END(curve.pace.plan[0].node, curve.pace.plan[0].first)                                 \
+#define CURVE_IN_USE(curve, mover) \
+    FMU_WHEN(curve.shape, mover.motion, MOVER_CURVE, MOVER_CURVE) \
+    FMU_WHEN(curve.shape.run.vertex, curve.shape.running, 1, 1) \
+    FMU_LIST(curve.shape.run.vertex, curve.shape.run.vertices) \
+    FMU_BETWEEN(curve.shape.piece, curve.shape.gone, curve.shape.made, 0) \
+    FMU_BETWEEN(curve.shape.mark, curve.shape.marks_gone, curve.shape.marks, 0) \
+    FMU_WHEN(curve.pace, mover.motion, MOVER_CURVE, MOVER_CURVE) \
+    FMU_RING(curve.pace.ring, curve.pace.at.head, curve.pace.count, PACE_KEPT) \
+    FMU_TO_END(curve.pace.plan[0].node, curve.pace.plan[0].first) \
     FMU_TO_END(curve.pace.plan[1].node, curve.pace.plan[1].first)
 
 /* A struct mcc. */
-#define MCC_IN_USE(mcc)                                                                           \
-    FMU_LIST(mcc.tools.tool, mcc.tools.count)                                                     \
-    INTERPRETER_IN_USE(mcc.program)                                                               \
-    RING_IN_USE(mcc.ring)                                                                         \
-    MEAN_IN_USE(mcc.mean, mcc.mover)                                                              \
-    CURVE_IN_USE(mcc.curve_plan, mcc.mover)                                                       \
+#define MCC_IN_USE(mcc) \
+    FMU_LIST(mcc.tools.tool, mcc.tools.count) \
+    INTERPRETER_IN_USE(mcc.program) \
+    RING_IN_USE(mcc.ring) \
+    MEAN_IN_USE(mcc.mean, mcc.mover) \
+    CURVE_IN_USE(mcc.curve_plan, mcc.mover) \
     FMU_RING(mcc.queue.item, mcc.queue.head, mcc.queue.count, 0)
 
 /* A struct voltage. */
-#define VOLTAGE_IN_USE(voltage)                                                                   \
+#define VOLTAGE_IN_USE(voltage) \
     FMU_BETWEEN(voltage.trail.point, voltage.trail.first, voltage.trail.frames, 1)
 
 #endif

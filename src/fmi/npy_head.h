@@ -19,10 +19,11 @@ static inline void npy_head(char *head, size_t size, const char *type, int64_t r
     if (columns >= 0) {
         snprintf(wide, sizeof wide, " %" PRId64, columns);
     }
-    const int n = 10 + snprintf(head + 10, size - 10,
-                                "{'descr': '%c%s', 'fortran_order': False, 'shape': (%" PRId64
-                                ",%s), }",
-                                order, type, rows, wide);
+    const int n =
+        10
+        + snprintf(head + 10, size - 10,
+                   "{'descr': '%c%s', 'fortran_order': False, 'shape': (%" PRId64 ",%s), }", order,
+                   type, rows, wide);
     memset(head + n, ' ', size - (size_t)n);
     memcpy(head, "\x93NUMPY\x01\x00", 8);
     head[8] = (char)((size - 10) & 0xFF); /* size of the dictionary, low byte first */

@@ -8,7 +8,9 @@
 #include "program_file.h"
 
 /* Some text of the line a report speaks of. */
-struct quote { char text[SOURCE_LINE_MAX + 1]; };
+struct quote {
+    char text[SOURCE_LINE_MAX + 1];
+};
 
 static struct quote quote(struct program_file *program, const struct fault_report *r, int32_t at,
                           int32_t length)
@@ -21,7 +23,9 @@ static struct quote quote(struct program_file *program, const struct fault_repor
 }
 
 /* Name of the text that a report speaks of: of the program, and of a file that it calls. */
-struct file_name { char text[1200]; };
+struct file_name {
+    char text[1200];
+};
 
 static struct file_name file_of(const char *program, const struct fault_report *r)
 {
@@ -46,7 +50,7 @@ static int tell_fault(struct fmu *f, const char *name, struct program_file *prog
                  r->limit, floor(r->feed));
     } else if (r->fault == FAULT_TRAVEL) {
         snprintf(detail, sizeof detail, " (%c to %.6g mm, limit %.6g mm)", "XYZUVW"[r->axis],
-                 r->value, r->limit);
+                 r -> value, r -> limit);
     } else if (r->fault == FAULT_ARC_END) {
         snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
     } else if (r->fault == FAULT_ARC_CHORD) {
@@ -67,12 +71,13 @@ static int judge_program(struct fmu *f, const char *parameter, const char *name,
     for (int i = 0; i < all->notes; i++) {
         const struct fault_report *r = &all->note[i];
         fmu_warn(f, "%s: line %d: note: %s \"%s\", column %d", file_of(name, r).text, (int)r->line,
-                  fault_text(r->fault), quote(program, r, r->at, r->length).text, (int)r->at + 1);
+                 fault_text(r->fault), quote(program, r, r->at, r->length).text, (int)r->at + 1);
     }
     for (int i = 0; i < all->count; i++) {
-        status = all->of[i].fault != FAULT_READ ? tell_fault(f, name, program, &all->of[i])
-               : fmu_fail(f, "%s: cannot read %s: %s", parameter, file_of(name, &all->of[i]).text,
-                          strerror(program->error));
+        status = all->of[i].fault != FAULT_READ
+                     ? tell_fault(f, name, program, &all->of[i])
+                     : fmu_fail(f, "%s: cannot read %s: %s", parameter,
+                                file_of(name, &all->of[i]).text, strerror(program->error));
     }
     return all->more ? fmu_fail(f, "%s: ... and more", name) : status;
 }

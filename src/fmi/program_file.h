@@ -6,18 +6,18 @@
 #include "fmu_input.h"
 #include "source.h"
 
-enum { PROGRAM_WINDOW = 1 << 16 };      /* [byte] some two thousand blocks */
+enum { PROGRAM_WINDOW = 1 << 16 }; /* [byte] some two thousand blocks */
 
 /* An open part program, or a file that one calls; byte[0 .. count) stands at an offset of the file,
  * which is read up to offset + count. */
 struct program_file {
-    FILE   *file;
+    FILE *file;
     int64_t offset, count;
-    int     error;          /* errno value of a read that failed */
-    char   *path;           /* of the program: files that it calls are beside it */
-    struct program_file *next;      /* of those that it has called */
-    char    name[FAULT_FILE];       /* of such a file */
-    char    byte[PROGRAM_WINDOW];
+    int error;                 /* errno value of a read that failed */
+    char *path;                /* of the program: files that it calls are beside it */
+    struct program_file *next; /* of those that it has called */
+    char name[FAULT_FILE];     /* of such a file */
+    char byte[PROGRAM_WINDOW];
 };
 
 /* Go to an offset, also beyond 2 GiB. */
@@ -85,7 +85,7 @@ static const char *program_open(const char *name, struct program_file **program)
         free(path);
         return strerror(ENOMEM);
     }
-    setvbuf(file, NULL, _IONBF, 0);     /* the window is the buffer */
+    setvbuf(file, NULL, _IONBF, 0); /* the window is the buffer */
     p->file = file;
     p->path = strcpy(path, name);
     p->next = NULL;

@@ -34,10 +34,10 @@
 #endif
 
 enum {
-    PLANT_STATE_SIZE    = PLANT_STATES * PLANT_LANES,
-    PLANT_INPUT_SIZE    = (PLANT_INPUTS > 0 ? PLANT_INPUTS : 1) * PLANT_LANES,
+    PLANT_STATE_SIZE = PLANT_STATES * PLANT_LANES,
+    PLANT_INPUT_SIZE = (PLANT_INPUTS > 0 ? PLANT_INPUTS : 1) * PLANT_LANES,
     PLANT_CONSTANT_SIZE = (PLANT_CONSTANTS > 0 ? PLANT_CONSTANTS : 1) * PLANT_LANES,
-    PLANT_OUTPUT_SIZE   = PLANT_OUTPUTS * PLANT_LANES,
+    PLANT_OUTPUT_SIZE = PLANT_OUTPUTS * PLANT_LANES,
     PLANT_PARAMETER_SIZE = PLANT_PARAMETERS > 0 ? PLANT_PARAMETERS : 1,
     PLANT_SUB_STEPS_MAX = 1000 /* 1000 is 25 ns at 25 us: beyond it a parameter is wrong */
 };
@@ -49,10 +49,10 @@ struct plant_block {
     double x[PLANT_STATE_SIZE];
     double u[PLANT_INPUT_SIZE];
     double c[PLANT_CONSTANT_SIZE];
-    int    instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
-    int    lanes;                 /* one of PLANT_WIDTHS; the step from quantity to quantity */
-    int    used;                  /* lanes with an axis of their own */
-    int    sub_steps;
+    int instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
+    int lanes;                 /* one of PLANT_WIDTHS; the step from quantity to quantity */
+    int used;                  /* lanes with an axis of their own */
+    int sub_steps;
     double fastest;            /* [1/s] bound of |lambda| at the start, of its stiffest axis */
     double size[PLANT_STATES]; /* what is large for each state */
     double asked;              /* [s] step that the error asks for */
@@ -60,9 +60,9 @@ struct plant_block {
 
 struct model {
     struct plant_block block[PLANT_INSTANCES];
-    int     blocks;
+    int blocks;
     int64_t step_ns; /* [ns] micro step */
-    bool    watched; /* the first communication step was compared with it */
+    bool watched;    /* the first communication step was compared with it */
 };
 
 #include "fmi_model.h"
@@ -70,10 +70,11 @@ struct model {
 static const double plant_h_lambda = 2.0;
 
 /* What is done with the lanes of a block as a constant. */
-#define PLANT_CASE(n, call) case n: call; break;
+#define PLANT_CASE(n, call) \
+    case n: call; break;
 
 typedef void plant_rates(int lanes, const double *restrict x, const double *restrict u,
-    const double *restrict c, double *restrict dx);
+                         const double *restrict c, double *restrict dx);
 
 /* One Runge-Kutta step of h [s]. */
 static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant_block *b, double h)
@@ -102,7 +103,9 @@ static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant
 static void plant_step_plain(struct plant_block *b, double h)
 {
 #define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs, b, h))
-    switch (b->lanes) { PLANT_WIDTHS(STEP) }
+    switch (b->lanes) {
+        PLANT_WIDTHS(STEP)
+    }
 #undef STEP
 }
 
@@ -110,7 +113,9 @@ static void plant_step_plain(struct plant_block *b, double h)
 EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
 {
 #define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
-    switch (b->lanes) { PLANT_WIDTHS(STEP) }
+    switch (b->lanes) {
+        PLANT_WIDTHS(STEP)
+    }
 #undef STEP
 }
 
@@ -129,9 +134,10 @@ static void plant_step(struct plant_block *b, double h)
 static double plant_trial(const struct plant_block *b, double h, double *y)
 {
     enum { STAGES = 4 }; /* y stands in the last row: the fourth stage is for the error alone */
-    static const double a[STAGES][STAGES - 1] = {{0.0}, {1.0 / 2.0}, {0.0, 3.0 / 4.0},
-        {2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0}};
-    static const double e[STAGES] = {-5.0 / 72.0, 1.0 / 12.0, 1.0 / 9.0, -1.0 / 8.0};
+    static const double a[STAGES][STAGES - 1] = {
+        { 0.0 }, { 1.0 / 2.0 }, { 0.0, 3.0 / 4.0 }, { 2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0 }
+    };
+    static const double e[STAGES] = { -5.0 / 72.0, 1.0 / 12.0, 1.0 / 9.0, -1.0 / 8.0 };
     double k[STAGES][PLANT_STATE_SIZE];
     for (int s = 0; s < STAGES; s++) {
         for (int i = 0; i < PLANT_STATE_SIZE; i++) {
@@ -195,8 +201,8 @@ static int plant_advance(struct fmu *f, int64_t now)
             }
         } else if (plant_controlled(b, h) != 0) {
             return fmu_fail(f,
-                "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
-                b->instance[0] + 1, 1e-9 * (double)now, h, PLANT_SUB_STEPS_MAX);
+                            "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
+                            b->instance[0] + 1, 1e-9 * (double)now, h, PLANT_SUB_STEPS_MAX);
         }
     }
     return 0;
@@ -215,7 +221,7 @@ static void plant_read(struct fmu *f)
 /* Whether rows of lanes are all numbers: 0 times a number is 0, times infinity or NaN it is NaN. */
 static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 {
-    double rest[PLANT_LANES] = {0.0}, sum = 0.0;
+    double rest[PLANT_LANES] = { 0.0 }, sum = 0.0;
     for (int k = 0; k < rows; k++) {
         for (int lane = 0; lane < lanes; lane++) {
             rest[lane] += 0.0 * a[k * lanes + lane];
@@ -231,9 +237,12 @@ static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 static bool plant_finite(const struct plant_block *b, const double *y)
 {
     bool good = false;
-#define FINITE(n) PLANT_CASE(n, good = plant_finite_of(n, b->x, PLANT_STATES) \
-                                    && plant_finite_of(n, y, PLANT_OUTPUTS))
-    switch (b->lanes) { PLANT_WIDTHS(FINITE) }
+#define FINITE(n) \
+    PLANT_CASE(n, good = plant_finite_of(n, b->x, PLANT_STATES) \
+                         && plant_finite_of(n, y, PLANT_OUTPUTS))
+    switch (b->lanes) {
+        PLANT_WIDTHS(FINITE)
+    }
 #undef FINITE
     return good;
 }
@@ -253,7 +262,7 @@ static int plant_refuse(struct fmu *f, const struct plant_block *b, const double
         }
     }
     return fmu_fail(f, "axis %d: %s is %g at %.9f s", b->instance[i % b->lanes] + 1,
-        names[i / b->lanes], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
+                    names[i / b->lanes], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
 }
 
 /* Show the state at the grid instant `now` [ns] on the outputs, if all are numbers. */
@@ -291,18 +300,19 @@ static void plant_watch(struct fmu *f, double seen)
         }
     }
     if (worst) {
-        fmu_warn(f, "axis %d: micro_step %.9g s (%d sub-steps) is coarse against its shortest time "
-            "constant, %.3g s: lags of %.3g s are off by up to %.2g %%", worst->instance[0] + 1, h,
-            worst->sub_steps, 1.0 / worst->fastest, el_max(1.0 / worst->fastest, seen),
-            100.0 * most * most * most * most / 120.0);
+        fmu_warn(f,
+                 "axis %d: micro_step %.9g s (%d sub-steps) is coarse against its shortest time "
+                 "constant, %.3g s: lags of %.3g s are off by up to %.2g %%",
+                 worst->instance[0] + 1, h, worst->sub_steps, 1.0 / worst->fastest,
+                 el_max(1.0 / worst->fastest, seen), 100.0 * most * most * most * most / 120.0);
     }
 }
 
 /* What is known of an active axis before it has a lane. */
 struct plant_axis {
     double p[PLANT_PARAMETER_SIZE];
-    double fastest;   /* [1/s] */
-    int    sub_steps; /* 0: not active, or placed */
+    double fastest; /* [1/s] */
+    int sub_steps;  /* 0: not active, or placed */
 };
 
 /* Put an axis into the lanes of a block from `lane` on. */
@@ -327,7 +337,10 @@ static void plant_fill(struct plant_block *b, int lane, int instance, const stru
 /* Lanes of a block of so many axes, at most PLANT_LANES. */
 static int plant_width(int axes)
 {
-#define WIDE_ENOUGH(n) if (axes <= n) { return n; }
+#define WIDE_ENOUGH(n) \
+    if (axes <= n) { \
+        return n; \
+    }
     PLANT_WIDTHS(WIDE_ENOUGH)
 #undef WIDE_ENOUGH
     return PLANT_LANES;
@@ -372,7 +385,7 @@ static int plant_start_axis(struct fmu *f, int instance, struct plant_axis *axis
     const double steps = ceil(h * axis->fastest / plant_h_lambda);
     if (!(steps <= PLANT_SUB_STEPS_MAX)) {
         return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
-            instance + 1, h, steps, PLANT_SUB_STEPS_MAX);
+                        instance + 1, h, steps, PLANT_SUB_STEPS_MAX);
     }
     if (steps > 1.0) {
         fmu_event(f, "axis %d: stiff, %g sub-steps per micro step of %g s", instance + 1, steps, h);
@@ -383,7 +396,7 @@ static int plant_start_axis(struct fmu *f, int instance, struct plant_axis *axis
 
 static int model_start(struct fmu *f)
 {
-    const double y[PLANT_OUTPUTS] = {0.0};
+    const double y[PLANT_OUTPUTS] = { 0.0 };
     struct plant_axis axes[PLANT_INSTANCES];
     const double step = 1e9 * f->s.v.micro_step;
     const double tolerance = 1e-3; /* [ns] no clock means less; 25 us is 25000.000000000004 ns */
@@ -392,7 +405,7 @@ static int model_start(struct fmu *f)
     if (!(step >= FMU_TICK_NS && step <= 1e18) || fabs(step - round(step)) > tolerance
         || llround(step) % FMU_TICK_NS != 0) {
         return fmu_fail(f, "micro_step %.12g s is not a whole multiple of %d ns", f->s.v.micro_step,
-            FMU_TICK_NS);
+                        FMU_TICK_NS);
     }
     f->s.m.step_ns = llround(step);
     for (int i = 0; i < PLANT_INSTANCES; i++) {

@@ -5,8 +5,8 @@
 /* Table of a struct and its size in bytes; NULL for a name that is none. */
 const struct field *binding_fields(const char *of, int32_t *count, int64_t *size)
 {
-    const struct table *const all[] = { MCC_TABLES, ROBOT_TABLES, GCODE_TABLES,
-                                        PLAN_TABLES, NETCARD_TABLES };
+    const struct table *const all[] = { MCC_TABLES, ROBOT_TABLES, GCODE_TABLES, PLAN_TABLES,
+                                        NETCARD_TABLES };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         for (const struct table *t = all[i]; t->name; t++) {

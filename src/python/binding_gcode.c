@@ -13,10 +13,10 @@ struct gcode_reader {
     struct source source;
     struct program program;
     struct interpreter in;
-    double point[AXES], feed;                       /* [mm], [mm/s] at the start */
-    double origin[INTERPRETER_SYSTEMS][AXES];       /* [mm] */
+    double point[AXES], feed;                 /* [mm], [mm/s] at the start */
+    double origin[INTERPRETER_SYSTEMS][AXES]; /* [mm] */
     struct tool_table tools;
-    double period;                                  /* [s] from point to point */
+    double period; /* [s] from point to point */
     struct mover mover;
     struct ring ring;
     struct track_mean mean;
@@ -24,25 +24,36 @@ struct gcode_reader {
 };
 
 #define OPTION_IN(m, name, unit, ...) ONE_IN(gcode_reader, m, name, unit, __VA_ARGS__)
-#define OPTION(m, name, unit) OPTION_IN(m, name, unit, SAME)
+#define OPTION(m, name, unit)         OPTION_IN(m, name, unit, SAME)
 #define JOINTS(m, name, unit) \
-    { name, unit, KIND(((struct gcode_reader *)0)->program.machine.joint[0].m), \
-      OFFSET(gcode_reader, program.machine.joint[0].m), AXES, sizeof(struct joint), SAME }
+    { name, \
+      unit, \
+      KIND(((struct gcode_reader *)0)->program.machine.joint[0].m), \
+      OFFSET(gcode_reader, program.machine.joint[0].m), \
+      AXES, \
+      sizeof(struct joint), \
+      SAME }
 #define FLAT(type, m, name, unit) \
-    { name, unit, 'd', OFFSET(type, m), SIZE(type, m) / (int32_t)sizeof(double), \
+    { name,           unit, 'd', OFFSET(type, m), SIZE(type, m) / (int32_t)sizeof(double), \
       sizeof(double), SAME }
 static const struct field reader_fields[] = {
     OPTION(program.block_delete, "block_delete", ""),
-    OPTION(program.optional_stop, "optional_stop", ""), OPTION(program.angles, "angles", ""),
-    OPTION(program.change_stops, "change_stops", ""), OPTION(program.fanuc, "fanuc", ""),
+    OPTION(program.optional_stop, "optional_stop", ""),
+    OPTION(program.angles, "angles", ""),
+    OPTION(program.change_stops, "change_stops", ""),
+    OPTION(program.fanuc, "fanuc", ""),
     OPTION(program.strict_feed, "strict_feed", ""),
     OPTION(program.least_increment, "least_increment", ""),
     OPTION(program.check_again, "check_again", "lines"),
     OPTION(program.arc.least, "arc_tolerance", "mm"),
-    ROW(gcode_reader, program.machine.axis, "axes", ""), JOINTS(used, "used", ""),
-    JOINTS(scale, "scale", "pulses/mm"), JOINTS(speed, "speed", "mm/s"),
-    JOINTS(bounded, "bounded", ""), JOINTS(low, "low", "mm"),
-    JOINTS(high, "high", "mm"), OPTION_IN(program.limits.feed, "max_feed", "mm/min", PER_MINUTE),
+    ROW(gcode_reader, program.machine.axis, "axes", ""),
+    JOINTS(used, "used", ""),
+    JOINTS(scale, "scale", "pulses/mm"),
+    JOINTS(speed, "speed", "mm/s"),
+    JOINTS(bounded, "bounded", ""),
+    JOINTS(low, "low", "mm"),
+    JOINTS(high, "high", "mm"),
+    OPTION_IN(program.limits.feed, "max_feed", "mm/min", PER_MINUTE),
     OPTION(program.limits.rapid, "rapid", ""),
     OPTION(program.limits.up.acc, "acceleration", "mm/s^2"),
     OPTION(program.limits.down.acc, "deceleration", "mm/s^2"),
@@ -51,30 +62,50 @@ static const struct field reader_fields[] = {
     ROW(gcode_reader, curve.limits.speed, "axis_speed", "mm/s"),
     ROW(gcode_reader, curve.limits.acc, "axis_acc", "mm/s^2"),
     ROW(gcode_reader, curve.limits.jerk, "axis_jerk", "mm/s^3"),
-    OPTION_IN(feed, "feed", "mm/min", PER_MINUTE), FLAT(gcode_reader, point, "point", "mm"),
+    OPTION_IN(feed, "feed", "mm/min", PER_MINUTE),
+    FLAT(gcode_reader, point, "point", "mm"),
     FLAT(gcode_reader, origin, "origin", "mm"),
-    OPTION(period, "period", "s"), OPTION(in.line, "line", ""), OPTION(in.ended, "ended", ""),
+    OPTION(period, "period", "s"),
+    OPTION(in.line, "line", ""),
+    OPTION(in.ended, "ended", ""),
 };
 
 #define SEEN(m, name, unit) ONE(command, m, name, unit)
 static const struct field command_fields[] = {
     { "type", "", 'i', OFFSET(command, type), 1, sizeof(enum command_type), SAME },
-    SEEN(line, "line", ""), SEEN(blend, "blend", ""), SEEN(tolerance, "tolerance", "mm"),
-    SEEN(feed, "feed", "mm/s"), SEEN(dwell, "dwell", "s"), SEEN(set, "set", "bits"),
-    SEEN(clear, "clear", "bits"), SEEN(spindle, "spindle", "rpm"), SEEN(coolant, "coolant", "bits"),
-    SEEN(surface.speed, "surface", "mm/s"), SEEN(surface.centre, "surface_centre", "mm"),
-    SEEN(overrides, "overrides", "bits"), SEEN(tool, "tool", ""), SEEN(changes, "changes", ""),
-    SEEN(analog.set, "analog_set", "bits"), FLAT(command, analog.value, "analog", ""),
-    SEEN(probes, "probes", ""), SEEN(path.arc, "arc", ""),
-    SEEN(path.cubic, "cubic", ""), FLAT(command, path.bezier.inner, "inner", "mm"),
+    SEEN(line, "line", ""),
+    SEEN(blend, "blend", ""),
+    SEEN(tolerance, "tolerance", "mm"),
+    SEEN(feed, "feed", "mm/s"),
+    SEEN(dwell, "dwell", "s"),
+    SEEN(set, "set", "bits"),
+    SEEN(clear, "clear", "bits"),
+    SEEN(spindle, "spindle", "rpm"),
+    SEEN(coolant, "coolant", "bits"),
+    SEEN(surface.speed, "surface", "mm/s"),
+    SEEN(surface.centre, "surface_centre", "mm"),
+    SEEN(overrides, "overrides", "bits"),
+    SEEN(tool, "tool", ""),
+    SEEN(changes, "changes", ""),
+    SEEN(analog.set, "analog_set", "bits"),
+    FLAT(command, analog.value, "analog", ""),
+    SEEN(probes, "probes", ""),
+    SEEN(path.arc, "arc", ""),
+    SEEN(path.cubic, "cubic", ""),
+    FLAT(command, path.bezier.inner, "inner", "mm"),
     { "plane", "", 'i', OFFSET(command, path.plane), 1, sizeof(enum path_plane), SAME },
-    ROW(command, path.start, "start", "mm"), ROW(command, path.end, "end", "mm"),
-    ROW(command, path.centre, "centre", "mm"), SEEN(path.radius, "radius", "mm"),
-    SEEN(path.growth, "growth", "mm"), SEEN(path.angle, "angle", "rad"),
-    SEEN(path.sweep, "sweep", "rad"), SEEN(path.length, "length", "mm"),
+    ROW(command, path.start, "start", "mm"),
+    ROW(command, path.end, "end", "mm"),
+    ROW(command, path.centre, "centre", "mm"),
+    SEEN(path.radius, "radius", "mm"),
+    SEEN(path.growth, "growth", "mm"),
+    SEEN(path.angle, "angle", "rad"),
+    SEEN(path.sweep, "sweep", "rad"),
+    SEEN(path.length, "length", "mm"),
 };
-_Static_assert(sizeof(enum command_type) == sizeof(int32_t) &&
-               sizeof(enum path_plane) == sizeof(int32_t), "an enum is read as an int32");
+_Static_assert(sizeof(enum command_type) == sizeof(int32_t)
+                   && sizeof(enum path_plane) == sizeof(int32_t),
+               "an enum is read as an int32");
 
 const struct table GCODE_TABLES[] = {
     { "gcode_reader", reader_fields, sizeof reader_fields, sizeof(struct gcode_reader) },
@@ -82,7 +113,7 @@ const struct table GCODE_TABLES[] = {
     { NULL, NULL, 0, 0 },
 };
 
-static const double PULSES_PER_MM = 1000.0;     /* for the range of positions only */
+static const double PULSES_PER_MM = 1000.0; /* for the range of positions only */
 
 /* Six axes without bounds, fast enough for any program. */
 void binding_gcode_defaults(struct gcode_reader *g)
@@ -121,15 +152,15 @@ void binding_gcode_begin(struct gcode_reader *g, const char *text, int64_t lengt
     g->text = binding_text_of(text, length, file);
     g->source = binding_source(&g->text);
     g->program.source = &g->source;
-    interpreter_start(&g->in, g->point, g->feed, (const double (*)[AXES])g->origin);
+    interpreter_start(&g->in, g->point, g->feed, (const double(*)[AXES])g->origin);
     g->in.tools.table = g->tools;
 }
 
 /* The next commands, at most so many; *result is an enum interpreter_result, of the last one. What
  * only the machine can tell is passed over; a program that runs for ever ends where a check
  * does. */
-int64_t binding_gcode_read(struct gcode_reader *g, struct command *c, int64_t room,
-                           int32_t *result, struct fault_report *r)
+int64_t binding_gcode_read(struct gcode_reader *g, struct command *c, int64_t room, int32_t *result,
+                           struct fault_report *r)
 {
     int64_t count = 0;
 
@@ -163,8 +194,7 @@ void binding_reports(const struct fault_list *all, struct fault_report *r, int32
 }
 
 /* Faults and notes of the program, which has begun and nothing of it is read. */
-void binding_gcode_check(struct gcode_reader *g, struct fault_report *r,
-                         int32_t count[3])
+void binding_gcode_check(struct gcode_reader *g, struct fault_report *r, int32_t count[3])
 {
     struct fault_list all;
 

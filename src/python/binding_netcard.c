@@ -5,33 +5,46 @@
 #include "binding.h"
 #include "netcard.h"
 
-static const int64_t LOOK_NS = 1000000;     /* between two looks at the machine's switches */
+static const int64_t LOOK_NS = 1000000; /* between two looks at the machine's switches */
 
 /* A card and its machine: an origin switch is on from its place onwards in the way of homing; no
  * limit is ever met, no drive has an alarm. */
 struct netcard_sim {
     struct netcard_config config;
-    int64_t origin[CARD_AXES];              /* [pulses] */
+    int64_t origin[CARD_AXES]; /* [pulses] */
     struct netcard card;
 };
 
 #define OF_SETTING(type, name, elements, unit, start, low, high, words) \
-    { #name, unit, KIND((type){ 0 }), OFFSET(netcard_sim, config.settings.name), \
-      (int32_t)(sizeof(type elements) / sizeof(type)), sizeof(type), SAME },
+    { #name, \
+      unit, \
+      KIND((type){ 0 }), \
+      OFFSET(netcard_sim, config.settings.name), \
+      (int32_t)(sizeof(type elements) / sizeof(type)), \
+      sizeof(type), \
+      SAME },
 #define SEEN(m, name, unit) ONE(netcard_sim, card.m, name, unit)
 static const struct field sim_fields[] = {
-    CARD_SETTINGS(OF_SETTING)
-    ROW(netcard_sim, config.key, "key", ""),
+    CARD_SETTINGS(OF_SETTING) ROW(netcard_sim, config.key, "key", ""),
     ROW(netcard_sim, origin, "origin", "pulses"),
-    SEEN(now, "now", "ns"), SEEN(homed, "homed", "bits"), SEEN(outputs.levels, "outputs", "bits"),
-    SEEN(player.frames, "frames", ""), SEEN(player.fifo.stock, "stock", ""),
-    SEEN(player.dry, "underflows", ""), SEEN(least, "stock_least", ""),
-    SEEN(result.count, "answered", ""), SEEN(jobs, "jobs", ""),
-    SEEN(approach, "approach", ""), SEEN(played_id, "played", ""),
-    SEEN(session.connections, "connections", ""), SEEN(session.repeats, "repeats", ""),
-    SEEN(session.fault, "fault", ""), SEEN(flash.programs, "programs", ""),
+    SEEN(now, "now", "ns"),
+    SEEN(homed, "homed", "bits"),
+    SEEN(outputs.levels, "outputs", "bits"),
+    SEEN(player.frames, "frames", ""),
+    SEEN(player.fifo.stock, "stock", ""),
+    SEEN(player.dry, "underflows", ""),
+    SEEN(least, "stock_least", ""),
+    SEEN(result.count, "answered", ""),
+    SEEN(jobs, "jobs", ""),
+    SEEN(approach, "approach", ""),
+    SEEN(played_id, "played", ""),
+    SEEN(session.connections, "connections", ""),
+    SEEN(session.repeats, "repeats", ""),
+    SEEN(session.fault, "fault", ""),
+    SEEN(flash.programs, "programs", ""),
     SEEN(session.phase, "phase", ""),
-    SEEN(flash.sector_erases, "sector_erases", ""), SEEN(flash.block_erases, "block_erases", ""),
+    SEEN(flash.sector_erases, "sector_erases", ""),
+    SEEN(flash.block_erases, "block_erases", ""),
 };
 
 const struct table NETCARD_TABLES[] = {

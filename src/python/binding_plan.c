@@ -15,41 +15,57 @@ struct planner {
 
 #define SET(m, name, unit) ONE(planner, m, name, unit)
 #define AXIS(m, unit) \
-    { #m, unit, 'd', OFFSET(planner, config.axis[0].m), JOB_AXES, \
-      sizeof(struct net_plan_axis), SAME }
+    { \
+        #m,  unit, 'd', OFFSET(planner, config.axis[0].m), JOB_AXES, sizeof(struct net_plan_axis), \
+        SAME \
+    }
 #define EVENT(m, kind) \
-    { "event_" #m, "", kind, OFFSET(planner, header.event[0].m), JOB_EVENTS, \
-      sizeof(struct job_event), SAME }
+    { "event_" #m, "", \
+      kind,        OFFSET(planner, header.event[0].m), \
+      JOB_EVENTS,  sizeof(struct job_event), \
+      SAME }
 static const struct field planner_fields[] = {
-    AXIS(pulses_per_mm, "pulses/mm"), AXIS(speed, "mm/s"), AXIS(acc, "mm/s^2"),
-    AXIS(jerk, "mm/s^3"), SET(config.period_ns, "period_ns", "ns"),
-    SET(config.tolerance, "tolerance", "mm"), SET(config.rapid, "rapid", "mm/s"),
+    AXIS(pulses_per_mm, "pulses/mm"),
+    AXIS(speed, "mm/s"),
+    AXIS(acc, "mm/s^2"),
+    AXIS(jerk, "mm/s^3"),
+    SET(config.period_ns, "period_ns", "ns"),
+    SET(config.tolerance, "tolerance", "mm"),
+    SET(config.rapid, "rapid", "mm/s"),
     SET(config.reserve, "reserve", ""),
     { "pen", "", 'i', OFFSET(planner, config.pen), 1, sizeof(enum net_plan_pen), SAME },
-    SET(config.pen_axis, "pen_axis", ""), SET(config.up, "up", "mm"),
-    SET(config.down, "down", "mm"), SET(config.dwell, "dwell", "s"),
-    SET(header.axes, "axes", "bits"), SET(header.events, "events", ""),
+    SET(config.pen_axis, "pen_axis", ""),
+    SET(config.up, "up", "mm"),
+    SET(config.down, "down", "mm"),
+    SET(config.dwell, "dwell", "s"),
+    SET(header.axes, "axes", "bits"),
+    SET(header.events, "events", ""),
     SET(header.rest, "rest", ""),
     ROW(planner, header.pulses_per_m, "pulses_per_m", "pulses/m"),
     ROW(planner, header.speed_max, "speed_max", "pulses/s"),
     ROW(planner, header.acc_max, "acc_max", "pulses/s^2"),
-    EVENT(width_us, 'u'), SET(plan.stops, "stops", ""), SET(writer.header.frames, "frames", ""),
+    EVENT(width_us, 'u'),
+    SET(plan.stops, "stops", ""),
+    SET(writer.header.frames, "frames", ""),
 };
 
 #define VERTEX(m, name, unit) ONE(net_plan_vertex, m, name, unit)
 static const struct field vertex_fields[] = {
-    ROW(net_plan_vertex, point, "point", "mm"), VERTEX(feed, "feed", "mm/s"),
+    ROW(net_plan_vertex, point, "point", "mm"),
+    VERTEX(feed, "feed", "mm/s"),
     { "kind", "", 'i', OFFSET(net_plan_vertex, kind), 1, sizeof(enum net_plan_kind), SAME },
 };
 
 static const struct field frame_fields[] = {
     ROW(net_plan_frame, job.command, "command", "pulses"),
-    ONE(net_plan_frame, job.event, "event", ""), ROW(net_plan_frame, place, "place", "mm"),
+    ONE(net_plan_frame, job.event, "event", ""),
+    ROW(net_plan_frame, place, "place", "mm"),
     { "step", "", 'i', OFFSET(net_plan_frame, step), 1, sizeof(enum net_plan_step), SAME },
 };
-_Static_assert(sizeof(enum net_plan_kind) == sizeof(int32_t) &&
-               sizeof(enum net_plan_step) == sizeof(int32_t) &&
-               sizeof(enum net_plan_pen) == sizeof(int32_t), "an enum is read as an int32");
+_Static_assert(sizeof(enum net_plan_kind) == sizeof(int32_t)
+                   && sizeof(enum net_plan_step) == sizeof(int32_t)
+                   && sizeof(enum net_plan_pen) == sizeof(int32_t),
+               "an enum is read as an int32");
 
 const struct table PLAN_TABLES[] = {
     { "planner", planner_fields, sizeof planner_fields, sizeof(struct planner) },
@@ -77,8 +93,7 @@ void binding_plan_start(struct planner *p, const uint8_t origin[JOB_ORIGIN_BYTES
 /* Frames from vertices, until those are taken or there is no room; they go into pages, too. Behind
  * the last vertex to the end. Returns the frames made; *taken vertices, *pages. */
 int64_t binding_plan_run(struct planner *p, const struct net_plan_vertex *v, const int64_t count[3],
-                         struct net_plan_frame *f, uint8_t (*page)[JOB_PAGE_BYTES],
-                         int64_t done[2])
+                         struct net_plan_frame *f, uint8_t (*page)[JOB_PAGE_BYTES], int64_t done[2])
 {
     const int64_t vertices = count[0], room = count[1];
     int64_t made = 0;

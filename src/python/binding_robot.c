@@ -22,72 +22,119 @@ struct robot_program {
 };
 
 #define SETTING(type, m, elements, unit, start, low, high) \
-    { #m, unit, KIND(((struct soft_settings *)0)->m), OFFSET(robot_station_config, soft.m), \
-      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), sizeof(type), SAME },
+    { #m, \
+      unit, \
+      KIND(((struct soft_settings *)0)->m), \
+      OFFSET(robot_station_config, soft.m), \
+      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), \
+      sizeof(type), \
+      SAME },
 #define CARD(m, unit) ONE(robot_station_config, card.m, #m, unit)
 static const struct field config_fields[] = {
-    SOFT_SETTINGS(SETTING)
-    ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
-    CARD(input_irq_mask, "bits"), CARD(follow_mask, "bits"),
-    CARD(stop_mask, "bits"), CARD(stop_low, "bits"), CARD(alarm_stops, ""),
+    SOFT_SETTINGS(SETTING) ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
+    CARD(input_irq_mask, "bits"),
+    CARD(follow_mask, "bits"),
+    CARD(stop_mask, "bits"),
+    CARD(stop_low, "bits"),
+    CARD(alarm_stops, ""),
     CARD(stop_servo_off, ""),
 };
 
-#define READ(m, unit) ONE(robot_station_reading, m, #m, unit)
+#define READ(m, unit)     ONE(robot_station_reading, m, #m, unit)
 #define READ_ROW(m, unit) ROW(robot_station_reading, m, #m, unit)
 static const struct field reading_fields[] = {
-    READ_ROW(pulses, "pulses"), READ_ROW(joint, "deg"), READ_ROW(pose, "mm, deg"),
-    READ_ROW(joint_command, "deg"), READ_ROW(pose_command, "mm, deg"), READ(configuration, ""),
-    READ_ROW(factors, "mm, 1, 1"), READ(status, ""), READ(line, ""), READ(done, ""),
+    READ_ROW(pulses, "pulses"),
+    READ_ROW(joint, "deg"),
+    READ_ROW(pose, "mm, deg"),
+    READ_ROW(joint_command, "deg"),
+    READ_ROW(pose_command, "mm, deg"),
+    READ(configuration, ""),
+    READ_ROW(factors, "mm, 1, 1"),
+    READ(status, ""),
+    READ(line, ""),
+    READ(done, ""),
     READ(rests, ""),
 };
 
 #define SEEN(m, name, unit) ONE(robot_station, m, name, unit)
 /* Names and units of the FMU's outputs. */
 #define REPORT(m, name) ONE(robot_station, soft.report.m, name, "")
-#define TIME(m, name) ONE_IN(robot_station, soft.report.m, name, "s", SECONDS)
+#define TIME(m, name)   ONE_IN(robot_station, soft.report.m, name, "s", SECONDS)
 static const struct field seen_fields[] = {
-    SEEN(clock, "clock", "clocks"), SEEN(soft.robot.speed, "path_feed", "mm/s"),
-    SEEN(soft.robot.length, "path_length", "mm"), SEEN(soft.given, "move", ""),
-    SEEN(soft.reached, "reached", ""), SEEN(soft.taught_count, "taught", ""),
-    SEEN(soft.trouble.error, "error", ""), SEEN(soft.trouble.line, "error_line", ""),
-    SEEN(soft.count, "queue", ""), SEEN(card.inputs.image, "inputs", "bits"),
-    SEEN(card.outputs, "outputs", "bits"), ROW(robot_station, card.output_clock, "output_clock",
-                                               "clocks"),
-    ROW(robot_station, card.ai, "ai", "V"), ROW(robot_station, card.ao, "ao", "V"),
-    SEEN(card.servo, "servo", "bits"), SEEN(card.stopped, "stopped", ""),
-    SEEN(card.stopped_clock, "stopped_clock", "clocks"), SEEN(card.playing, "memory", ""),
-    SEEN(card.irq.seq, "interrupts", ""), SEEN(card.irq.clock, "irq_clock", "clocks"),
-    SEEN(card.underruns, "underruns", ""), SEEN(card.late, "late", ""),
-    SEEN(card.refused, "refused", ""), ROW(robot_station, card.dropped, "dropped", "pulses"),
-    REPORT(runs, "runs"), REPORT(late, "deadline_misses"), REPORT(polls, "polls"),
-    REPORT(lines, "lines_done"), REPORT(points, "points_computed"), REPORT(starved, "starved"),
-    TIME(wait, "irq_wait"), TIME(wait_most, "irq_wait_most"), TIME(run, "cycle_time"),
-    TIME(run_most, "cycle_time_most"), TIME(spare, "spare_time"), TIME(busy, "busy"),
-    TIME(line, "line_latency"), TIME(line_most, "line_latency_most"),
+    SEEN(clock, "clock", "clocks"),
+    SEEN(soft.robot.speed, "path_feed", "mm/s"),
+    SEEN(soft.robot.length, "path_length", "mm"),
+    SEEN(soft.given, "move", ""),
+    SEEN(soft.reached, "reached", ""),
+    SEEN(soft.taught_count, "taught", ""),
+    SEEN(soft.trouble.error, "error", ""),
+    SEEN(soft.trouble.line, "error_line", ""),
+    SEEN(soft.count, "queue", ""),
+    SEEN(card.inputs.image, "inputs", "bits"),
+    SEEN(card.outputs, "outputs", "bits"),
+    ROW(robot_station, card.output_clock, "output_clock", "clocks"),
+    ROW(robot_station, card.ai, "ai", "V"),
+    ROW(robot_station, card.ao, "ao", "V"),
+    SEEN(card.servo, "servo", "bits"),
+    SEEN(card.stopped, "stopped", ""),
+    SEEN(card.stopped_clock, "stopped_clock", "clocks"),
+    SEEN(card.playing, "memory", ""),
+    SEEN(card.irq.seq, "interrupts", ""),
+    SEEN(card.irq.clock, "irq_clock", "clocks"),
+    SEEN(card.underruns, "underruns", ""),
+    SEEN(card.late, "late", ""),
+    SEEN(card.refused, "refused", ""),
+    ROW(robot_station, card.dropped, "dropped", "pulses"),
+    REPORT(runs, "runs"),
+    REPORT(late, "deadline_misses"),
+    REPORT(polls, "polls"),
+    REPORT(lines, "lines_done"),
+    REPORT(points, "points_computed"),
+    REPORT(starved, "starved"),
+    TIME(wait, "irq_wait"),
+    TIME(wait_most, "irq_wait_most"),
+    TIME(run, "cycle_time"),
+    TIME(run_most, "cycle_time_most"),
+    TIME(spare, "spare_time"),
+    TIME(busy, "busy"),
+    TIME(line, "line_latency"),
+    TIME(line_most, "line_latency_most"),
     TIME(told_most, "line_known_most"),
 };
 
-#define KEY(m) ONE(robot_station, soft.m.pressed, "press_" #m, "")
+#define KEY(m)         ONE(robot_station, soft.m.pressed, "press_" #m, "")
 #define PANEL(m, unit) ONE(robot_station, panel.m, #m, unit)
 static const struct field panel_fields[] = {
-    PANEL(hold, ""), PANEL(single, ""), PANEL(override, ""), PANEL(frame, ""),
-    ROW(robot_station, panel.jog, "jog", ""), PANEL(jog_speed, ""), PANEL(jog_way, "mm or deg"),
-    KEY(start), KEY(abort), KEY(reset), KEY(teach), KEY(replay),
-    ONE(robot_station, inputs, "inputs", "bits"), ONE(robot_station, alarm, "alarm", "bits"),
-    ONE(robot_station, emergency, "emergency", ""), ROW(robot_station, ai, "ai", "V"),
+    PANEL(hold, ""),
+    PANEL(single, ""),
+    PANEL(override, ""),
+    PANEL(frame, ""),
+    ROW(robot_station, panel.jog, "jog", ""),
+    PANEL(jog_speed, ""),
+    PANEL(jog_way, "mm or deg"),
+    KEY(start),
+    KEY(abort),
+    KEY(reset),
+    KEY(teach),
+    KEY(replay),
+    ONE(robot_station, inputs, "inputs", "bits"),
+    ONE(robot_station, alarm, "alarm", "bits"),
+    ONE(robot_station, emergency, "emergency", ""),
+    ROW(robot_station, ai, "ai", "V"),
     ONE(robot_station, card.stopped, "stopped", ""),
 };
 
 #define MOVE(m, unit) ONE(robot_move, m, #m, unit)
 static const struct field move_fields[] = {
-    MOVE(kind, ""), MOVE(target.by_joints, ""), MOVE(target.branch, ""),
-    ROW(robot_move, via, "via", "mm"), MOVE(feed, "mm/s"), MOVE(spin, "deg/s"), MOVE(share, ""),
-    MOVE(zone, "mm"), MOVE(singular, ""),
+    MOVE(kind, ""),          MOVE(target.by_joints, ""),
+    MOVE(target.branch, ""), ROW(robot_move, via, "via", "mm"),
+    MOVE(feed, "mm/s"),      MOVE(spin, "deg/s"),
+    MOVE(share, ""),         MOVE(zone, "mm"),
+    MOVE(singular, ""),
 };
 
 static const struct field refusal_fields[] = {
-    ONE(robot_refusal, part, "part", ""), ROW(robot_refusal, place, "place", "mm"),
+    ONE(robot_refusal, part, "part", ""),   ROW(robot_refusal, place, "place", "mm"),
     ONE(robot_refusal, which, "which", ""), ONE(robot_refusal, value, "value", ""),
     ONE(robot_refusal, limit, "limit", ""),
 };
@@ -139,9 +186,8 @@ void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
 }
 
 /* Read a program in one of the languages, none with an empty text, and its points. */
-int binding_robot_read(struct robot_program *p, const char *const text[2],
-                       const int64_t length[2], bool gcode, binding_file file,
-                       char message[MESSAGE])
+int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
+                       bool gcode, binding_file file, char message[MESSAGE])
 {
     struct inform_report r;
 
@@ -254,8 +300,11 @@ int binding_robot_jog(struct robot_station *s, struct robot_refusal *why, char m
 int binding_robot_output(struct robot_station *s, uint32_t mask, uint32_t value, int32_t index,
                          double volt)
 {
-    struct order o = { .kind = mask ? ORDER_OUT : ORDER_ANALOG, .mask = mask, .value = value,
-                       .index = index, .amount = volt };
+    struct order o = { .kind = mask ? ORDER_OUT : ORDER_ANALOG,
+                       .mask = mask,
+                       .value = value,
+                       .index = index,
+                       .amount = volt };
     return (int)soft_output(&s->soft, &o);
 }
 
@@ -320,7 +369,7 @@ void binding_robot_forward(const struct manipulator *m, int64_t n, const double 
     for (int64_t k = 0; k < n; k++) {
         radians(joint[k], q);
         opw_forward(&m->opw, q, &flange);
-        behind(&flange, at, (const double (*)[3])turn, &tip);
+        behind(&flange, at, (const double(*)[3])turn, &tip);
         memset(matrix[k], 0, sizeof matrix[k]);
         matrix[k][3][3] = 1.0;
         for (int i = 0; i < 3; i++) {
@@ -354,7 +403,7 @@ void binding_robot_inverse(const struct manipulator *m, int64_t n, const double 
     tool_matrix(m, true, at, turn);
     for (int64_t k = 0; k < n; k++) {
         radians(near[k], q);
-        const uint32_t there = solve(m, at, (const double (*)[3])turn, matrix[k], q, joint[k]);
+        const uint32_t there = solve(m, at, (const double(*)[3])turn, matrix[k], q, joint[k]);
         for (int b = 0; b < OPW_BRANCHES; b++) {
             for (int i = 0; i < OPW_JOINTS; i++) {
                 joint[k][b][i] = there >> b & 1 ? joint[k][b][i] / DEGREE : (double)NAN;
@@ -377,8 +426,8 @@ void binding_robot_nearest(const struct manipulator *m, int64_t n, const double 
     for (int64_t k = 0; k < n; k++) {
         double found[OPW_JOINTS];
         radians(near[k], q);
-        const uint32_t there = solve(m, at, (const double (*)[3])turn, matrix[k], q, all);
-        branch[k] = opw_nearest(there, (const double (*)[6])all, q, low, high, found);
+        const uint32_t there = solve(m, at, (const double(*)[3])turn, matrix[k], q, all);
+        branch[k] = opw_nearest(there, (const double(*)[6])all, q, low, high, found);
         for (int i = 0; i < OPW_JOINTS; i++) {
             joint[k][i] = branch[k] >= 0 ? found[i] / DEGREE : (double)NAN;
         }
@@ -409,7 +458,7 @@ void binding_robot_pose(int64_t n, const double (*matrix)[4][4], double (*pose)[
             memcpy(turn[i], matrix[k][i], sizeof turn[i]);
             p.at[i] = matrix[k][i][3];
         }
-        quaternion_of_matrix((const double (*)[3])turn, p.turn);
+        quaternion_of_matrix((const double(*)[3])turn, p.turn);
         robot_station_pose(&p, pose[k]);
     }
 }

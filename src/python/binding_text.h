@@ -9,8 +9,8 @@ typedef const char *(*binding_file)(const char *name, int64_t *length);
 
 struct binding_text {
     struct source_text text;
-    binding_file file;              /* or NULL: it calls none */
-    struct source_text called;      /* the latest: */
+    binding_file file;         /* or NULL: it calls none */
+    struct source_text called; /* the latest: */
     char name[FAULT_FILE];
 };
 

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-static const double FRAME = (double)ARM_TICKS / ARM_CLOCK;     /* [s] */
-enum { PLANS, ROOM = 0, BOUNDARY = 0, POINT_TIME = 20000 };    /* task; semaphore; interrupt */
+static const double FRAME = (double)ARM_TICKS / ARM_CLOCK;  /* [s] */
+enum { PLANS, ROOM = 0, BOUNDARY = 0, POINT_TIME = 20000 }; /* task; semaphore; interrupt */
 
 bool arm_start(struct arm *a, const struct mechanism *m, const double place[AXES])
 {
@@ -13,8 +13,8 @@ bool arm_start(struct arm *a, const struct mechanism *m, const double place[AXES
     for (int i = 0; i < ARM_JOINTS; i++) {
         fifo_reset(&a->fifo[i], ARM_DEPTH);
     }
-    return mover_stand(&a->mover, m, place) &&
-           !kernel_start(&a->kernel, &(struct kernel_config){ .tasks = 1 });
+    return mover_stand(&a->mover, m, place)
+           && !kernel_start(&a->kernel, &(struct kernel_config){ .tasks = 1 });
 }
 
 static void make_frame(struct arm *a, const struct mechanism *m)

@@ -13,7 +13,7 @@
 #include "kernel.h"
 #include "mover.h"
 
-enum { ARM_JOINTS = 2, ARM_DEPTH = 8, ARM_CLOCK = 50000000, ARM_TICKS = 100000 };   /* 2 ms */
+enum { ARM_JOINTS = 2, ARM_DEPTH = 8, ARM_CLOCK = 50000000, ARM_TICKS = 100000 }; /* 2 ms */
 
 struct arm {
     struct kernel kernel;
@@ -23,7 +23,7 @@ struct arm {
     struct dda dda;
     struct fifo fifo[ARM_JOINTS];
     int32_t entry[ARM_JOINTS][ARM_DEPTH];
-    bool planned, told;     /* of the task: the time of a point is over; of the interrupt */
+    bool planned, told; /* of the task: the time of a point is over; of the interrupt */
 };
 
 static inline struct mover_beside arm_beside(struct arm *a)

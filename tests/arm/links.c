@@ -16,8 +16,8 @@ static bool joints(const void *geometry, const double place[AXES], double joint[
     }
     const double side = joint[1] < 0.0 ? -1.0 : 1.0;
     joint[1] = side * el_acos(c) / DEGREE;
-    joint[0] = (el_atan2(place[1], place[0]) -
-                el_atan2(side * b * sqrt(1.0 - c * c), a + b * c)) / DEGREE;
+    joint[0] =
+        (el_atan2(place[1], place[0]) - el_atan2(side * b * sqrt(1.0 - c * c), a + b * c)) / DEGREE;
     return true;
 }
 

@@ -5,7 +5,9 @@
 
 #include "mechanism.h"
 
-struct links { double upper, fore; };   /* [mm] */
+struct links {
+    double upper, fore;
+}; /* [mm] */
 
 struct kinematics links_kinematics(void);
 

@@ -8,11 +8,12 @@
 #include "links.h"
 #include "reach.h"
 
-static const double TURN = 6.283185307179586, FRAME = 2e-3, SCALE = 1e4;   /* [s], [pulses/deg] */
-static const struct links LINKS = { 3.0, 2.5 };  /* 30 degrees per millimetre */
-static const double SPEED[ARM_JOINTS] = { 90.0, 150.0 };    /* [deg/s] */
-static struct motion_limits limits = { .feed = 1e6, .rapid = 1.0, .up = { .acc = 200.0 },
-                                       .down = { .acc = 200.0 } };
+static const double TURN = 6.283185307179586, FRAME = 2e-3, SCALE = 1e4; /* [s], [pulses/deg] */
+static const struct links LINKS = { 3.0, 2.5 };          /* 30 degrees per millimetre */
+static const double SPEED[ARM_JOINTS] = { 90.0, 150.0 }; /* [deg/s] */
+static struct motion_limits limits = {
+    .feed = 1e6, .rapid = 1.0, .up = { .acc = 200.0 }, .down = { .acc = 200.0 }
+};
 
 static struct arm arm;
 static struct kinematics kinematics;
@@ -91,9 +92,9 @@ static double draw(void)
         double at[2];
         bool moves = false;
         for (int i = 0; i < ARM_JOINTS; i++) {
-            const double most = SPEED[i] * SCALE * FRAME;   /* [pulses] in a frame */
+            const double most = SPEED[i] * SCALE * FRAME; /* [pulses] in a frame */
             const int32_t frame = arm.dda.command[i];
-            CHECK(abs(frame) <= most + 1.0);                /* both ends are rounded */
+            CHECK(abs(frame) <= most + 1.0); /* both ends are rounded */
             fastest = fmax(fastest, abs(frame) / most);
             moves = moves || frame != 0;
             pulses[i] += frame;
@@ -102,7 +103,7 @@ static double draw(void)
         const double x = (end[0] - start[0]) / c.path.length;
         const double y = (end[1] - start[1]) / c.path.length;
         const double along = (at[0] - start[0]) * x + (at[1] - start[1]) * y;
-        CHECK(fabs((at[0] - start[0]) * y - (at[1] - start[1]) * x) < 2e-5);     /* [mm] */
+        CHECK(fabs((at[0] - start[0]) * y - (at[1] - start[1]) * x) < 2e-5); /* [mm] */
         CHECK(along >= before - 2e-5);
         before = along;
         waiting += moving > 0 && !moves && along < c.path.length - 2e-5;
@@ -130,7 +131,7 @@ static void refusals(void)
 
     path_line(&c.path, right, far);
     CHECK(command_move(&c, &m, &limits, COMMAND_LINE, 0.1, &why) == COMMAND_FAR);
-    path_line(&c.path, near, (double[AXES]){ 0.2, -0.3 });    /* inside of the inner circle */
+    path_line(&c.path, near, (double[AXES]){ 0.2, -0.3 }); /* inside of the inner circle */
     CHECK(command_move(&c, &m, &limits, COMMAND_LINE, 0.1, &why) == COMMAND_FAR);
     path_line(&c.path, near, across);
     CHECK(command_move(&c, &m, &limits, COMMAND_LINE, 0.1, &why) == COMMAND_OK);
@@ -166,7 +167,7 @@ static void drive_ramp(const struct arm *now, const struct mechanism *m, int32_t
     a = *now;
     memcpy(high, a.mover.pulses, AXES * sizeof *high);
     mover_abort(&a.mover, &a.ring);
-    for (bool rests = false; !rests; ) {
+    for (bool rests = false; !rests;) {
         rests = mover_resting(&a.mover, &a.ring);
         mover_advance(&a.mover, &beside, FRAME);
         CHECK(mover_point(&a.mover, &beside, m, FRAME, &p));
@@ -197,7 +198,7 @@ static void ramps(double tolerance)
     }
     for (int n = 0; !mover_resting(&arm.mover, &arm.ring) && n < 5000; n++) {
         struct point p;
-        for (double left = FRAME; left > 0.0 && !mover_resting(&arm.mover, &arm.ring); ) {
+        for (double left = FRAME; left > 0.0 && !mover_resting(&arm.mover, &arm.ring);) {
             left = mover_advance(&arm.mover, &beside, left);
         }
         CHECK(mover_point(&arm.mover, &beside, &m, FRAME, &p));
@@ -210,7 +211,7 @@ static void ramps(double tolerance)
             struct mechanism bounded = m;
             bounded.joint[i].bounded = true;
             bounded.joint[i].low = -1e4;
-            bounded.joint[i].high = (high[i] + 60) / SCALE;     /* within a frame near rest */
+            bounded.joint[i].high = (high[i] + 60) / SCALE; /* within a frame near rest */
             copy = arm;
             CHECK_EQ(reach_beyond(&copy.mover, &aside, &bounded, FRAME), -1);
             bounded.joint[i].high = (high[i] - 60) / SCALE;
@@ -260,7 +261,7 @@ int main(void)
     }
     CHECK(fastest > 0.999);
     refusals();
-    limits.down.acc = 10.0;     /* long ramps, on which joints turn round */
+    limits.down.acc = 10.0; /* long ramps, on which joints turn round */
     for (int n = 0; n < 20; n++) {
         ramps(0.0);
         ramps(0.01);

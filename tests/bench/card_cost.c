@@ -39,10 +39,10 @@ int main(int argc, char **argv)
         return 2;
     }
     int axes = atoi(argv[1]), edges = atoi(argv[3]);
-    int32_t frame[EPCIO_AXES] = {0};
+    int32_t frame[EPCIO_AXES] = { 0 };
     struct epcio card;
     struct epcio_config config = epcio_default_config();
-    struct epcio_host host = {.gain = {0}};
+    struct epcio_host host = { .gain = { 0 } };
     for (int i = 0; i < EPCIO_AXES; i++) {
         config.active[i] = i < axes;
         host.gain[i] = 60;
@@ -50,10 +50,10 @@ int main(int argc, char **argv)
         if (i < axes)
             frame[i] = (int32_t)(atof(argv[2]) * 25e-9 * DIVIDER * (1 << LENGTH) + 0.5);
     }
-    if (epcio_reset(&card, &config) || epcio_set_dda(&card, LENGTH, DIVIDER) ||
-        epcio_set_host(&card, &host))
+    if (epcio_reset(&card, &config) || epcio_set_dda(&card, LENGTH, DIVIDER)
+        || epcio_set_host(&card, &host))
         return 1;
-    struct epcio_lines lines = {.local.power = true};
+    struct epcio_lines lines = { .local.power = true };
     int64_t pulses[EPCIO_AXES], sum = 0;
     int bad = 0;
     double begin = now();

@@ -32,10 +32,10 @@ static struct epcio_vars *card;
 static struct servo_drives_vars *drives;
 static struct ball_screw_axes_vars *machine;
 
-#define CARRY(to, input, from, output)                                                    \
-    do {                                                                                  \
-        _Static_assert(sizeof (to)->input == sizeof (from)->output, "one type, one size"); \
-        memcpy(&(to)->input, &(from)->output, sizeof (to)->input);                        \
+#define CARRY(to, input, from, output) \
+    do { \
+        _Static_assert(sizeof(to)->input == sizeof(from)->output, "one type, one size"); \
+        memcpy(&(to)->input, &(from)->output, sizeof(to)->input); \
     } while (0)
 
 static void carry(void)

@@ -24,24 +24,35 @@ static void rhs(const double *x, const double *u, const double *c, double *dx)
 
 /* Explicit method of s stages: y += h sum b k, error h sum e k. */
 struct explicit_method {
-    int    stages, order;
+    int stages, order;
     double a[7][7], b[7], e[7];
 };
 
-static const struct explicit_method rk4 = {4, 4,
-    {{0}, {0.5}, {0, 0.5}, {0, 0, 1}}, {1 / 6.0, 1 / 3.0, 1 / 3.0, 1 / 6.0}, {0}};
+static const struct explicit_method rk4 = {
+    4, 4, { { 0 }, { 0.5 }, { 0, 0.5 }, { 0, 0, 1 } }, { 1 / 6.0, 1 / 3.0, 1 / 3.0, 1 / 6.0 }, { 0 }
+};
 
-static const struct explicit_method bogacki_shampine = {4, 3,
-    {{0}, {0.5}, {0, 0.75}, {2 / 9.0, 1 / 3.0, 4 / 9.0}}, {2 / 9.0, 1 / 3.0, 4 / 9.0, 0},
-    {2 / 9.0 - 7 / 24.0, 1 / 3.0 - 0.25, 4 / 9.0 - 1 / 3.0, -0.125}};
+static const struct explicit_method bogacki_shampine = {
+    4,
+    3,
+    { { 0 }, { 0.5 }, { 0, 0.75 }, { 2 / 9.0, 1 / 3.0, 4 / 9.0 } },
+    { 2 / 9.0, 1 / 3.0, 4 / 9.0, 0 },
+    { 2 / 9.0 - 7 / 24.0, 1 / 3.0 - 0.25, 4 / 9.0 - 1 / 3.0, -0.125 }
+};
 
-static const struct explicit_method dormand_prince = {7, 5,
-    {{0}, {0.2}, {3 / 40.0, 9 / 40.0}, {44 / 45.0, -56 / 15.0, 32 / 9.0},
-        {19372 / 6561.0, -25360 / 2187.0, 64448 / 6561.0, -212 / 729.0},
-        {9017 / 3168.0, -355 / 33.0, 46732 / 5247.0, 49 / 176.0, -5103 / 18656.0},
-        {35 / 384.0, 0, 500 / 1113.0, 125 / 192.0, -2187 / 6784.0, 11 / 84.0}},
-    {35 / 384.0, 0, 500 / 1113.0, 125 / 192.0, -2187 / 6784.0, 11 / 84.0, 0},
-    {71 / 57600.0, 0, -71 / 16695.0, 71 / 1920.0, -17253 / 339200.0, 22 / 525.0, -1 / 40.0}};
+static const struct explicit_method dormand_prince = {
+    7,
+    5,
+    { { 0 },
+      { 0.2 },
+      { 3 / 40.0, 9 / 40.0 },
+      { 44 / 45.0, -56 / 15.0, 32 / 9.0 },
+      { 19372 / 6561.0, -25360 / 2187.0, 64448 / 6561.0, -212 / 729.0 },
+      { 9017 / 3168.0, -355 / 33.0, 46732 / 5247.0, 49 / 176.0, -5103 / 18656.0 },
+      { 35 / 384.0, 0, 500 / 1113.0, 125 / 192.0, -2187 / 6784.0, 11 / 84.0 } },
+    { 35 / 384.0, 0, 500 / 1113.0, 125 / 192.0, -2187 / 6784.0, 11 / 84.0, 0 },
+    { 71 / 57600.0, 0, -71 / 16695.0, 71 / 1920.0, -17253 / 339200.0, 22 / 525.0, -1 / 40.0 }
+};
 
 static double norm(const double *error, const double *x)
 {
@@ -55,9 +66,9 @@ static double norm(const double *error, const double *x)
 }
 
 static double explicit_step(const struct explicit_method *m, const double *x, const double *u,
-    const double *c, double h, double *y)
+                            const double *c, double h, double *y)
 {
-    double k[7][N], error[N] = {0};
+    double k[7][N], error[N] = { 0 };
     memcpy(y, x, N * sizeof *x);
     for (int s = 0; s < m->stages; s++) {
         double at[N];
@@ -123,17 +134,24 @@ static void solve(const double *a, const int *pivot, double *b)
 
 /* RODAS of Hairer and Wanner: six stages, order 4(3), L-stable, for autonomous equations. */
 static double rodas_step(const double *x, const double *u, const double *p, const double *c,
-    double h, double *y)
+                         double h, double *y)
 {
-    static const double a[6][5] = {{0}, {1.544}, {0.9466785280815826, 0.2557011698983284},
-        {3.314825187068521, 2.896124015972201, 0.9986419139977817},
-        {1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950},
-        {1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950, 1.0}};
-    static const double g[6][5] = {{0}, {-5.6688}, {-2.430093356833875, -0.2063599157091915},
-        {-0.1073529058151375, -9.594562251023355, -20.47028614809616},
-        {7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160},
-        {8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136,
-            -6.058818238834054}};
+    static const double a[6][5] = {
+        { 0 },
+        { 1.544 },
+        { 0.9466785280815826, 0.2557011698983284 },
+        { 3.314825187068521, 2.896124015972201, 0.9986419139977817 },
+        { 1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950 },
+        { 1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950, 1.0 }
+    };
+    static const double g[6][5] = { { 0 },
+                                    { -5.6688 },
+                                    { -2.430093356833875, -0.2063599157091915 },
+                                    { -0.1073529058151375, -9.594562251023355, -20.47028614809616 },
+                                    { 7.496443313967647, -10.24680431464352, -33.99990352819905,
+                                      11.70890893206160 },
+                                    { 8.083246795921522, -7.981132988064893, -31.52159432874371,
+                                      16.31930543123136, -6.058818238834054 } };
     double k[6][N], w[N * N];
     int pivot[N];
     bench_jacobian_calls++;
@@ -169,12 +187,12 @@ static double rodas_step(const double *x, const double *u, const double *p, cons
 }
 
 static double any_step(int method, const double *x, const double *u, const double *p,
-    const double *c, double h, double *y)
+                       const double *c, double h, double *y)
 {
     switch (method) {
-    case 0: return explicit_step(&rk4, x, u, c, h, y);
-    case 1: return explicit_step(&bogacki_shampine, x, u, c, h, y);
-    case 2: return explicit_step(&dormand_prince, x, u, c, h, y);
+    case 0:  return explicit_step(&rk4, x, u, c, h, y);
+    case 1:  return explicit_step(&bogacki_shampine, x, u, c, h, y);
+    case 2:  return explicit_step(&dormand_prince, x, u, c, h, y);
     default: return rodas_step(x, u, p, c, h, y);
     }
 }
@@ -188,9 +206,9 @@ void bench_begin(const double *scales)
 
 /* n > 0: n equal steps per micro step; n = 0: steps by the error. */
 void bench_run(int method, int n, double tolerance, double h, long steps, const double *u,
-    const double *p, double *x, double *shown)
+               const double *p, double *x, double *shown)
 {
-    static const double order[] = {4, 3, 5, 4};
+    static const double order[] = { 4, 3, 5, 4 };
     double c[PLANT_CONSTANTS], y[N];
     plant_constants(p, c);
     for (long k = 0; k < steps; k++) {

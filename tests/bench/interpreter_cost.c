@@ -12,7 +12,7 @@
 #include "interpreter.h"
 #include "machine.h"
 
-enum { BLOCKS = 40000, LONGEST = 512, LINES = 10 * BLOCKS };    /* each of ten lines */
+enum { BLOCKS = 40000, LONGEST = 512, LINES = 10 * BLOCKS }; /* each of ten lines */
 
 static double now(void)
 {
@@ -25,20 +25,19 @@ static double now(void)
 static size_t write_block(char *to, int n)
 {
     const double x = n % 1000 * 0.1234, y = n % 777 * 0.4321, z = n % 10 * 0.25;
-    return (size_t)snprintf(
-        to, LONGEST,
-        "N%d G1 X%.4f Y%.4f Z%.4f F1500\n"
-        "X%.4f Y%.4f\n"
-        "x%.3f y%.3f ( a comment )\n"
-        "G2 X%.4f Y%.4f I2. J0\n"
-        "G3 X%.4f Y%.4f R5.5 ; on the other side\n"
-        "G0 Z5 M8 S12000\n"
-        "X0 Y0 M9\n"
-        "G91 G1 Z-4.5\n"
-        "G90 G64 X%.4f Y%.4f Z%.4f F%d\n"
-        "X-%.4f\n",
-        n, x, y, z, x + 0.5, y - 0.25, x + 0.625, y + 0.125, x + 4.625, y + 0.125, x + 8.0, y,
-        y, x, z, 600 + n % 100, y + 0.5);
+    return (size_t)snprintf(to, LONGEST,
+                            "N%d G1 X%.4f Y%.4f Z%.4f F1500\n"
+                            "X%.4f Y%.4f\n"
+                            "x%.3f y%.3f ( a comment )\n"
+                            "G2 X%.4f Y%.4f I2. J0\n"
+                            "G3 X%.4f Y%.4f R5.5 ; on the other side\n"
+                            "G0 Z5 M8 S12000\n"
+                            "X0 Y0 M9\n"
+                            "G91 G1 Z-4.5\n"
+                            "G90 G64 X%.4f Y%.4f Z%.4f F%d\n"
+                            "X-%.4f\n",
+                            n, x, y, z, x + 0.5, y - 0.25, x + 0.625, y + 0.125, x + 4.625,
+                            y + 0.125, x + 8.0, y, y, x, z, 600 + n % 100, y + 0.5);
 }
 
 /* The first character of the text's next number, or its end. */
@@ -50,15 +49,20 @@ static char *next_number(char *at)
 int main(void)
 {
     static const double origin[INTERPRETER_SYSTEMS][AXES];
-    struct machine machine = {
-        .dda_time = 1e-3, .dda_length = 12, .queue_depth = 64,
-        .feed = 10.0, .max_feed = 1000.0, .acc_time = 0.1, .dec_time = 0.1
-    };
+    struct machine machine = { .dda_time = 1e-3,
+                               .dda_length = 12,
+                               .queue_depth = 64,
+                               .feed = 10.0,
+                               .max_feed = 1000.0,
+                               .acc_time = 0.1,
+                               .dec_time = 0.1 };
     for (int i = 0; i < AXES; i++) {
-        machine.axis[i] = (struct machine_axis){
-            .used = i < 3, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
-            .p_gain = 60
-        };
+        machine.axis[i] = (struct machine_axis){ .used = i < 3,
+                                                 .pitch = 10.0,
+                                                 .gear_ratio = 1.0,
+                                                 .ppr = 10000,
+                                                 .rpm = 3000.0,
+                                                 .p_gain = 60 };
     }
     char *all = malloc((size_t)BLOCKS * LONGEST), *end = all;
     if (!all) {
@@ -70,7 +74,8 @@ int main(void)
 
     struct source_text text = { all, end - all };
     const struct source source = source_of(&text);
-    const struct program program = { .source = &source, .machine = machine_mechanism(&machine),
+    const struct program program = { .source = &source,
+                                     .machine = machine_mechanism(&machine),
                                      .limits = machine_limits(&machine) };
     struct interpreter in;
     struct fault_report r;

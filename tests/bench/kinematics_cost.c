@@ -14,8 +14,15 @@
 
 enum { POSES = 20000, LINES = 2000 };
 
-static const struct opw IRB = { 0.150, -0.115, 0.0, 0.445, 0.700, 0.795, 0.085,
-                                { 0, 0, -1.5707963267948966 }, { 1, 1, 1, 1, 1, 1 } };
+static const struct opw IRB = { 0.150,
+                                -0.115,
+                                0.0,
+                                0.445,
+                                0.700,
+                                0.795,
+                                0.085,
+                                { 0, 0, -1.5707963267948966 },
+                                { 1, 1, 1, 1, 1, 1 } };
 static struct robot robot;
 static struct opw_pose pose[POSES];
 static double joint[POSES][OPW_JOINTS];
@@ -58,15 +65,22 @@ int main(void)
     }
     const double inverse = (now() - start) / POSES;
 
-    struct robot_config c = { .arm.opw = IRB, .arm.tool = pose_none(), .feed = 1e3, .acc = 4e3,
-                              .spin = 3.0, .smooth = 0.05, .cycle = 1e-4, .slot = 5e-6,
+    struct robot_config c = { .arm.opw = IRB,
+                              .arm.tool = pose_none(),
+                              .feed = 1e3,
+                              .acc = 4e3,
+                              .spin = 3.0,
+                              .smooth = 0.05,
+                              .cycle = 1e-4,
+                              .slot = 5e-6,
                               .slot_pulses = 49.0 };
     const double bent[OPW_JOINTS] = { 0.1, 0.2, 0.1, 0.1, 1.0, 0.3 };
     for (int i = 0; i < OPW_JOINTS; i++) {
         c.arm.joint[i] = (struct manipulator_joint){ -6.0, 6.0, 3.0, 20.0 };
         c.scale[i] = 4e4;
     }
-    struct robot_move move = { .kind = ROBOT_LINE, .feed = 50.0,
+    struct robot_move move = { .kind = ROBOT_LINE,
+                               .feed = 50.0,
                                .target.branch = ROBOT_ANY_BRANCH };
     struct robot_refusal why;
     double plan = 0.0;

@@ -16,10 +16,11 @@
 
 #include "task.h"
 
-enum { MOST = 100000 };     /* segments */
+enum { MOST = 100000 }; /* segments */
 
-static const double STEP = 0.1;     /* [mm] */
-static const double FEED = 100.0;   /* [mm/s] */
+static const double STEP = 0.1; /* [mm] */
+static const double FEED
+= 100.0; /* [mm/s] */
 
 static double now(void)
 {
@@ -31,15 +32,23 @@ static double now(void)
 static struct machine machine_at(double dda_time, char ramps)
 {
     struct machine m = {
-        .dda_time = dda_time, .dda_length = 15, .queue_depth = 1,
-        .feed = FEED, .max_feed = 1000.0, .acc_time = 0.05, .dec_time = 0.05,
-        .acc_type = ramps, .dec_type = ramps
+        .dda_time = dda_time,
+        .dda_length = 15,
+        .queue_depth = 1,
+        .feed = FEED,
+        .max_feed = 1000.0,
+        .acc_time = 0.05,
+        .dec_time = 0.05,
+        .acc_type = ramps,
+        .dec_type = ramps
     };
     for (int i = 0; i < AXES; i++) {
-        m.axis[i] = (struct machine_axis){
-            .used = i < 3, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 1000, .rpm = 6000.0,
-            .p_gain = 60
-        };
+        m.axis[i] = (struct machine_axis){ .used = i < 3,
+                                           .pitch = 10.0,
+                                           .gear_ratio = 1.0,
+                                           .ppr = 1000,
+                                           .rpm = 6000.0,
+                                           .p_gain = 60 };
     }
     return m;
 }
@@ -81,8 +90,8 @@ int main(int argc, char **argv)
         machine.axis[i].acc = 2000.0;
         machine.axis[i].jerk = atof(argv[4]);
     }
-    if (MCC_init_motion(&m, &machine) || mcc_set_tolerance(&m, 0.01) ||
-        mcc_set_curve(&m, argc > 4, 0.01)) {
+    if (MCC_init_motion(&m, &machine) || mcc_set_tolerance(&m, 0.01)
+        || mcc_set_curve(&m, argc > 4, 0.01)) {
         return 1;
     }
     make(walk, segments);

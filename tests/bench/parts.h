@@ -18,10 +18,10 @@
 #include "undefine.h"
 
 /* See part.c. Times in ns. */
-#define DECLARE(part)                     \
-    void *part##_open(void);              \
-    void part##_start(void);              \
-    void part##_step(int64_t, int64_t);   \
+#define DECLARE(part) \
+    void *part##_open(void); \
+    void part##_start(void); \
+    void part##_step(int64_t, int64_t); \
     void part##_end(void);
 DECLARE(mcc)
 DECLARE(epcio)

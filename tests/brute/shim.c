@@ -10,26 +10,16 @@
 static int64_t plain(enum epcio_status s)
 {
     switch (s) {
-    case EPCIO_OK:
-        return TICK_OK;
-    case EPCIO_FIFO_FULL:
-        return TICK_FIFO_FULL;
-    case EPCIO_FIFO_EMPTY:
-        return TICK_FIFO_EMPTY;
-    case EPCIO_COMMAND_TOO_LARGE:
-        return TICK_COMMAND_TOO_LARGE;
-    case EPCIO_AXIS_UNUSED:
-        return TICK_AXIS_UNUSED;
-    case EPCIO_DROPPED:
-        return TICK_DROPPED;
-    case EPCIO_STOPPED:
-        return TICK_STOPPED;
-    case EPCIO_STOCK_TOO_LARGE:
-        return TICK_STOCK_TOO_LARGE;
-    case EPCIO_BUS_FULL:
-        return TICK_BUS_FULL;
-    default:
-        return 1000 + (int64_t)s;
+    case EPCIO_OK:                return TICK_OK;
+    case EPCIO_FIFO_FULL:         return TICK_FIFO_FULL;
+    case EPCIO_FIFO_EMPTY:        return TICK_FIFO_EMPTY;
+    case EPCIO_COMMAND_TOO_LARGE: return TICK_COMMAND_TOO_LARGE;
+    case EPCIO_AXIS_UNUSED:       return TICK_AXIS_UNUSED;
+    case EPCIO_DROPPED:           return TICK_DROPPED;
+    case EPCIO_STOPPED:           return TICK_STOPPED;
+    case EPCIO_STOCK_TOO_LARGE:   return TICK_STOCK_TOO_LARGE;
+    case EPCIO_BUS_FULL:          return TICK_BUS_FULL;
+    default:                      return 1000 + (int64_t)s;
     }
 }
 
@@ -45,17 +35,23 @@ const char *view_layout(void)
 static struct encoder_config wired_as(const int64_t *row)
 {
     return (struct encoder_config){
-        .format = ENCODER_AB, .rate = (int32_t)row[0], .wiring = (uint32_t)row[1],
-        .filter = (int32_t)row[2], .index_lines = (int32_t)row[3],
+        .format = ENCODER_AB,
+        .rate = (int32_t)row[0],
+        .wiring = (uint32_t)row[1],
+        .filter = (int32_t)row[2],
+        .index_lines = (int32_t)row[3],
     };
 }
 
 void card_sample(void *card, int64_t clock, const int64_t *phase, const int64_t *inputs)
 {
     struct epcio_lines lines = {
-        .local = {.ldi = (uint32_t)inputs[0], .dfi = (uint32_t)inputs[1],
-                  .up = (uint32_t)inputs[2], .down = (uint32_t)inputs[3],
-                  .stop = inputs[4] != 0, .power = true},
+        .local = { .ldi = (uint32_t)inputs[0],
+                   .dfi = (uint32_t)inputs[1],
+                   .up = (uint32_t)inputs[2],
+                   .down = (uint32_t)inputs[3],
+                   .stop = inputs[4] != 0,
+                   .power = true },
     };
     int bad = 0;
     for (int i = 0; i < TICK_ENCODERS; i++)
@@ -114,7 +110,7 @@ int64_t card_set_minimum(void *card, int64_t minimum)
 
 int64_t card_post(void *card, int64_t seq, int64_t clock, int64_t count, const int64_t *frames)
 {
-    struct bus_write w = {.seq = (int32_t)seq, .clock = clock, .count = (int32_t)count};
+    struct bus_write w = { .seq = (int32_t)seq, .clock = clock, .count = (int32_t)count };
     for (int k = 0; k < (int)count; k++)
         for (int i = 0; i < TICK_AXES; i++)
             w.frame[k][i] = (int32_t)frames[TICK_AXES * k + i];
@@ -173,7 +169,7 @@ int64_t card_set_latch(void *card, int64_t encoder, int64_t source, int64_t keep
 
 int64_t card_set_loops(void *card, int64_t loops)
 {
-    struct epcio_host host = {.command = ((const struct epcio *)card)->host.command};
+    struct epcio_host host = { .command = ((const struct epcio *)card)->host.command };
     for (int i = 0; i < TICK_LOOPS; i++)
         host.loop_on[i] = (loops >> i & 1) != 0;
     return plain(epcio_set_host(card, &host));
@@ -193,8 +189,9 @@ int64_t card_set_command(void *card, int64_t command)
 
 int64_t card_set_local(void *card, const int64_t *set)
 {
-    struct local_io_control c = {.dedicated = (uint32_t)set[15], .stop_enable = set[16] != 0,
-                                 .gate = set[17] != 0};
+    struct local_io_control c = { .dedicated = (uint32_t)set[15],
+                                  .stop_enable = set[16] != 0,
+                                  .gate = set[17] != 0 };
     for (int i = 0; i < LOCAL_IO_LDIS; i++)
         c.ldi_edge[i] = (enum local_io_edge)set[i];
     for (int i = 0; i < LOCAL_IO_DFIS; i++)
@@ -250,24 +247,24 @@ int64_t card_reset_module(void *card, int64_t module)
 
 static enum epcio_status bad_dda(struct epcio *card, int k, int *want)
 {
-    static const int WANT[] = {EPCIO_BAD_LENGTH, EPCIO_BAD_LENGTH, EPCIO_BAD_DIVIDER,
-                               EPCIO_BAD_DIVIDER, EPCIO_BAD_MINIMUM, EPCIO_BAD_MINIMUM,
-                               EPCIO_BAD_COUNT, EPCIO_BAD_COUNT, EPCIO_BAD_AXIS, EPCIO_BAD_AXIS,
-                               EPCIO_BAD_COUNT, EPCIO_BAD_AXIS};
-    struct bus_write w = {.clock = card->clock, .count = k == 6 ? -1 : BUS_FRAMES + 1};
+    static const int WANT[] = { EPCIO_BAD_LENGTH,  EPCIO_BAD_LENGTH,  EPCIO_BAD_DIVIDER,
+                                EPCIO_BAD_DIVIDER, EPCIO_BAD_MINIMUM, EPCIO_BAD_MINIMUM,
+                                EPCIO_BAD_COUNT,   EPCIO_BAD_COUNT,   EPCIO_BAD_AXIS,
+                                EPCIO_BAD_AXIS,    EPCIO_BAD_COUNT,   EPCIO_BAD_AXIS };
+    struct bus_write w = { .clock = card->clock, .count = k == 6 ? -1 : BUS_FRAMES + 1 };
     int32_t out;
     *want = WANT[k];
     switch (k) {
-    case 0: return epcio_set_dda(card, EPCIO_LENGTH_MIN - 1, 1);
-    case 1: return epcio_set_dda(card, EPCIO_LENGTH_MAX + 1, 1);
-    case 2: return epcio_set_dda(card, 10, 0);
-    case 3: return epcio_set_dda(card, 10, EPCIO_DIVIDER_MAX + 1);
-    case 4: return epcio_set_minimum(card, -1);
-    case 5: return epcio_set_minimum(card, EPCIO_FIFO_DEPTH);
-    case 6: return epcio_post(card, &w);
-    case 7: return epcio_post(card, &w);
-    case 8: return epcio_erase_last(card, EPCIO_AXES, 1, &out);
-    case 9: return epcio_erase_last(card, -1, 1, &out);
+    case 0:  return epcio_set_dda(card, EPCIO_LENGTH_MIN - 1, 1);
+    case 1:  return epcio_set_dda(card, EPCIO_LENGTH_MAX + 1, 1);
+    case 2:  return epcio_set_dda(card, 10, 0);
+    case 3:  return epcio_set_dda(card, 10, EPCIO_DIVIDER_MAX + 1);
+    case 4:  return epcio_set_minimum(card, -1);
+    case 5:  return epcio_set_minimum(card, EPCIO_FIFO_DEPTH);
+    case 6:  return epcio_post(card, &w);
+    case 7:  return epcio_post(card, &w);
+    case 8:  return epcio_erase_last(card, EPCIO_AXES, 1, &out);
+    case 9:  return epcio_erase_last(card, -1, 1, &out);
     case 10: return epcio_erase_last(card, 0, -1, &out);
     default: return epcio_shift_out(card, EPCIO_AXES, &out);
     }
@@ -275,25 +272,31 @@ static enum epcio_status bad_dda(struct epcio *card, int k, int *want)
 
 static enum epcio_status bad_encoder(struct epcio *card, int k, int *want)
 {
-    static const int WANT[] = {
-        EPCIO_ENCODER + ENCODER_BAD_FORMAT, EPCIO_ENCODER + ENCODER_BAD_RATE,
-        EPCIO_ENCODER + ENCODER_BAD_WIRING, EPCIO_ENCODER + ENCODER_BAD_FILTER,
-        EPCIO_ENCODER + ENCODER_BAD_FILTER, EPCIO_ENCODER + ENCODER_BAD_INDEX,
-        EPCIO_BAD_AXIS, EPCIO_BAD_MASK, EPCIO_BAD_AXIS, EPCIO_BAD_AXIS, EPCIO_BAD_MASK,
-        EPCIO_BAD_MASK};
-    struct encoder_config c = {ENCODER_AB, 4, 0, 0, 4};
+    static const int WANT[] = { EPCIO_ENCODER + ENCODER_BAD_FORMAT,
+                                EPCIO_ENCODER + ENCODER_BAD_RATE,
+                                EPCIO_ENCODER + ENCODER_BAD_WIRING,
+                                EPCIO_ENCODER + ENCODER_BAD_FILTER,
+                                EPCIO_ENCODER + ENCODER_BAD_FILTER,
+                                EPCIO_ENCODER + ENCODER_BAD_INDEX,
+                                EPCIO_BAD_AXIS,
+                                EPCIO_BAD_MASK,
+                                EPCIO_BAD_AXIS,
+                                EPCIO_BAD_AXIS,
+                                EPCIO_BAD_MASK,
+                                EPCIO_BAD_MASK };
+    struct encoder_config c = { ENCODER_AB, 4, 0, 0, 4 };
     *want = WANT[k];
     switch (k) {
-    case 0: c.format = (enum encoder_format)4; break;
-    case 1: c.rate = 3; break;
-    case 2: c.wiring = 16; break;
-    case 3: c.filter = -1; break;
-    case 4: c.filter = ENCODER_FILTER_MAX + 1; break;
-    case 5: c.index_lines = 0; break;
-    case 6: return epcio_set_encoder(card, EPCIO_ENCODERS, &c);
-    case 7: return epcio_clear_encoders(card, 1u << EPCIO_ENCODERS);
-    case 8: return epcio_set_compare(card, -1, true, 1);
-    case 9: return epcio_set_latch(card, EPCIO_ENCODERS, 1, false);
+    case 0:  c.format = (enum encoder_format)4; break;
+    case 1:  c.rate = 3; break;
+    case 2:  c.wiring = 16; break;
+    case 3:  c.filter = -1; break;
+    case 4:  c.filter = ENCODER_FILTER_MAX + 1; break;
+    case 5:  c.index_lines = 0; break;
+    case 6:  return epcio_set_encoder(card, EPCIO_ENCODERS, &c);
+    case 7:  return epcio_clear_encoders(card, 1u << EPCIO_ENCODERS);
+    case 8:  return epcio_set_compare(card, -1, true, 1);
+    case 9:  return epcio_set_latch(card, EPCIO_ENCODERS, 1, false);
     case 10: return epcio_set_latch(card, 0, 1u << LATCH_SOURCES, false);
     default: return epcio_clear_loops(card, 1u << EPCIO_LOOPS);
     }
@@ -302,26 +305,33 @@ static enum epcio_status bad_encoder(struct epcio *card, int k, int *want)
 
 static enum epcio_status bad_io(struct epcio *card, int k, int *want)
 {
-    static const int WANT[] = {
-        EPCIO_LOCAL_IO + LOCAL_IO_BAD_EDGE, EPCIO_LOCAL_IO + LOCAL_IO_BAD_DEDICATED,
-        EPCIO_TIMER + TIMER_BAD_PERIOD, EPCIO_TIMER + TIMER_BAD_PERIOD,
-        EPCIO_TIMER + TIMER_BAD_VALUE, EPCIO_TIMER + TIMER_BAD_VALUE,
-        EPCIO_TIMER + TIMER_BAD_RESET, EPCIO_BAD_MODULE, EPCIO_BAD_MODULE, EPCIO_BAD_REGISTER,
-        EPCIO_BAD_VALUE, EPCIO_BAD_GAIN, EPCIO_BAD_VOLTS};
+    static const int WANT[] = { EPCIO_LOCAL_IO + LOCAL_IO_BAD_EDGE,
+                                EPCIO_LOCAL_IO + LOCAL_IO_BAD_DEDICATED,
+                                EPCIO_TIMER + TIMER_BAD_PERIOD,
+                                EPCIO_TIMER + TIMER_BAD_PERIOD,
+                                EPCIO_TIMER + TIMER_BAD_VALUE,
+                                EPCIO_TIMER + TIMER_BAD_VALUE,
+                                EPCIO_TIMER + TIMER_BAD_RESET,
+                                EPCIO_BAD_MODULE,
+                                EPCIO_BAD_MODULE,
+                                EPCIO_BAD_REGISTER,
+                                EPCIO_BAD_VALUE,
+                                EPCIO_BAD_GAIN,
+                                EPCIO_BAD_VOLTS };
     struct local_io_control c = card->local_control;
     struct epcio_host host = card->host;
     *want = WANT[k];
     switch (k) {
-    case 0: c.dfi_edge[6] = (enum local_io_edge)3; break;
-    case 1: c.dedicated = 1u << LOCAL_IO_DFIS; break;
-    case 2: return epcio_set_timer(card, true, 0);
-    case 3: return epcio_set_timer(card, false, TIMER_PERIOD_MAX + 1);
-    case 4: return epcio_set_watchdog(card, true, 0, 1);
-    case 5: return epcio_set_watchdog(card, false, WATCHDOG_VALUE_MAX + 1, 1);
-    case 6: return epcio_set_watchdog(card, true, 1, 0);
-    case 7: return epcio_reset_module(card, (enum epcio_module)0);
-    case 8: return epcio_reset_module(card, (enum epcio_module)(EPCIO_RESET_ALL + 1));
-    case 9: return epcio_write(card, 0x7FF, 1.0);
+    case 0:  c.dfi_edge[6] = (enum local_io_edge)3; break;
+    case 1:  c.dedicated = 1u << LOCAL_IO_DFIS; break;
+    case 2:  return epcio_set_timer(card, true, 0);
+    case 3:  return epcio_set_timer(card, false, TIMER_PERIOD_MAX + 1);
+    case 4:  return epcio_set_watchdog(card, true, 0, 1);
+    case 5:  return epcio_set_watchdog(card, false, WATCHDOG_VALUE_MAX + 1, 1);
+    case 6:  return epcio_set_watchdog(card, true, 1, 0);
+    case 7:  return epcio_reset_module(card, (enum epcio_module)0);
+    case 8:  return epcio_reset_module(card, (enum epcio_module)(EPCIO_RESET_ALL + 1));
+    case 9:  return epcio_write(card, 0x7FF, 1.0);
     case 10: return epcio_write(card, REG_TIMER_PERIOD, NAN);
     case 11: host.gain[5] = PLOOP_GAIN_MAX + 1; return epcio_set_host(card, &host);
     case 12: host.volts[7] = INFINITY; return epcio_set_host(card, &host);

@@ -129,7 +129,7 @@ int64_t tick_clear_loops(void *card, int64_t loops)
     struct tick *m = card;
     for (int i = 0; i < TICK_LOOPS; i++)
         if (loops >> i & 1)
-            m->loop[i] = (struct loop){.wanted = m->loop[i].wanted};
+            m->loop[i] = (struct loop){ .wanted = m->loop[i].wanted };
     return TICK_OK;
 }
 
@@ -199,7 +199,7 @@ void tick_free(void *card)
 
 static void reset_local(struct tick *m)
 {
-    static const int64_t RESET[LDIS + DFIS + 3] = {[LDIS + DFIS + 2] = 1};
+    static const int64_t RESET[LDIS + DFIS + 3] = { [LDIS + DFIS + 2] = 1 };
     tick_set_local(m, RESET);
     tick_set_timer(m, 0, 1);
     tick_set_watchdog(m, 0, 1, 1);
@@ -209,7 +209,7 @@ int64_t tick_reset_module(void *card, int64_t module)
 {
     enum { DDA = 1, ENC = 2, LIO = 6, PCL = 7, PERI = 9, ALL = 10 };
     struct tick *m = card;
-    if (module == ALL) {        /* first, so that emptying the FIFOs pulls nothing */
+    if (module == ALL) { /* first, so that emptying the FIFOs pulls nothing */
         memset(m->mask, 0, sizeof m->mask);
         m->line = false;
     }
@@ -235,7 +235,7 @@ int64_t tick_reset_module(void *card, int64_t module)
 
 void tick_fired(const void *card, int64_t *fired)
 {
-    memcpy(fired, ((const struct tick *)card)->fired, sizeof ((const struct tick *)card)->fired);
+    memcpy(fired, ((const struct tick *)card)->fired, sizeof((const struct tick *)card)->fired);
 }
 
 void tick_emptied(const void *card, int64_t *pulses)

@@ -17,13 +17,13 @@ static int64_t rest(int64_t a, int64_t b)
 static struct pins pins_at(const struct counter *e, int64_t num, int64_t den)
 {
     int64_t line = den * TICK_UNIT, p = rest(num, line);
-    struct pins pin = {p < line / 2, p >= line / 4 && p < line * 3 / 4,
-                       rest(num, line * e->index_lines) < line / 4};
+    struct pins pin = { p < line / 2, p >= line / 4 && p < line * 3 / 4,
+                        rest(num, line * e->index_lines) < line / 4 };
     pin.a = pin.a != ((e->wiring & 1) != 0);
     pin.b = pin.b != ((e->wiring & 2) != 0);
     pin.c = pin.c != ((e->wiring & 8) != 0);
     if (e->wiring & 4)
-        return (struct pins){pin.b, pin.a, pin.c};
+        return (struct pins){ pin.b, pin.a, pin.c };
     return pin;
 }
 
@@ -62,15 +62,15 @@ static void compare(struct counter *e, int64_t clock)
 
 static void look(struct counter *e, struct pins pin, int64_t clock)
 {
-    const bool pins_before[2] = {e->a.looks & 1, e->b.looks & 1}, pins[2] = {pin.a, pin.b};
-    const bool before[2] = {e->a.level, e->b.level};
-    const bool now[2] = {pass(&e->a, pin.a, e->filter), pass(&e->b, pin.b, e->filter)};
+    const bool pins_before[2] = { e->a.looks & 1, e->b.looks & 1 }, pins[2] = { pin.a, pin.b };
+    const bool before[2] = { e->a.level, e->b.level };
+    const bool now[2] = { pass(&e->a, pin.a, e->filter), pass(&e->b, pin.b, e->filter) };
     bool index_before = e->c.level, index = pass(&e->c, pin.c, e->filter);
     int edge = decode(4, pins_before, pins);
     e->count += decode(e->rate, before, now);
     compare(e, clock);
     e->behind += edge - decode(4, before, now);
-    if (edge != 0 && llabs(e->behind) > 2) {    /* at most one of A and one of B can wait */
+    if (edge != 0 && llabs(e->behind) > 2) { /* at most one of A and one of B can wait */
         e->behind += e->behind > 0 ? -4 : 4;
         e->too_fast = true;
     }
@@ -88,9 +88,9 @@ static void look(struct counter *e, struct pins pin, int64_t clock)
 static void settle(struct counter *e)
 {
     struct pins pin = pins_at(e, e->to, 1);
-    e->a = (struct line){pin.a, pin.a ? UINT64_MAX : 0};
-    e->b = (struct line){pin.b, pin.b ? UINT64_MAX : 0};
-    e->c = (struct line){pin.c, pin.c ? UINT64_MAX : 0};
+    e->a = (struct line){ pin.a, pin.a ? UINT64_MAX : 0 };
+    e->b = (struct line){ pin.b, pin.b ? UINT64_MAX : 0 };
+    e->c = (struct line){ pin.c, pin.c ? UINT64_MAX : 0 };
     e->behind = 0;
 }
 

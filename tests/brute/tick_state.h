@@ -14,9 +14,9 @@ enum { LDIS = 8, DFIS = 7 };
 enum { RISE, FALL, BOTH };
 
 struct queue {
-    int64_t command[TICK_DEPTH];    /* oldest first */
+    int64_t command[TICK_DEPTH]; /* oldest first */
     int stock;
-    bool high;                      /* stock > minimum at the last look */
+    bool high; /* stock > minimum at the last look */
 };
 
 struct transaction {
@@ -25,29 +25,29 @@ struct transaction {
 };
 
 struct line {
-    bool level;         /* behind the filter */
-    uint64_t looks;     /* shift register of the pin, the latest look in bit 0 */
+    bool level;     /* behind the filter */
+    uint64_t looks; /* shift register of the pin, the latest look in bit 0 */
 };
 
 struct counter {
-    bool wired;         /* its axis is active */
+    bool wired; /* its axis is active */
     int64_t rate, wiring, filter, index_lines;
-    int64_t from, to;   /* [1/64 line] at the latest two instants */
+    int64_t from, to; /* [1/64 line] at the latest two instants */
     struct line a, b, c;
     int64_t count;
-    int64_t behind;     /* [edges] at the pins less those behind the filter */
+    int64_t behind; /* [edges] at the pins less those behind the filter */
     bool too_fast;
     int64_t index_seen, index_clock, index_count;
     bool compare_on, reached;
     int64_t compare, compare_clock;
-    bool index_now;                         /* at this clock */
-    int64_t index_first;                    /* [clock] since the latest instant, -1 if none */
-    bool met;                               /* compare value since then */
+    bool index_now;      /* at this clock */
+    int64_t index_first; /* [clock] since the latest instant, -1 if none */
+    bool met;            /* compare value since then */
 };
 
 struct latched {
     int64_t source, seen, value, clock;
-    bool keep_last, armed, hit;             /* hit: since the latest instant */
+    bool keep_last, armed, hit; /* hit: since the latest instant */
 };
 
 struct loop {
@@ -60,7 +60,7 @@ struct tick {
     bool active[TICK_AXES];
     bool run;
     int64_t length, divider, next_length, next_divider;
-    int64_t part, ticks;                    /* clocks of this tick, ticks of this DDA time */
+    int64_t part, ticks; /* clocks of this tick, ticks of this DDA time */
     int64_t command[TICK_AXES], accumulator[TICK_AXES];
     int64_t pulses[TICK_AXES], before[TICK_AXES];
     struct queue fifo[TICK_AXES];
@@ -72,7 +72,7 @@ struct tick {
     struct counter encoder[TICK_ENCODERS];
     struct latched latch[TICK_ENCODERS];
     struct loop loop[TICK_LOOPS];
-    int64_t told;                           /* command of the seventh */
+    int64_t told; /* command of the seventh */
     int64_t limit;
     int64_t edge[LDIS + DFIS], dedicated;
     bool stop_enable, gate, stop;

@@ -34,14 +34,14 @@ static void count(double y)
 {
     uint64_t bits;
     memcpy(&bits, &y, sizeof bits);
-    bits = y != y ? 1 : bits;           /* the sign of a NaN is free */
+    bits = y != y ? 1 : bits; /* the sign of a NaN is free */
     sum = (sum ^ bits) * 1099511628211u;
 }
 
 int main(void)
 {
-    double (*const one[])(double) = { el_sin, el_cos, el_tan, el_asin, el_acos, el_atan, el_exp,
-                                      el_expm1, el_sinh, el_cosh, el_tanh, el_log, el_cbrt };
+    double (*const one[])(double) = { el_sin,   el_cos,  el_tan,  el_asin, el_acos, el_atan, el_exp,
+                                      el_expm1, el_sinh, el_cosh, el_tanh, el_log,  el_cbrt };
     double (*const two[])(double, double) = { el_atan2, el_pow, el_hypot };
     for (int f = 0; f < 16; f++) {
         sum = 14695981039346656037u;

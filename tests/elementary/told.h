@@ -2,7 +2,7 @@
  * kept for a test to read. With ONLY_SLOW no quick way is taken, else every one is. */
 #include "double_double.h"
 
-extern double told[3];      /* h, l, bound */
+extern double told[3]; /* h, l, bound */
 
 static inline bool told_settled(double h, double l, double error, double *y)
 {

@@ -3,12 +3,30 @@
 
 #include "fmi2Functions.h"
 
-const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-const char *fmi2GetVersion(void) { return "2.0"; }
-void fmi2FreeInstance(fmi2Component c) { free(c); }
-fmi2Status fmi2EnterInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
-fmi2Status fmi2Terminate(fmi2Component c) { return c ? fmi2OK : fmi2Error; }
+const char *fmi2GetTypesPlatform(void)
+{
+    return fmi2TypesPlatform;
+}
+const char *fmi2GetVersion(void)
+{
+    return "2.0";
+}
+void fmi2FreeInstance(fmi2Component c)
+{
+    free(c);
+}
+fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+{
+    return c ? fmi2OK : fmi2Error;
+}
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    return c ? fmi2OK : fmi2Error;
+}
+fmi2Status fmi2Terminate(fmi2Component c)
+{
+    return c ? fmi2OK : fmi2Error;
+}
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String some[])
 {

@@ -28,10 +28,14 @@ enum { PATIENCE = 60 /* [s] of processor time for an input */ };
 /* ASan calls this before it ends the program; absent without it. */
 __attribute__((weak)) void __sanitizer_set_death_callback(void (*call)(void));
 
-struct input { uint8_t *data; size_t size; char *name; }; /* a name: it is in the folder */
+struct input {
+    uint8_t *data;
+    size_t size;
+    char *name;
+}; /* a name: it is in the folder */
 static struct input corpus[FILES];
 static int files;
-static const char *folder;              /* NULL: nothing is kept */
+static const char *folder; /* NULL: nothing is kept */
 static uint64_t seed;
 static const struct input *under_way;
 
@@ -270,6 +274,7 @@ int main(int argc, char **argv)
         run_mutation(i++);
     }
     printf("%d inputs of the corpus and %lld mutations of them hold (seed %" PRIu64 "), "
-           "%d more kept\n", loaded, i, seed, files - loaded);
+           "%d more kept\n",
+           loaded, i, seed, files - loaded);
     return 0;
 }

@@ -10,15 +10,22 @@
 /* Short ramps, so that an input comes far in few points; W is not used. */
 static inline struct machine fuzz_machine(void)
 {
-    struct machine m = {
-        .dda_time = 1e-3, .dda_length = 12, .queue_depth = 8, .feed = 50.0, .max_feed = 1000.0,
-        .acc_time = 0.01, .dec_time = 0.02
-    };
+    struct machine m = { .dda_time = 1e-3,
+                         .dda_length = 12,
+                         .queue_depth = 8,
+                         .feed = 50.0,
+                         .max_feed = 1000.0,
+                         .acc_time = 0.01,
+                         .dec_time = 0.02 };
     for (int i = 0; i < AXES; i++) {
-        m.axis[i] = (struct machine_axis){
-            .used = i < 5, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
-            .p_gain = 60, .high_limit = 100.0, .low_limit = -50.0
-        };
+        m.axis[i] = (struct machine_axis){ .used = i < 5,
+                                           .pitch = 10.0,
+                                           .gear_ratio = 1.0,
+                                           .ppr = 10000,
+                                           .rpm = 3000.0,
+                                           .p_gain = 60,
+                                           .high_limit = 100.0,
+                                           .low_limit = -50.0 };
     }
     return m;
 }

@@ -10,9 +10,9 @@ const int fuzz_count = 10000;
 
 enum { CALLS = 200, REST_POINTS = 20000 };
 
-static struct mcc m, before;    /* 1.4 MB each: not on the stack */
-static int64_t sum[AXES];       /* [pulses] of all frames since the start */
-static double slowest;          /* [s] longest deceleration time so far */
+static struct mcc m, before; /* 1.4 MB each: not on the stack */
+static int64_t sum[AXES];    /* [pulses] of all frames since the start */
+static double slowest;       /* [s] longest deceleration time so far */
 
 /* Everything but the shape and the pace of curves, most of the bytes: nothing here turns curves on,
  * so they are zeros all the time, and a comparison of the whole would tell. */
@@ -36,10 +36,10 @@ static uint8_t byte(struct bytes *b)
 /* A number: mostly a plain one, at times one that no call should take. */
 static double number(struct bytes *b)
 {
-    static const double odd[] = {
-        0.0, -0.0, NAN, INFINITY, -INFINITY, 1e308, -1e308, 5e-324, 1e-9, 2147.4836475, -1e6, 1e6,
-        100.0, 200.0, 200.00000000000003, 0.1
-    };
+    static const double odd[] = { 0.0,   -0.0,   NAN,    INFINITY, -INFINITY,
+                                  1e308, -1e308, 5e-324, 1e-9,     2147.4836475,
+                                  -1e6,  1e6,    100.0,  200.0,    200.00000000000003,
+                                  0.1 };
     const uint8_t low = byte(b), high = byte(b);
     const int16_t whole = (int16_t)(low | high << 8);
     return (whole & 0xf) == 0xf ? odd[(whole >> 4) & 0xf] : whole / 256.0;
@@ -52,7 +52,10 @@ static int32_t integer(struct bytes *b)
     return i < 9 ? odd[i] : i * 16;
 }
 
-struct six { double x[AXES]; int32_t n[AXES]; };
+struct six {
+    double x[AXES];
+    int32_t n[AXES];
+};
 
 static struct six six(struct bytes *b)
 {
@@ -66,39 +69,34 @@ static struct six six(struct bytes *b)
 
 /* Calls by the kind of their arguments. */
 static int (*const none[])(struct mcc *) = {
-    MCC_set_abs, MCC_set_inc, MCC_enable_quit, MCC_disable_quit, MCC_motion_hold,
-    MCC_motion_conti, MCC_motion_abort, MCC_clear_error, MCC_close_motion, task_continue,
-    MCC_MPG_disable, MCC_enable_dry_run, MCC_disable_dry_run
+    MCC_set_abs,      MCC_set_inc,        MCC_enable_quit,    MCC_disable_quit, MCC_motion_hold,
+    MCC_motion_conti, MCC_motion_abort,   MCC_clear_error,    MCC_close_motion, task_continue,
+    MCC_MPG_disable,  MCC_enable_dry_run, MCC_disable_dry_run
 };
 static int (*const one[])(struct mcc *, double) = {
-    MCC_line_x, MCC_line_y, MCC_line_z, MCC_ptp_x, MCC_ptp_y, MCC_ptp_z, MCC_motion_delay,
-    MCC_set_fspd, MCC_set_ptp_spd, MCC_set_acc_step, MCC_set_dec_step, MCC_set_dda,
-    MCC_set_over_spd, MCC_set_ptp_ospd, mcc_set_tolerance
+    MCC_line_x,       MCC_line_y,       MCC_line_z,       MCC_ptp_x,        MCC_ptp_y,
+    MCC_ptp_z,        MCC_motion_delay, MCC_set_fspd,     MCC_set_ptp_spd,  MCC_set_acc_step,
+    MCC_set_dec_step, MCC_set_dda,      MCC_set_over_spd, MCC_set_ptp_ospd, mcc_set_tolerance
 };
 static int (*const all[])(struct mcc *, const double *) = {
-    MCC_line, MCC_ptp, MCC_ptp_asyn, MCC_set_ptp_asyn_acc_step, MCC_set_ptp_asyn_dec_step,
+    MCC_line,         MCC_ptp, MCC_ptp_asyn, MCC_set_ptp_asyn_acc_step, MCC_set_ptp_asyn_dec_step,
     MCC_set_inpos_tol
 };
-static int (*const pulses[])(struct mcc *, const int32_t *) = {
-    MCC_set_max_dda_spd, MCC_set_P_gain, MCC_set_max_dda_acc
-};
+static int (*const pulses[])(struct mcc *, const int32_t *) = { MCC_set_max_dda_spd, MCC_set_P_gain,
+                                                                MCC_set_max_dda_acc };
 static int (*const axes_of[])(struct mcc *, int) = { MCC_enable_in_pos, MCC_disable_in_pos };
-static int (*const letters[])(struct mcc *, const char *) = {
-    MCC_set_ptp_asyn_acc_type, MCC_set_ptp_asyn_decc_type
-};
-static int (*const arc[])(struct mcc *, double, double, double, double) = {
-    MCC_arc_xy, MCC_arc_yz, MCC_arc_zx
-};
-static int (*const circle[])(struct mcc *, double, double, int) = {
-    MCC_circle_xy, MCC_circle_yz, MCC_circle_zx
-};
-static int (*const arc_uvw[])(struct mcc *, const double *, const double *) = {
-    MCC_arc_xyuvw, MCC_arc_yzuvw, MCC_arc_zxuvw
-};
-static int (*const circle_uvw[])(struct mcc *, const double *, int, const double *) = {
-    MCC_circle_xyuvw, MCC_circle_yzuvw, MCC_circle_zxuvw
-};
-#define PICK(from, i) (from)[(i) % (sizeof (from) / sizeof *(from))]
+static int (*const letters[])(struct mcc *, const char *) = { MCC_set_ptp_asyn_acc_type,
+                                                              MCC_set_ptp_asyn_decc_type };
+static int (*const arc[])(struct mcc *, double, double, double, double) = { MCC_arc_xy, MCC_arc_yz,
+                                                                            MCC_arc_zx };
+static int (*const circle[])(struct mcc *, double, double, int) = { MCC_circle_xy, MCC_circle_yz,
+                                                                    MCC_circle_zx };
+static int (*const arc_uvw[])(struct mcc *, const double *,
+                              const double *) = { MCC_arc_xyuvw, MCC_arc_yzuvw, MCC_arc_zxuvw };
+static int (*const circle_uvw[])(struct mcc *, const double *, int,
+                                 const double *) = { MCC_circle_xyuvw, MCC_circle_yzuvw,
+                                                     MCC_circle_zxuvw };
+#define PICK(from, i) (from)[(i) % (sizeof(from) / sizeof *(from))]
 
 /* Axes moved by hand, also such as there are not. */
 static int jog(struct bytes *b, uint8_t which)
@@ -107,9 +105,9 @@ static int jog(struct bytes *b, uint8_t which)
     const double way = number(b), percent = number(b);
     const int32_t pulses = integer(b);
     switch (which & 3) {
-    case 0: return MCC_jog_c(&m, axis, (pulses & 3) - 1, percent);
-    case 1: return MCC_jog_i(&m, axis, way, percent);
-    case 2: return MCC_jog_s(&m, axis, pulses);
+    case 0:  return MCC_jog_c(&m, axis, (pulses & 3) - 1, percent);
+    case 1:  return MCC_jog_i(&m, axis, way, percent);
+    case 2:  return MCC_jog_s(&m, axis, pulses);
     default: return MCC_MPG_set(&m, axis, pulses % 11 - 1, percent);
     }
 }
@@ -139,7 +137,7 @@ static int axes(struct bytes *b, uint8_t which)
     remember();
     const int code = MCC_update_param(&m);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
-        sum[i] = m.mover.pulses[i] + m.comp[i].added;     /* an axis may have been turned round */
+        sum[i] = m.mover.pulses[i] + m.comp[i].added; /* an axis may have been turned round */
     }
     return code;
 }
@@ -148,17 +146,18 @@ static int home(struct bytes *b, uint8_t which)
 {
     int32_t order[AXES];
     if (which & 1) {
-        struct home_config config = {
-            .mode = (enum home_mode)(which >> 1 & 7), .sensor_on = which & 16, .low_speed = 1.0,
-            .search = 20.0, .index_way = 3.0
-        };
+        struct home_config config = { .mode = (enum home_mode)(which >> 1 & 7),
+                                      .sensor_on = which & 16,
+                                      .low_speed = 1.0,
+                                      .search = 20.0,
+                                      .index_way = 3.0 };
         config.direction = byte(b);
         config.high_speed = number(b);
         config.offset = number(b);
         return homing_set(&m, (which >> 5) - 1, &config, which & 16);
     }
     for (int i = 0; i < AXES; i++) {
-        order[i] = (int)(byte(b) & 7) - 1;      /* -1 is no order */
+        order[i] = (int)(byte(b) & 7) - 1; /* -1 is no order */
     }
     return MCC_go_home(&m, order);
 }
@@ -214,13 +213,14 @@ static int call(struct bytes *b)
     case 7: s = six(b); return PICK(circle, which)(&m, s.x[0], s.x[1], integer(b));
     case 8: s = six(b); return PICK(arc_uvw, which)(&m, s.x, (double[]){ s.x[4], s.x[5], 1 });
     case 9: s = six(b); return PICK(circle_uvw, which)(&m, s.x, which & 1, s.x + 2);
-    case 10: return which & 1 ? MCC_set_acc_type(&m, "TSX"[which % 3])
-                              : MCC_set_dec_type(&m, "STX"[which % 3]);
+    case 10:
+        return which & 1 ? MCC_set_acc_type(&m, "TSX"[which % 3])
+                         : MCC_set_dec_type(&m, "STX"[which % 3]);
     case 11: return PICK(letters, which)(&m, which & 16 ? "TSTSTS" : "TTSSXS");
     case 12: return jog(b, which);
     case 13: return home(b, which);
     case 14: signals(b); return 0;
-    case 2: return axes(b, which);
+    case 2:  return axes(b, which);
     case 3:
         if (which & 1) {
             return PICK(axes_of, which >> 1)(&m, byte(b));
@@ -249,8 +249,8 @@ static void ask(void)
     MCC_get_P_gain(&m, n);
     HOLDS(MCC_get_pos_type(&m) >= 0 && MCC_check_quit(&m) >= 0 && MCC_get_errcode(&m) >= 0);
     HOLDS(isfinite(MCC_get_acc_step(&m)) && isfinite(MCC_get_dec_step(&m)));
-    HOLDS(isfinite(MCC_get_dda(&m)) && isfinite(MCC_get_over_spd(&m)) &&
-          isfinite(MCC_get_ptp_ospd(&m)));
+    HOLDS(isfinite(MCC_get_dda(&m)) && isfinite(MCC_get_over_spd(&m))
+          && isfinite(MCC_get_ptp_ospd(&m)));
     HOLDS(task_status(&m) >= TASK_RUNNING && task_status(&m) <= TASK_WHEEL);
     HOLDS(MCC_check_homef(&m) <= 1);
     HOLDS(memcmp(&before, &m, sizeof m) == 0);
@@ -281,7 +281,7 @@ static void come_to_rest(void)
     do {
         look();
         if (m.error == MCC_ERROR_STOP) {
-            MCC_clear_error(&m);    /* until then no compensation is driven in */
+            MCC_clear_error(&m); /* until then no compensation is driven in */
         }
         task_run(&m, NULL);
         n += fuzz_take(&m, sum);
@@ -305,11 +305,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             HOLDS(memcmp(&before, &m, sizeof m) == 0);
         }
         for (int k = 0; k < AXES && m.open && MCC_check_stop(&m); k++) {
-            HOLDS(fabs(m.end[k] - m.mover.rest[k]) < 1e-12);  /* shorter lines are none */
+            HOLDS(fabs(m.end[k] - m.mover.rest[k]) < 1e-12); /* shorter lines are none */
         }
         slowest = fmax(slowest, slowest_of(&m.machine));
         if (!(slowest < REST_POINTS * machine_dda_time(&m.machine))) {
-            continue;       /* its ramps take too many points */
+            continue; /* its ramps take too many points */
         }
         for (cycles *= cycles; cycles > 0; cycles--) {
             task_run(&m, NULL);

@@ -50,8 +50,8 @@ static void small(struct bytes *b)
 
 /* --- Any numbers. ----------------------------------------------------------------------------- */
 struct run {
-    int64_t given, busy;    /* time it was told to need, that of the task before it */
-    int64_t begun, wakes;   /* runs begun; requests that could not be lost */
+    int64_t given, busy;  /* time it was told to need, that of the task before it */
+    int64_t begun, wakes; /* runs begun; requests that could not be lost */
 };
 
 static struct cyclic_config set;

@@ -19,16 +19,16 @@ static int32_t byte(struct bytes *b)
 
 /* A card: a FIFO of frames, at its DDA boundaries. */
 struct card {
-    int64_t dda, next;          /* [clocks] */
+    int64_t dda, next; /* [clocks] */
     int32_t frame[STOCK_MAX][AXES];
-    int32_t room;               /* commands it takes */
-    int64_t out[AXES];          /* [pulses] put out and in stock */
-    bool    flag, coming;       /* interrupt latch; a transaction on its way */
+    int32_t room;      /* commands it takes */
+    int64_t out[AXES]; /* [pulses] put out and in stock */
+    bool flag, coming; /* interrupt latch; a transaction on its way */
     struct pcl_card shows;
     int32_t ack_seq;
 };
 
-static struct groups s, before;         /* 2 MB each: not on the stack */
+static struct groups s, before; /* 2 MB each: not on the stack */
 static struct card card[GROUP_CARDS];
 static struct group_panel panel[GROUP_MAX];
 static struct source_text text[GROUP_MAX];
@@ -95,8 +95,8 @@ static int64_t given(int k, int channel)
         const struct group *g = &s.group[n];
         for (int i = 0; i < AXES && g->used && g->card == k; i++) {
             const int32_t total = g->mcc.written.pulses[i] + g->mcc.written.added[i];
-            sum += g->channel[i] == channel
-                 ? (g->mcc.machine.axis[i].inverted ? -total : total) : 0;
+            sum +=
+                g->channel[i] == channel ? (g->mcc.machine.axis[i].inverted ? -total : total) : 0;
         }
     }
     return sum;
@@ -118,8 +118,8 @@ static void check(void)
     }
     for (int n = 0; n < GROUP_MAX; n++) {
         const struct group *g = &s.group[n];
-        HOLDS(!g->used || (g->mcc.queue.count >= 0 &&
-                           g->mcc.queue.count <= g->mcc.machine.queue_depth));
+        HOLDS(!g->used
+              || (g->mcc.queue.count >= 0 && g->mcc.queue.count <= g->mcc.machine.queue_depth));
         HOLDS(!g->used || isfinite(g->mcc.written.feed));
         HOLDS(g->starved >= 0 && (g->mcc.commands > 0 || g->starved == 0));
     }
@@ -191,17 +191,20 @@ static void check_channels(void)
 static void set_up(struct bytes *b)
 {
     struct machine m[GROUP_CARDS] = { machine_of(b), machine_of(b) };
-    const struct group_config config = {
-        .bus = 4000 * (1 + byte(b) % 4), .ipo = 10000 * (1 + byte(b) % 12),
-        .latency = 400.0 * byte(b), .jitter = 400.0 * byte(b), .seed = byte(b),
-        .min_stock = byte(b) % 8, .batch = 1 + byte(b) % PCL_FRAMES
-    };
+    const struct group_config config = { .bus = 4000 * (1 + byte(b) % 4),
+                                         .ipo = 10000 * (1 + byte(b) % 12),
+                                         .latency = 400.0 * byte(b),
+                                         .jitter = 400.0 * byte(b),
+                                         .seed = byte(b),
+                                         .min_stock = byte(b) % 8,
+                                         .batch = 1 + byte(b) % PCL_FRAMES };
     groups_init(&s, &config, m);
     for (int n = byte(b) % 10; n > 0; n--) {
         before = s;
         const int kind = byte(b) % 8, group = byte(b) % (GROUP_MAX + 2) - 1;
-        const int code = kind == 0 ? group_close(&s, group)
-                       : kind < 3 ? group_program(&s, group, 40000 * byte(b)) : 0;
+        const int code = kind == 0  ? group_close(&s, group)
+                         : kind < 3 ? group_program(&s, group, 40000 * byte(b))
+                                    : 0;
         HOLDS(code == 0 || memcmp(&before, &s, sizeof s) == 0);
         if (kind >= 3) {
             create(b);
@@ -219,13 +222,15 @@ static int call(struct mcc *m, struct bytes *b)
         x[i] = m->machine.axis[i].used ? (byte(b) - 128) / 16.0 : m->end[i];
     }
     switch (kind % 10) {
-    case 0: case 1: case 2: return MCC_line(m, x);
-    case 3: return MCC_ptp(m, x);
-    case 4: return MCC_arc_xy(m, x[0], x[1], x[1], x[0]);
-    case 5: return MCC_motion_delay(m, kind);
-    case 6: return mcc_set_tolerance(m, kind / 255.0);
-    case 7: return kind & 16 ? MCC_enable_quit(m) : MCC_disable_quit(m);
-    case 8: return MCC_clear_error(m);
+    case 0:
+    case 1:
+    case 2:  return MCC_line(m, x);
+    case 3:  return MCC_ptp(m, x);
+    case 4:  return MCC_arc_xy(m, x[0], x[1], x[1], x[0]);
+    case 5:  return MCC_motion_delay(m, kind);
+    case 6:  return mcc_set_tolerance(m, kind / 255.0);
+    case 7:  return kind & 16 ? MCC_enable_quit(m) : MCC_disable_quit(m);
+    case 8:  return MCC_clear_error(m);
     default: return MCC_motion_abort(m);
     }
 }
@@ -283,10 +288,9 @@ static void come_to_rest(void)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static const char *const texts[] = {
-        "G1 X3 F1200\nG2 X5 Y0 I1\n", "G64 P0.1\nG1 X1 F3000\nX2\nY2\nX0\nM30\n",
-        "G91\nG0 X1\nM0\nX-1\n", "G64\nG1 X2 F6000\nY2\n"
-    };
+    static const char *const texts[] = { "G1 X3 F1200\nG2 X5 Y0 I1\n",
+                                         "G64 P0.1\nG1 X1 F3000\nX2\nY2\nX0\nM30\n",
+                                         "G91\nG0 X1\nM0\nX-1\n", "G64\nG1 X2 F6000\nY2\n" };
     struct bytes b = { data, data + size };
 
     set_up(&b);

@@ -47,7 +47,7 @@ static void write_points(void)
         for (int k = 0; k < 6; k++) {
             HOLDS(fabs(again.point[i].value[k] - p.value[k]) <= 0.5e-6 + 1e-10);
         }
-        return;     /* one is enough: it costs 100 kB */
+        return; /* one is enough: it costs 100 kB */
     }
 }
 
@@ -111,7 +111,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     }
     const size_t rest = head + 2 <= size ? head + 2 : size;
     const int64_t length = (int64_t)(size - rest);
-    char *first = malloc(head + 1), *second = malloc((size_t)length + 1);   /* of just that size */
+    char *first = malloc(head + 1), *second = malloc((size_t)length + 1); /* of just that size */
     HOLDS(first && second);
     memcpy(first, data, head);
     memcpy(second, data + rest, (size_t)length);

@@ -9,7 +9,7 @@ const int fuzz_count = 30000;
 
 enum { PAGES = 16 };
 
-static const uint32_t SPEED[JOB_AXES] = {100000, 100000, 100000, 100000};
+static const uint32_t SPEED[JOB_AXES] = { 100000, 100000, 100000, 100000 };
 static uint8_t file[PAGES][JOB_PAGE_BYTES];
 
 static void write_again(const struct job_page *p, const struct job_header *h, const uint8_t *bytes)

@@ -7,7 +7,7 @@ const int fuzz_count = 10000;
 
 enum { POINTS = 2000, BYTES = 1 << 16 };
 
-static struct mcc m;        /* 160 kB: not on the stack */
+static struct mcc m; /* 160 kB: not on the stack */
 
 /* A source that shows as little as it may, in a piece of memory of just that size. */
 struct narrow {
@@ -131,7 +131,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const struct machine machine = fuzz_machine();
     struct source_text text = { (const char *)data, (int64_t)size };
     const struct source source = source_of(&text);
-    const struct mcc_dialect dialect = { .angles = size & 4, .fanuc = size & 8,
+    const struct mcc_dialect dialect = { .angles = size & 4,
+                                         .fanuc = size & 8,
                                          .least_increment = size & 16 ? 0.001 : 0.0 };
 
     if (size > BYTES) {

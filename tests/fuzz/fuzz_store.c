@@ -9,10 +9,10 @@ const int fuzz_count = 2000;
 
 enum { FILES = 3, PAGES = 20, CALLS = 400 };
 
-static const uint32_t SPEED[JOB_AXES] = {1000, 1000, 1000, 1000};
+static const uint32_t SPEED[JOB_AXES] = { 1000, 1000, 1000, 1000 };
 static struct {
     uint32_t bytes, crc;
-    uint8_t  hash[NET_SHA_BYTES], page[PAGES][FLASH_PAGE];
+    uint8_t hash[NET_SHA_BYTES], page[PAGES][FLASH_PAGE];
 } file[FILES];
 static struct flash_chip chip;
 static struct job_store store;
@@ -21,13 +21,13 @@ static int64_t now;
 /* A job of so many frames that do not compress. */
 static void make(int k, int32_t frames)
 {
-    struct job_header h = {.period_ns = 1000000, .axes = 3, .origin = {(uint8_t)k}};
+    struct job_header h = { .period_ns = 1000000, .axes = 3, .origin = { (uint8_t)k } };
     struct job_writer w;
     uint32_t n = 1;
     job_writer_start(&w, &h);
     for (int32_t i = 0; i < frames; i++) {
         const int32_t c = i == 0 || i == frames - 1 ? 0 : i % 2 ? 9000 : -9000;
-        n += job_writer_add(&w, &(struct job_frame){{c, -c}, 0}, file[k].page[n]);
+        n += job_writer_add(&w, &(struct job_frame){ { c, -c }, 0 }, file[k].page[n]);
     }
     HOLDS(job_writer_end(&w, file[k].page[n], file[k].page[0]) == JOB_GOOD);
     file[k].bytes = (n + 1) * FLASH_PAGE;

@@ -20,13 +20,13 @@ static struct session card;
 static struct net_host host;
 static uint8_t job[JOB_PAGES * NET_PAGE_BYTES];
 static int64_t now;
-static uint32_t latest;         /* command number that came to the card */
-static bool keyed, forged;      /* forged: bytes that no end sent are under way */
+static uint32_t latest;    /* command number that came to the card */
+static bool keyed, forged; /* forged: bytes that no end sent are under way */
 
 /* The host's frames as it sent them, whatever becomes of them on the way: CRC by sequence. */
 static struct {
-    uint8_t  frame[NET_FRAME];
-    size_t   held;
+    uint8_t frame[NET_FRAME];
+    size_t held;
     uint32_t crc[KNOWN];
 } witness;
 
@@ -112,7 +112,7 @@ static void carry(struct bytes *b, bool to_card)
         const size_t taken = session_bytes(&card, some + at, n - at, now);
         HOLDS(taken <= n - at);
         read_messages(b);
-        if (taken == 0)         /* no room for answers: the rest is lost with the connection */
+        if (taken == 0) /* no room for answers: the rest is lost with the connection */
             cut();
         at += taken > 0 ? taken : n - at;
     }
@@ -133,7 +133,7 @@ static void raw(struct bytes *b, bool to_card)
 /* A frame of any content that has a right check. */
 static void frame(struct bytes *b, bool of_host)
 {
-    uint8_t payload[NET_PAYLOAD] = {0};
+    uint8_t payload[NET_PAYLOAD] = { 0 };
     const uint8_t type = byte(b);
     size_t n = fill(b, payload, RAW);
     n = type == NET_JOB_DATA ? NET_BYTES_job_pages + NET_PAGE_BYTES : n;
@@ -142,7 +142,7 @@ static void frame(struct bytes *b, bool of_host)
 
 static void connect_both(void)
 {
-    const struct session_about about = {.credit = 12, .state = NET_READY};
+    const struct session_about about = { .credit = 12, .state = NET_READY };
     if (!session_wants(&card) || card.phase != SESSION_CALLING)
         return;
     net_host_cut(&host);
@@ -154,13 +154,13 @@ static void connect_both(void)
 
 static void order(struct bytes *b)
 {
-    const struct net_host_order o = {.at = now, .type = (uint8_t)(NET_START + byte(b) % 6)};
+    const struct net_host_order o = { .at = now, .type = (uint8_t)(NET_START + byte(b) % 6) };
     net_host_give(&host, &o);
 }
 
 static void ring(struct bytes *b)
 {
-    int32_t words[BYTE_RING_WORDS] = {0}, count = byte(b) << 23 | byte(b);
+    int32_t words[BYTE_RING_WORDS] = { 0 }, count = byte(b) << 23 | byte(b);
     const int32_t taken = count - (byte(b) << 2) + byte(b);
     uint8_t some[BYTE_RING_BYTES], back[BYTE_RING_BYTES];
     const int32_t before = byte_ring_held(count, taken);
@@ -176,16 +176,18 @@ static void ring(struct bytes *b)
 
 static void one(struct bytes *b)
 {
-    const struct net_status status = {.state = NET_RUNNING};
+    const struct net_status status = { .state = NET_RUNNING };
     switch (byte(b) % 14) {
-    case 0: case 1: carry(b, true); break;
-    case 2: case 3: carry(b, false); break;
-    case 4: raw(b, true); break;
-    case 5: raw(b, false); break;
-    case 6: frame(b, true); break;
-    case 7: frame(b, false); break;
-    case 8: connect_both(); break;
-    case 9: order(b); break;
+    case 0:
+    case 1:  carry(b, true); break;
+    case 2:
+    case 3:  carry(b, false); break;
+    case 4:  raw(b, true); break;
+    case 5:  raw(b, false); break;
+    case 6:  frame(b, true); break;
+    case 7:  frame(b, false); break;
+    case 8:  connect_both(); break;
+    case 9:  order(b); break;
     case 10: now += (int64_t)byte(b) << byte(b) % 28; break;
     case 11: session_status(&card, &status, now); break;
     case 12: ring(b); break;
@@ -210,10 +212,10 @@ static void one(struct bytes *b)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    struct bytes b = {data, data + size};
+    struct bytes b = { data, data + size };
     keyed = byte(&b) & 1;
-    const struct session_config c = {.card = 3, .key = {keyed}, .seed = {1}};
-    const struct net_host_config h = {.interval = byte(&b), .key = {keyed}, .seed = {2}};
+    const struct session_config c = { .card = 3, .key = { keyed }, .seed = { 1 } };
+    const struct net_host_config h = { .interval = byte(&b), .key = { keyed }, .seed = { 2 } };
     now = 0;
     latest = 0;
     session_start(&card, &c, 0);

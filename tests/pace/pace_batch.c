@@ -5,10 +5,10 @@
 #include "pace.h"
 
 struct told {
-    double kind;                    /* enum piece_kind */
-    double feed, cap, acc, dec, jerk;       /* [mm/s], [mm/s^2], [mm/s^3] */
-    double length;                  /* [mm] of a curve */
-    double control[PIECE_POINTS][AXES];     /* line, arc: start, end, then centre X Y, ccw */
+    double kind;                        /* enum piece_kind */
+    double feed, cap, acc, dec, jerk;   /* [mm/s], [mm/s^2], [mm/s^3] */
+    double length;                      /* [mm] of a curve */
+    double control[PIECE_POINTS][AXES]; /* line, arc: start, end, then centre X Y, ccw */
 };
 
 /* What the motion is at one moment, and axis by axis. */
@@ -37,8 +37,8 @@ double pace_batch_pieces(int64_t n, const struct told *told)
         if (p->kind == PIECE_CURVE) {
             memcpy(p->origin, t->control[0], sizeof p->origin);
             for (int k = 0; k < PIECE_POINTS * AXES; k++) {
-                p->control[k / AXES][k % AXES] = t->control[k / AXES][k % AXES]
-                    - p->origin[k % AXES];
+                p->control[k / AXES][k % AXES] =
+                    t->control[k / AXES][k % AXES] - p->origin[k % AXES];
             }
         } else if (p->kind == PIECE_ARC) {
             double miss;
@@ -126,8 +126,8 @@ double pace_batch_gap(void)
 
     for (int32_t i = 0; i < pace.count; i++) {
         const struct pace_box *g = &pace.ring[(pace.at.head + i) % PACE_CELLS].box;
-        const double next = i + 1 < pace.count
-            ? pace.ring[(pace.at.head + i + 1) % PACE_CELLS].box.from : pace.end;
+        const double next =
+            i + 1 < pace.count ? pace.ring[(pace.at.head + i + 1) % PACE_CELLS].box.from : pace.end;
         widest = fmax(widest, fabs(next - (g->from + g->length)));
     }
     return widest;
@@ -182,8 +182,8 @@ int64_t pace_batch_cells(int64_t n, const struct pace_limits *l, double override
     for (int64_t i = 0; i < count; i++) {
         const struct pace_cell *c = &pace.ring[(pace.at.head + i) % PACE_CELLS].cell;
         const double feed = fmin(c->feed * override, c->cap);
-        known[i] = (struct known){ c->length, feed * feed, c->flat, c->most, c->top, c->planes,
-                                   { { 0.0 } } };
+        known[i] = (struct known){ c->length, feed * feed, c->flat,    c->most,
+                                   c->top,    c->planes,   { { 0.0 } } };
         memcpy(known[i].plane, c->plane, sizeof known[i].plane);
     }
     return count;

@@ -15,10 +15,10 @@ enum { PARTS = 16, WIRES = 4096 };
 static __typeof__(run) parts[PARTS];
 static struct wire {
     struct shown from;
-    int      source, target;
+    int source, target;
     uint32_t to;
-    double   x[64];
-    int32_t  n[64];
+    double x[64];
+    int32_t n[64];
 } wires[WIRES];
 static int part_count, wire_count;
 
@@ -30,7 +30,9 @@ static void read_wires(const char *name)
     }
     for (struct wire *w = wires;
          fscanf(file, " %c %d %" SCNu32 " %d %d %" SCNu32, &w->from.kind, &w->source, &w->from.ref,
-                &w->from.count, &w->target, &w->to) == 6; w++) {
+                &w->from.count, &w->target, &w->to)
+         == 6;
+         w++) {
         if (w->from.count > 64 || ++wire_count == WIRES) {
             fail("too much", name);
         }
@@ -52,11 +54,13 @@ static void put(const struct wire *w)
     if (run.fmi == 2) {
         good(w->from.kind == 'd'   ? CALL(2, SetReal)(c, refs, count, w->x)
              : w->from.kind == 'i' ? CALL(2, SetInteger)(c, refs, count, w->n)
-                                   : CALL(2, SetBoolean)(c, refs, count, w->n), "set");
+                                   : CALL(2, SetBoolean)(c, refs, count, w->n),
+             "set");
     } else {
         good(w->from.kind == 'd'   ? (int)CALL(3, SetFloat64)(c, refs, 1, w->x, count)
              : w->from.kind == 'i' ? (int)CALL(3, SetInt32)(c, refs, 1, w->n, count)
-                                   : (int)CALL(3, SetBoolean)(c, refs, 1, b, count), "set");
+                                   : (int)CALL(3, SetBoolean)(c, refs, 1, b, count),
+             "set");
     }
 }
 
@@ -85,12 +89,15 @@ static void all(char call, long k)
         } else if (run.fmi == 2) {
             good(call == 'E'   ? CALL(2, EnterInitializationMode)(c)
                  : call == 'X' ? CALL(2, ExitInitializationMode)(c)
-                 : call == 'S' ? CALL(2, DoStep)(c, t, step, 1) : CALL(2, Terminate)(c), "call");
+                 : call == 'S' ? CALL(2, DoStep)(c, t, step, 1)
+                               : CALL(2, Terminate)(c),
+                 "call");
         } else {
             good(call == 'E'   ? (int)CALL(3, EnterInitializationMode)(c, false, 0, 0, false, 0)
                  : call == 'X' ? (int)CALL(3, ExitInitializationMode)(c)
                  : call == 'S' ? (int)CALL(3, DoStep)(c, t, step, true, &event, &end, &early, &last)
-                               : (int)CALL(3, Terminate)(c), "call");
+                               : (int)CALL(3, Terminate)(c),
+                 "call");
         }
     }
 }

@@ -41,21 +41,21 @@ typedef void (*any)(void);
 enum { TEXT = 4096, SHOWN = 4096, WIDEST = 4096 };
 
 struct shown {
-    char     kind;
+    char kind;
     uint32_t ref;
-    int      count;
+    int count;
 };
 
 static struct {
     library lib;
-    int     fmi;
-    void   *instance;
-    char    token[TEXT], resources[TEXT];
-    long    steps;
-    double  size;
+    int fmi;
+    void *instance;
+    char token[TEXT], resources[TEXT];
+    long steps;
+    double size;
     struct shown shown[SHOWN];
-    int     count;
-    bool    values;
+    int count;
+    bool values;
 } run;
 
 _Noreturn static void fail(const char *what, const char *which)
@@ -99,11 +99,12 @@ static void log3_(fmi3InstanceEnvironment e, fmi3Status status, fmi3String categ
 
 static void instantiate(void)
 {
-    static const fmi2CallbackFunctions callbacks = {log2_, calloc, free, NULL, NULL};
-    run.instance = run.fmi == 2
-        ? CALL(2, Instantiate)("one", fmi2CoSimulation, run.token, run.resources, &callbacks, 0, 0)
-        : CALL(3, InstantiateCoSimulation)("one", run.token, run.resources, false, false, false,
-                                           false, NULL, 0, NULL, log3_, NULL);
+    static const fmi2CallbackFunctions callbacks = { log2_, calloc, free, NULL, NULL };
+    run.instance = run.fmi == 2 ? CALL(2, Instantiate)("one", fmi2CoSimulation, run.token,
+                                                       run.resources, &callbacks, 0, 0)
+                                : CALL(3, InstantiateCoSimulation)("one", run.token, run.resources,
+                                                                   false, false, false, false, NULL,
+                                                                   0, NULL, log3_, NULL);
     if (!run.instance) {
         fail("no instance", run.token);
     }
@@ -180,11 +181,13 @@ static size_t get(const struct shown *s, double *x, int32_t *n)
     if (run.fmi == 2) {
         good(s->kind == 'd'   ? CALL(2, GetReal)(c, refs, count, x)
              : s->kind == 'i' ? CALL(2, GetInteger)(c, refs, count, n)
-                              : CALL(2, GetBoolean)(c, refs, count, n), "get");
+                              : CALL(2, GetBoolean)(c, refs, count, n),
+             "get");
     } else {
         good(s->kind == 'd'   ? (int)CALL(3, GetFloat64)(c, refs, 1, x, count)
              : s->kind == 'i' ? (int)CALL(3, GetInt32)(c, refs, 1, n, count)
-                              : (int)CALL(3, GetBoolean)(c, refs, 1, b, count), "get");
+                              : (int)CALL(3, GetBoolean)(c, refs, 1, b, count),
+             "get");
         for (size_t i = 0; s->kind == 'b' && i < count; i++) {
             n[i] = b[i];
         }

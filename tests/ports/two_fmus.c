@@ -10,26 +10,33 @@
 
 struct fmu {
     const char *token;
-    fmi3InstantiateCoSimulationTYPE  *instantiate;
-    fmi3EnterInitializationModeTYPE  *enter;
-    fmi3ExitInitializationModeTYPE   *leave;
-    fmi3DoStepTYPE                   *step;
-    fmi3GetFloat64TYPE               *get;
-    fmi3FreeInstanceTYPE             *release;
-    const struct { uint32_t ref, count; } *outputs;
+    fmi3InstantiateCoSimulationTYPE *instantiate;
+    fmi3EnterInitializationModeTYPE *enter;
+    fmi3ExitInitializationModeTYPE *leave;
+    fmi3DoStepTYPE *step;
+    fmi3GetFloat64TYPE *get;
+    fmi3FreeInstanceTYPE *release;
+    const struct {
+        uint32_t ref, count;
+    } *outputs;
 };
 
-#define FMU(id)                                                                                   \
-    fmi3InstantiateCoSimulationTYPE id##_fmi3InstantiateCoSimulation;                             \
-    fmi3EnterInitializationModeTYPE id##_fmi3EnterInitializationMode;                             \
-    fmi3ExitInitializationModeTYPE  id##_fmi3ExitInitializationMode;                              \
-    fmi3DoStepTYPE                  id##_fmi3DoStep;                                              \
-    fmi3GetFloat64TYPE              id##_fmi3GetFloat64;                                          \
-    fmi3FreeInstanceTYPE            id##_fmi3FreeInstance
-#define ROW(id, token, outputs)                                                                   \
-    {token, id##_fmi3InstantiateCoSimulation, id##_fmi3EnterInitializationMode,                   \
-     id##_fmi3ExitInitializationMode, id##_fmi3DoStep, id##_fmi3GetFloat64, id##_fmi3FreeInstance, \
-     (const void *)outputs}
+#define FMU(id) \
+    fmi3InstantiateCoSimulationTYPE id##_fmi3InstantiateCoSimulation; \
+    fmi3EnterInitializationModeTYPE id##_fmi3EnterInitializationMode; \
+    fmi3ExitInitializationModeTYPE id##_fmi3ExitInitializationMode; \
+    fmi3DoStepTYPE id##_fmi3DoStep; \
+    fmi3GetFloat64TYPE id##_fmi3GetFloat64; \
+    fmi3FreeInstanceTYPE id##_fmi3FreeInstance
+#define ROW(id, token, outputs) \
+    { token, \
+      id##_fmi3InstantiateCoSimulation, \
+      id##_fmi3EnterInitializationMode, \
+      id##_fmi3ExitInitializationMode, \
+      id##_fmi3DoStep, \
+      id##_fmi3GetFloat64, \
+      id##_fmi3FreeInstance, \
+      (const void *)outputs }
 
 FMU(Mcc);
 FMU(Epcio);
@@ -43,8 +50,8 @@ static void say(fmi3InstanceEnvironment e, fmi3Status status, fmi3String categor
 
 int main(void)
 {
-    static const struct fmu fmus[] = {ROW(Mcc, MCC_TOKEN, mcc_outputs),
-                                      ROW(Epcio, EPCIO_TOKEN, epcio_outputs)};
+    static const struct fmu fmus[] = { ROW(Mcc, MCC_TOKEN, mcc_outputs),
+                                       ROW(Epcio, EPCIO_TOKEN, epcio_outputs) };
     enum { FMUS = sizeof fmus / sizeof fmus[0], STEPS = 10, WIDEST = 4096 };
     const double size = 1e-4;
     uint64_t hash[FMUS];

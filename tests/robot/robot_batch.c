@@ -40,14 +40,20 @@ void robot_batch_moves(const struct opw *o, const double (*limits)[4], double sm
                        const double (*to)[OPW_JOINTS], double *time)
 {
     static struct robot robot;
-    struct robot_config c = { .arm.opw = *o, .arm.tool = pose_none(), .feed = 1e3, .acc = 1e3,
-                              .spin = 1.0, .smooth = smooth, .cycle = 1e-4, .slot = 5e-6,
+    struct robot_config c = { .arm.opw = *o,
+                              .arm.tool = pose_none(),
+                              .feed = 1e3,
+                              .acc = 1e3,
+                              .spin = 1.0,
+                              .smooth = smooth,
+                              .cycle = 1e-4,
+                              .slot = 5e-6,
                               .slot_pulses = 49.0 };
     struct robot_refusal why;
 
     for (int i = 0; i < OPW_JOINTS; i++) {
-        c.arm.joint[i] = (struct manipulator_joint){ limits[i][0], limits[i][1], limits[i][2],
-                                                     limits[i][3] };
+        c.arm.joint[i] =
+            (struct manipulator_joint){ limits[i][0], limits[i][1], limits[i][2], limits[i][3] };
         c.scale[i] = 1e4;
     }
     for (int64_t n = 0; n < count; n++) {

@@ -30,8 +30,11 @@ static void drain(void)
 
     for (int32_t k = 0; k < pieces && !quiet; k++) {
         const struct piece *p = shape_piece(&shape, k);
-        printf("%s %.17g %.17g %d", p->kind == PIECE_CURVE ? "curve"
-               : p->kind == PIECE_LINE ? "line" : p->kind == PIECE_ARC ? "arc" : "cubic",
+        printf("%s %.17g %.17g %d",
+               p->kind == PIECE_CURVE  ? "curve"
+               : p->kind == PIECE_LINE ? "line"
+               : p->kind == PIECE_ARC  ? "arc"
+                                       : "cubic",
                p->length, p->feed, p->rest);
         if (p->kind == PIECE_CURVE) {
             print_row(p->origin, AXES);
@@ -82,8 +85,7 @@ int main(int argc, char **argv)
             continue;
         }
         int plane = 0, ccw = 0, turns = 0, n = 0;
-        if (strcmp(word, "line") == 0 || strcmp(word, "arc") == 0
-            || strcmp(word, "cubic") == 0) {
+        if (strcmp(word, "line") == 0 || strcmp(word, "arc") == 0 || strcmp(word, "cubic") == 0) {
             n += scanf("%lf %lf", &c.tolerance, &c.feed);
         }
         if (strcmp(word, "arc") == 0) {
@@ -112,7 +114,7 @@ int main(int argc, char **argv)
             c.type = command_arc_type(&c.path);
         }
         if (strcmp(word, "cubic") == 0) {
-            if (path_cubic(&c.path, at, end, (const double (*)[3])inner) != PATH_OK) {
+            if (path_cubic(&c.path, at, end, (const double(*)[3])inner) != PATH_OK) {
                 printf("no cubic\n");
                 return 1;
             }

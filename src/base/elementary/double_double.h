@@ -70,7 +70,7 @@ static inline struct dd dd_sum(double a, double b)
 /* a b, |a| and |b| below 2^500: their halves of 26 bits have products without rounding. */
 static inline struct dd dd_product(double a, double b)
 {
-    const double c = 134217729.0 * a, d = 134217729.0 * b;      /* 2^27 + 1 */
+    const double c = 134217729.0 * a, d = 134217729.0 * b; /* 2^27 + 1 */
     const double ah = c - (c - a), al = a - ah, bh = d - (d - b), bl = b - bh, h = a * b;
     return dd_of(h, ((ah * bh - h) + ah * bl + al * bh) + al * bl);
 }
@@ -131,7 +131,7 @@ static inline double dd_rounded(struct dd a, int k)
 {
     a = dd_fast(a.h, a.l);
     const int exponent = (int)(dd_bits(a.h) >> 52 & 2047) - 1023;
-    if (exponent + k < -1022) {     /* the result has fewer bits: those of a sum with a large one */
+    if (exponent + k < -1022) { /* the result has fewer bits: those of a sum with a large one */
         const double large = copysign(ldexp(1.0, -1022 - k), a.h);
         const struct dd s = dd_fast(large, a.h);
         return copysign(ldexp((s.h + (s.l + a.l)) - large, k), a.h);

@@ -35,8 +35,8 @@ static inline bool quick(struct cut y, struct cut x, const double start[3], doub
     const double inverse = 1.0 / all, z = (over + over_rest) * inverse, u = z * z;
     const double first = dd_half(z), half = dd_half(all);
     const double left = (over - first * half) + (over_rest - first * (under - half + under_rest));
-    const double cubic = z * u * (ATAN_REST[0] + u * (ATAN_REST[1] + u * (ATAN_REST[2] + u *
-                                                                          ATAN_REST[3])));
+    const double cubic =
+        z * u * (ATAN_REST[0] + u * (ATAN_REST[1] + u * (ATAN_REST[2] + u * ATAN_REST[3])));
     const double sign = start[2], tail = sign * (left * inverse + cubic);
     const struct dd a = dd_fast(start[0], sign * ANGLES[i][0]), b = dd_fast(a.h, sign * first);
     return dd_settled(b.h, a.l + b.l + (start[1] + sign * ANGLES[i][1] + tail), b.h * PART, result);
@@ -88,8 +88,8 @@ double el_atan2(double y, double x)
     const double b = fabs(y), a = fabs(x);
     const double least = b < a ? b : a, most = b < a ? a : b;
     double angle;
-    if (least > 0x1p-60 && most < 0x1p60 &&
-        quick(cut_of(least), cut_of(most), ARC_STARTS[2 * (x < 0.0) + (b > a)], &angle)) {
+    if (least > 0x1p-60 && most < 0x1p60
+        && quick(cut_of(least), cut_of(most), ARC_STARTS[2 * (x < 0.0) + (b > a)], &angle)) {
         return copysign(angle, y);
     }
     if (isnan(x) || isnan(y)) {

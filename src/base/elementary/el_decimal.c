@@ -3,8 +3,8 @@
 #include <math.h>
 
 enum {
-    LIMBS = 14,         /* of 32 bits: 10^120 has 399, and it is doubled twice at most */
-    BITS = 54           /* of the quotient: those of a double and one to round by */
+    LIMBS = 14, /* of 32 bits: 10^120 has 399, and it is doubled twice at most */
+    BITS = 54   /* of the quotient: those of a double and one to round by */
 };
 
 /* A whole number, its lowest limb first. */
@@ -65,7 +65,7 @@ static double quotient(struct large *up, struct large *down)
     for (; compare(up, down) < 0; exponent--) {
         twice(up);
     }
-    for (int i = 0; i < BITS; i++) {        /* up is from down on to below twice that */
+    for (int i = 0; i < BITS; i++) { /* up is from down on to below twice that */
         const bool one = compare(up, down) >= 0;
         if (one) {
             subtract(up, down);

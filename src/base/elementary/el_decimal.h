@@ -6,15 +6,15 @@
 #include <stdint.h>
 
 enum {
-    EL_DECIMAL_DIGITS = 120,    /* 0.1 as a double has 55 */
-    EL_DECIMAL_SHORT = 15,      /* digits of an integer below 2^53 */
-    EL_DECIMAL_EXACT = 22       /* powers of ten that are doubles */
+    EL_DECIMAL_DIGITS = 120, /* 0.1 as a double has 55 */
+    EL_DECIMAL_SHORT = 15,   /* digits of an integer below 2^53 */
+    EL_DECIMAL_EXACT = 22    /* powers of ten that are doubles */
 };
 
 /* Digits as they are read, without leading zeros. */
 struct el_decimal {
-    int32_t count, behind;          /* all, and those behind the point */
-    int64_t whole;                  /* the first EL_DECIMAL_SHORT as an integer */
+    int32_t count, behind; /* all, and those behind the point */
+    int64_t whole;         /* the first EL_DECIMAL_SHORT as an integer */
     uint8_t digit[EL_DECIMAL_DIGITS];
 };
 
@@ -45,12 +45,13 @@ double el_decimal_long(const struct el_decimal *d);
 /* The same, at once where one division of exact numbers rounds. */
 static inline double el_decimal_value(const struct el_decimal *d)
 {
-    static const double TEN_TO[EL_DECIMAL_EXACT + 1] = {
-        1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15,
-        1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22
-    };
+    static const double TEN_TO[EL_DECIMAL_EXACT + 1] = { 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,
+                                                         1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
+                                                         1e12, 1e13, 1e14, 1e15, 1e16, 1e17,
+                                                         1e18, 1e19, 1e20, 1e21, 1e22 };
     return d->count <= EL_DECIMAL_SHORT && d->behind <= EL_DECIMAL_EXACT
-               ? (double)d->whole / TEN_TO[d->behind] : el_decimal_long(d);
+               ? (double)d->whole / TEN_TO[d->behind]
+               : el_decimal_long(d);
 }
 
 #endif

@@ -65,8 +65,8 @@ static inline bool quick(double x, double more, double error, double *y)
     uint64_t k;
     const double n = steps_of(x, &k), r = ((x - n * OCTAVE_STEP[0]) - n * OCTAVE_STEP[1]) + more;
     const double *power = POWERS[k % 128];
-    const double p = r + r * r * ((EXP_REST[0] + r * EXP_REST[1]) +
-                                  r * r * (EXP_REST[2] + r * EXP_REST[3]));
+    const double p =
+        r + r * r * ((EXP_REST[0] + r * EXP_REST[1]) + r * r * (EXP_REST[2] + r * EXP_REST[3]));
     const bool good = dd_settled(power[0], power[1] + power[0] * p, 2.0 * error, y);
     *y *= dd_of_bits((k / 128 + 1023) << 52);
     return good;
@@ -74,7 +74,7 @@ static inline bool quick(double x, double more, double error, double *y)
 
 bool el_exp_quick(struct dd x, double error, double *y)
 {
-    return quick(x.h, x.l, 1.25 * PART + 1.0000001 * error, y);     /* one more rounding of r */
+    return quick(x.h, x.l, 1.25 * PART + 1.0000001 * error, y); /* one more rounding of r */
 }
 
 double el_exp(double x)
@@ -110,8 +110,9 @@ static inline struct about quick_less_one(double x)
     const double n = steps_of(x, &k), *power = POWERS[k % 128];
     const double scale = dd_of_bits((k / 128 + 1023) << 52);
     const struct dd r = dd_fast(x - n * OCTAVE_STEP[0], -n * OCTAVE_STEP[1]);
-    const double u = r.h * r.h, cubic = u * r.h * (LESS_REST[0] + r.h * LESS_REST[1] +
-                                                   u * (LESS_REST[2] + r.h * LESS_REST[3]));
+    const double u = r.h * r.h, cubic = u * r.h
+                                        * (LESS_REST[0] + r.h * LESS_REST[1]
+                                           + u * (LESS_REST[2] + r.h * LESS_REST[3]));
     const double rest = 0.5 * u + (cubic + (r.l - n * OCTAVE_STEP[2]));
     const double a = dd_half(r.h), b = dd_half(power[0]), product = scale * (a * b);
     const double low = b * (r.h - a) + (power[0] - b) * r.h;
@@ -142,7 +143,7 @@ double el_sinh(double x)
     if (!(a >= 0x1p-26) || isinf(x)) {
         return x;
     }
-    if (a >= 40.0) {        /* the other half is less than 2^-115 of it */
+    if (a >= 40.0) { /* the other half is less than 2^-115 of it */
         const struct dd e = el_exp_dd(dd_of(el_min(a, 800.0), 0.0), &k);
         return copysign(dd_rounded(e, k - 1), x);
     }

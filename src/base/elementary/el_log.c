@@ -13,7 +13,7 @@
 struct split {
     double k;
     const double *row;
-    double high, low;       /* r, exact: c has 10 bits, so that c times the halves of m are */
+    double high, low; /* r, exact: c has 10 bits, so that c times the halves of m are */
 };
 
 static inline struct split split_of(double x)
@@ -47,8 +47,8 @@ struct dd el_log_dd(double x)
         sum = dd_add(dd_of(INVERSES[i][0], INVERSES[i][1]), dd_minus(dd_mul(sum, r)));
     }
     sum = dd_mul(sum, r);
-    const struct dd low = dd_add(dd_sum(s.row[2], s.row[3]),
-                                 dd_add(dd_product(k, LN2[1]), dd_of(k * LN2[2], 0.0)));
+    const struct dd low =
+        dd_add(dd_sum(s.row[2], s.row[3]), dd_add(dd_product(k, LN2[1]), dd_of(k * LN2[2], 0.0)));
     return dd_add_to(k * LN2[0] + s.row[1], dd_add(low, sum));
 }
 
@@ -60,9 +60,10 @@ struct dd el_log_quick(double x, double *error)
     const struct split s = split_of(x);
     const struct dd r = dd_fast(s.high, s.low);
     const double a = dd_half(r.h), b = (r.h - a) + r.l, u = r.h * r.h;
-    const double rest = r.h * u * ((LOG_REST[0] + r.h * LOG_REST[1]) +
-                                   u * ((LOG_REST[2] + r.h * LOG_REST[3]) +
-                                        u * (LOG_REST[4] + r.h * LOG_REST[5])));
+    const double rest =
+        r.h * u
+        * ((LOG_REST[0] + r.h * LOG_REST[1])
+           + u * ((LOG_REST[2] + r.h * LOG_REST[3]) + u * (LOG_REST[4] + r.h * LOG_REST[5])));
     const struct dd first = dd_fast(s.k * LN2[0] + s.row[1], a);
     const struct dd sum = dd_fast(first.h, -0.5 * a * a);
     const double low = (s.row[2] + s.k * LN2[1] + b) + (rest - b * (a + 0.5 * b));
@@ -78,9 +79,10 @@ double el_log(double x)
     const struct split s = split_of(x);
     const struct dd r = dd_fast(s.high, s.low), sum = dd_fast(s.k * LN2[0] + s.row[1], r.h);
     const double u = r.h * r.h;
-    const double rest = r.h * u * ((LOG_REST[0] + r.h * LOG_REST[1]) +
-                                   u * ((LOG_REST[2] + r.h * LOG_REST[3]) +
-                                        u * (LOG_REST[4] + r.h * LOG_REST[5])));
+    const double rest =
+        r.h * u
+        * ((LOG_REST[0] + r.h * LOG_REST[1])
+           + u * ((LOG_REST[2] + r.h * LOG_REST[3]) + u * (LOG_REST[4] + r.h * LOG_REST[5])));
     double y;
     const double low = sum.l + ((s.row[2] + s.k * LN2[1] + r.l) + (rest - 0.5 * u));
     if (dd_settled(sum.h, low, fabs(sum.h) * PART, &y)) {

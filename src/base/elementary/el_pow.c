@@ -50,7 +50,7 @@ double el_pow(double x, double y)
         return copysign(1.0, sign);
     }
     const struct dd l = el_log_dd(a);
-    const double size = l.h * y;        /* e^+-800 is infinite, or 0 */
+    const double size = l.h * y; /* e^+-800 is infinite, or 0 */
     if (fabs(size) > 800.0) {
         return copysign(size > 0.0 ? INFINITY : 0.0, sign);
     }

@@ -45,13 +45,13 @@ double el_cbrt(double x)
         bits = dd_bits(fabs(x) * 0x1p54);
         scale = -18;
     }
-    const unsigned e = (unsigned)(bits >> 52);      /* of 1: 1023 = 3 * 341 */
+    const unsigned e = (unsigned)(bits >> 52); /* of 1: 1023 = 3 * 341 */
     const double m = dd_of_bits((bits & 0xfffffffffffff) | 0x3ff0000000000000);
-    const double *c = CBRT_START, v = m * dd_power((int)(e % 3));       /* m 2^0..2 */
+    const double *c = CBRT_START, v = m * dd_power((int)(e % 3)); /* m 2^0..2 */
     double t = CBRTS[e % 3] * (c[0] + m * (c[1] + m * (c[2] + m * (c[3] + m * c[4]))));
     const double cube = t * t * t;
-    t = dd_half(t * (cube + 2.0 * v) / (2.0 * cube + v));   /* Halley: 10 bits become 30 */
-    const double square = t * t, first = dd_half(square), second = square - first;  /* exact */
+    t = dd_half(t * (cube + 2.0 * v) / (2.0 * cube + v)); /* Halley: 10 bits become 30 */
+    const double square = t * t, first = dd_half(square), second = square - first; /* exact */
     const double share = ((v - first * t) - second * t) / (3.0 * square * t);
     /* (t + t s)^3 = v: s + s^2 + s^3 / 3 is the share */
     const double y = t + t * share * (1.0 - share * (1.0 - 5.0 / 3.0 * share));

@@ -30,8 +30,8 @@ static inline bool is_quick(double x)
 static inline struct rest rest_of(double x)
 {
     const double turned = x * TURN_STEPS[0] + 0x1.8p52, k = turned - 0x1.8p52;
-    const double first = x - k * TURN_STEP[0], second = k * TURN_STEP[1];     /* exact, both */
-    const double h = (first - second + 0x1.8p19) - 0x1.8p19;        /* a multiple of 2^-33 */
+    const double first = x - k * TURN_STEP[0], second = k * TURN_STEP[1]; /* exact, both */
+    const double h = (first - second + 0x1.8p19) - 0x1.8p19;              /* a multiple of 2^-33 */
     const double l = (first - h - second) - k * TURN_STEP[2], r = h + l, u = r * r;
     return (struct rest){
         .k = (unsigned)dd_bits(turned),
@@ -66,7 +66,7 @@ static struct dd turned(double x, unsigned *quarter)
         *quarter = 0;
         return dd_of(x, 0.0);
     }
-    uint32_t limb[LIMBS + 1] = { 0 };      /* of the product, the last ones first */
+    uint32_t limb[LIMBS + 1] = { 0 }; /* of the product, the last ones first */
     for (int part = 0; part < 2; part++) {
         uint64_t carry = 0;
         const uint64_t factor = part ? m >> 32 : m & 0xffffffff;
@@ -78,8 +78,8 @@ static struct dd turned(double x, unsigned *quarter)
         }
         limb[TAKEN + part] = (uint32_t)carry;
     }
-    const int behind = 32 * (first + TAKEN) - e;        /* bits behind the point, 223 to 341 */
-    uint32_t part[8];                                   /* of these the first 256 */
+    const int behind = 32 * (first + TAKEN) - e; /* bits behind the point, 223 to 341 */
+    uint32_t part[8];                            /* of these the first 256 */
     for (int i = 0; i < 8; i++) {
         const int bit = behind - 32 * (i + 1);
         uint64_t two = 0;

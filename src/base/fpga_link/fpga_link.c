@@ -35,8 +35,8 @@ static int32_t byte_pulses(uint8_t byte, enum fpga_format format)
     return !(byte & STEP) ? 0 : byte & BACKWARD ? -1 : 1;
 }
 
-int32_t fpga_slot_unpack(const int32_t word[FPGA_SLOT_WORDS], enum fpga_format format,
-                         int32_t most, int32_t pulses[FPGA_SLOT_AXES])
+int32_t fpga_slot_unpack(const int32_t word[FPGA_SLOT_WORDS], enum fpga_format format, int32_t most,
+                         int32_t pulses[FPGA_SLOT_AXES])
 {
     int32_t bad = -1;
     for (int i = FPGA_SLOT_AXES - 1; i >= 0; i--) {

@@ -19,9 +19,9 @@ enum {
     FPGA_CLOCK_HZ = 40000000,
     FPGA_CLOCK_NS = 1000000000 / FPGA_CLOCK_HZ,
     FPGA_AXES = 6,
-    FPGA_SLOT_AXES = 8,     /* bytes of a slot: six axes and two spare, which must be 0 */
+    FPGA_SLOT_AXES = 8, /* bytes of a slot: six axes and two spare, which must be 0 */
     FPGA_SLOT_WORDS = 2,
-    FPGA_SLOTS = 128,       /* slots of a pulse memory */
+    FPGA_SLOTS = 128, /* slots of a pulse memory */
     FPGA_WORDS = FPGA_SLOTS * FPGA_SLOT_WORDS,
     FPGA_MEMORIES = 2,      /* pulse memories */
     FPGA_CHANNELS = 32,     /* digital inputs, digital outputs */
@@ -34,77 +34,77 @@ enum {
  * the output memory are in use. */
 enum {
     FPGA_MEMORY_BYTES = 1024,
-    FPGA_INPUT_AT = 0x000,      /* 0 inputs, 4 ai[8] 16 bit each, 20 drives, 24 status, 28 irq */
+    FPGA_INPUT_AT = 0x000, /* 0 inputs, 4 ai[8] 16 bit each, 20 drives, 24 status, 28 irq */
     FPGA_INPUT_BYTES = 32,
-    FPGA_OUTPUT_AT = 0x400,     /* 0 mask, 4 value, 8 ao[8] 16 bit each, 24 servo, 28 control */
+    FPGA_OUTPUT_AT = 0x400, /* 0 mask, 4 value, 8 ao[8] 16 bit each, 24 servo, 28 control */
     FPGA_OUTPUT_BYTES = 32,
-    FPGA_PULSES_AT = 0x800,     /* memory 1 lies FPGA_MEMORY_BYTES behind memory 0 */
+    FPGA_PULSES_AT = 0x800, /* memory 1 lies FPGA_MEMORY_BYTES behind memory 0 */
     FPGA_SLOT_BYTES = 8,
     FPGA_ALL_BYTES = 4096,
 };
 
 /* What the byte of an axis in a slot means. */
 enum fpga_format {
-    FPGA_COUNTS = 0,    /* pulses of the axis in the slot, signed */
-    FPGA_BITS = 1,      /* bit 0 a pulse, bit 1 it goes backward: one a slot at most */
+    FPGA_COUNTS = 0, /* pulses of the axis in the slot, signed */
+    FPGA_BITS = 1,   /* bit 0 a pulse, bit 1 it goes backward: one a slot at most */
 };
 
 /* Mailbox: fill a pulse memory and mark it full. */
 #define FPGA_WRITE(X) \
     X(int32_t, write_seq, ) \
-    X(double,  write_clock, )               /* [clock] copy and mark are complete */ \
-    X(int32_t, write_memory, )              /* 0, 1 */ \
-    X(int32_t, write_slots, )               /* 1 .. FPGA_SLOTS */ \
-    X(int32_t, write_words, [FPGA_WORDS])   /* slot k in words 2 k, 2 k + 1 */
+    X(double, write_clock, )              /* [clock] copy and mark are complete */ \
+    X(int32_t, write_memory, )            /* 0, 1 */ \
+    X(int32_t, write_slots, )             /* 1 .. FPGA_SLOTS */ \
+    X(int32_t, write_words, [FPGA_WORDS]) /* slot k in words 2 k, 2 k + 1 */
 
 /* Mailbox: entries that set the digital outputs of their mask, each at its clock. */
 #define FPGA_OUT(X) \
     X(int32_t, out_seq, ) \
-    X(int32_t, out_count, )                 /* 0 .. FPGA_ENTRIES */ \
-    X(double,  out_clock, [FPGA_ENTRIES])   /* [clock] */ \
+    X(int32_t, out_count, )              /* 0 .. FPGA_ENTRIES */ \
+    X(double, out_clock, [FPGA_ENTRIES]) /* [clock] */ \
     X(int32_t, out_mask, [FPGA_ENTRIES]) \
     X(int32_t, out_value, [FPGA_ENTRIES])
 
 /* Mailbox: all analog outputs. */
 #define FPGA_AO(X) \
     X(int32_t, ao_seq, ) \
-    X(double,  ao_clock, )                  /* [clock] */ \
-    X(double,  ao, [FPGA_ANALOG])           /* [V] */
+    X(double, ao_clock, )        /* [clock] */ \
+    X(double, ao, [FPGA_ANALOG]) /* [V] */
 
 /* Levels, and the number that ends an emergency stop. */
 #define FPGA_LEVELS(X) \
-    X(bool,    run, )                       /* armed: to run out of slots is an underrun */ \
-    X(int32_t, servo, )                     /* servo on, a bit an axis */ \
+    X(bool, run, )      /* armed: to run out of slots is an underrun */ \
+    X(int32_t, servo, ) /* servo on, a bit an axis */ \
     X(int32_t, reset_seq, )
 
 /* Interrupts: of the pulse memories or their timer, and of inputs that change. */
 #define FPGA_INTERRUPTS(X) \
     X(int32_t, irq_seq, ) \
-    X(double,  irq_clock, )                 /* [clock] of the latest */ \
-    X(int32_t, irq_inputs, )                /* inputs as exchanged at it */ \
-    X(double,  irq_ai, [FPGA_ANALOG])       /* [V] as exchanged at it */ \
+    X(double, irq_clock, )           /* [clock] of the latest */ \
+    X(int32_t, irq_inputs, )         /* inputs as exchanged at it */ \
+    X(double, irq_ai, [FPGA_ANALOG]) /* [V] as exchanged at it */ \
     X(int32_t, input_irq_seq, ) \
-    X(double,  input_irq_clock, ) \
+    X(double, input_irq_clock, ) \
     X(int32_t, input_irq_image, )
 
 /* The state of the card. */
 #define FPGA_STATUS(X) \
-    X(int32_t, inputs, )                    /* as exchanged last */ \
-    X(int32_t, drives, )                    /* bits 0 - 5 ready, 8 - 13 alarm */ \
-    X(int32_t, memory, )                    /* that plays: 0, 1, -1 none */ \
-    X(int32_t, full, )                      /* bit m: memory m is marked full and waits */ \
-    X(int32_t, slot, )                      /* of the memory that plays */ \
-    X(int32_t, write_ack, )                 /* number of the latest write that arrived */ \
-    X(int32_t, refused, )                   /* writes and entries refused */ \
+    X(int32_t, inputs, )    /* as exchanged last */ \
+    X(int32_t, drives, )    /* bits 0 - 5 ready, 8 - 13 alarm */ \
+    X(int32_t, memory, )    /* that plays: 0, 1, -1 none */ \
+    X(int32_t, full, )      /* bit m: memory m is marked full and waits */ \
+    X(int32_t, slot, )      /* of the memory that plays */ \
+    X(int32_t, write_ack, ) /* number of the latest write that arrived */ \
+    X(int32_t, refused, )   /* writes and entries refused */ \
     X(int32_t, underruns, ) \
-    X(int32_t, late, )                      /* what was published behind its clock */ \
-    X(bool,    stopped, )                   /* emergency stop, until a reset */ \
-    X(double,  stopped_clock, )             /* [clock] of the latest stop */ \
-    X(int32_t, pulse_count, [FPGA_AXES])    /* [pulses] put out, forward minus backward */ \
-    X(int32_t, dropped, [FPGA_AXES])        /* [pulses] dropped by stops, likewise */
+    X(int32_t, late, )                   /* what was published behind its clock */ \
+    X(bool, stopped, )                   /* emergency stop, until a reset */ \
+    X(double, stopped_clock, )           /* [clock] of the latest stop */ \
+    X(int32_t, pulse_count, [FPGA_AXES]) /* [pulses] put out, forward minus backward */ \
+    X(int32_t, dropped, [FPGA_AXES])     /* [pulses] dropped by stops, likewise */
 
 LINK_STRUCT(fpga_host, FPGA_WRITE(LINK_MEMBER) FPGA_OUT(LINK_MEMBER) FPGA_AO(LINK_MEMBER)
-                       FPGA_LEVELS(LINK_MEMBER));
+                           FPGA_LEVELS(LINK_MEMBER));
 LINK_STRUCT(fpga_shown, FPGA_INTERRUPTS(LINK_MEMBER) FPGA_STATUS(LINK_MEMBER));
 
 /* Most pulses of an axis in a slot of so many clocks: 49 of 200 clocks; 1 as bits. */
@@ -117,8 +117,8 @@ void fpga_slot_pack(int32_t word[FPGA_SLOT_WORDS], const int32_t pulses[FPGA_SLO
 
 /* Pulses of each axis in a slot, forward counts up. Returns the first axis (0 .. 7) whose byte is
  * no number of pulses up to `most` or, of a spare axis, not 0; -1 if there is none. */
-int32_t fpga_slot_unpack(const int32_t word[FPGA_SLOT_WORDS], enum fpga_format format,
-                         int32_t most, int32_t pulses[FPGA_SLOT_AXES]);
+int32_t fpga_slot_unpack(const int32_t word[FPGA_SLOT_WORDS], enum fpga_format format, int32_t most,
+                         int32_t pulses[FPGA_SLOT_AXES]);
 
 /* Clock within its slot of pulse j = 0 .. n - 1 of n: floor((2 j + 1) slot_clocks / (2 n)). */
 int32_t fpga_slot_clock(int32_t j, int32_t n, int32_t slot_clocks);

@@ -26,8 +26,8 @@ size_t byte_ring_put(int32_t words[BYTE_RING_WORDS], int32_t *count, int32_t tak
         const uint32_t at = byte_at((uint32_t)*count + (uint32_t)i);
         const uint32_t shift = 8 * (at % 4);
         const uint32_t word = (uint32_t)words[at / 4];
-        words[at / 4] = (int32_t)((word & ~(UINT32_C(0xFF) << shift)) |
-                                  (uint32_t)bytes[i] << shift);
+        words[at / 4] =
+            (int32_t)((word & ~(UINT32_C(0xFF) << shift)) | (uint32_t)bytes[i] << shift);
     }
     *count = byte_ring_on(*count, part);
     return part;

@@ -17,20 +17,20 @@
 enum { COMP_POINTS = 256, COMP_LARGEST = 32767 };
 
 struct comp_table {
-    int32_t interval;               /* [pulses] between two points, >= 1; 0: no compensation */
-    int32_t home;                   /* index of the point at position 0, 0 .. 255 */
-    int32_t forward[COMP_POINTS];   /* [pulses] each within +-32767 */
+    int32_t interval;             /* [pulses] between two points, >= 1; 0: no compensation */
+    int32_t home;                 /* index of the point at position 0, 0 .. 255 */
+    int32_t forward[COMP_POINTS]; /* [pulses] each within +-32767 */
     int32_t backward[COMP_POINTS];
 };
 
 struct comp {
-    int32_t added;      /* [pulses] of correction in the commands so far */
-    bool    backward;   /* direction of the latest motion */
+    int32_t added; /* [pulses] of correction in the commands so far */
+    bool backward; /* direction of the latest motion */
 };
 
 struct comp_limits {
-    int32_t command;    /* [pulses] largest command of a DDA time, correction included */
-    int32_t change;     /* [pulses] largest correction in a DDA time */
+    int32_t command; /* [pulses] largest command of a DDA time, correction included */
+    int32_t change;  /* [pulses] largest correction in a DDA time */
 };
 
 /* True if every value lies in its range. */

@@ -44,8 +44,12 @@ int64_t dda_edge_tick(int32_t command, int32_t ticks, int32_t j)
 
 void dda_reset(struct dda *d, int32_t channels, int32_t ticks, int32_t divider)
 {
-    *d = (struct dda){.channels = channels, .ticks = ticks, .divider = divider,
-                      .next_ticks = ticks, .next_divider = divider, .run = true};
+    *d = (struct dda){ .channels = channels,
+                       .ticks = ticks,
+                       .divider = divider,
+                       .next_ticks = ticks,
+                       .next_divider = divider,
+                       .run = true };
 }
 
 void dda_set_time(struct dda *d, int32_t ticks, int32_t divider, int64_t clock)

@@ -12,16 +12,16 @@
 enum { DDA_CHANNELS_MAX = 8 };
 
 struct dda {
-    int32_t channels;                       /* 1 .. DDA_CHANNELS_MAX */
-    int32_t ticks;                          /* of the DDA time in progress, 2 or more */
-    int32_t divider;                        /* [clocks per tick] of the DDA time in progress */
-    int32_t next_ticks;                     /* from the next boundary on */
+    int32_t channels;   /* 1 .. DDA_CHANNELS_MAX */
+    int32_t ticks;      /* of the DDA time in progress, 2 or more */
+    int32_t divider;    /* [clocks per tick] of the DDA time in progress */
+    int32_t next_ticks; /* from the next boundary on */
     int32_t next_divider;
-    bool    run;
-    int64_t start;                          /* [clock] the DDA time in progress began */
-    int64_t stop;                           /* [clock] at which run was switched off */
-    int32_t command[DDA_CHANNELS_MAX];      /* [pulses] of the DDA time in progress */
-    int64_t before[DDA_CHANNELS_MAX];       /* [pulses] put out by the DDA times before */
+    bool run;
+    int64_t start;                     /* [clock] the DDA time in progress began */
+    int64_t stop;                      /* [clock] at which run was switched off */
+    int32_t command[DDA_CHANNELS_MAX]; /* [pulses] of the DDA time in progress */
+    int64_t before[DDA_CHANNELS_MAX];  /* [pulses] put out by the DDA times before */
 };
 
 /* One DDA time [clocks]. */

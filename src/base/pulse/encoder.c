@@ -19,7 +19,7 @@ enum encoder_status encoder_check(const struct encoder_config *c)
 
 void encoder_reset(struct encoder *e, const struct encoder_config *c)
 {
-    *e = (struct encoder){.config = *c, .index_first = -1};
+    *e = (struct encoder){ .config = *c, .index_first = -1 };
     encoder_decode(e);
 }
 
@@ -56,7 +56,7 @@ int encoder_set_compare(struct encoder *e, bool on, int32_t value, int64_t clock
         return 0;
     e->compare_on = on;
     e->compare = value;
-    e->reached = false;     /* a new value is a new condition */
+    e->reached = false; /* a new value is a new condition */
     return encoder_compare(e, clock);
 }
 
@@ -112,7 +112,7 @@ bool encoder_sample(struct encoder *e, double phase, int64_t clock)
     e->walked = 0;
     e->index_first = -1;
     if (first || e->config.rate == 0 || e->config.format == ENCODER_NONE)
-        settle(e);      /* an input that is off follows the shaft without counting */
+        settle(e); /* an input that is off follows the shaft without counting */
     return true;
 }
 

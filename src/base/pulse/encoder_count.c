@@ -28,7 +28,7 @@ static int wired(uint32_t wiring, int quarter)
 
 void encoder_decode(struct encoder *e)
 {
-    static const int ORDER[] = {3, 0, 2, 1};    /* place of (A, B) in the forward sequence */
+    static const int ORDER[] = { 3, 0, 2, 1 }; /* place of (A, B) in the forward sequence */
     const struct encoder_config *c = &e->config;
     e->sign = 1;
     e->shift = 0;

@@ -11,10 +11,10 @@
 enum { ENCODER_FILTER_MAX = 65535 };
 
 enum encoder_format {
-    ENCODER_AB,                 /* two lines in quadrature */
-    ENCODER_CW_CCW,             /* a pulse a line period, on A forward, on B backward */
-    ENCODER_PULSE_DIRECTION,    /* a pulse a line period on A, direction on B */
-    ENCODER_NONE,               /* not connected */
+    ENCODER_AB,              /* two lines in quadrature */
+    ENCODER_CW_CCW,          /* a pulse a line period, on A forward, on B backward */
+    ENCODER_PULSE_DIRECTION, /* a pulse a line period on A, direction on B */
+    ENCODER_NONE,            /* not connected */
 };
 
 /* Bit of `wiring` beside those of lines.h. */
@@ -22,54 +22,54 @@ enum { ENCODER_C_INVERSE = 8 };
 
 struct encoder_config {
     enum encoder_format format;
-    int32_t  rate;          /* 0, 1, 2 or 4 counts per line period; 0 switches the input off */
+    int32_t rate; /* 0, 1, 2 or 4 counts per line period; 0 switches the input off */
     uint32_t wiring;
-    int32_t  filter;        /* [clocks] a level must stand to be seen; 0: no filter */
-    int32_t  index_lines;   /* [line periods] between two index pulses, >= 1 */
+    int32_t filter;      /* [clocks] a level must stand to be seen; 0: no filter */
+    int32_t index_lines; /* [line periods] between two index pulses, >= 1 */
 };
 
 enum encoder_status {
     ENCODER_OK,
-    ENCODER_BAD_FORMAT,     /* no such format */
-    ENCODER_BAD_RATE,       /* not 0, 1, 2 or 4 */
-    ENCODER_BAD_WIRING,     /* no such bit, or pulse and direction swapped */
-    ENCODER_BAD_FILTER,     /* not 0 .. 65535 */
-    ENCODER_BAD_INDEX,      /* less than a line period between two index pulses */
+    ENCODER_BAD_FORMAT, /* no such format */
+    ENCODER_BAD_RATE,   /* not 0, 1, 2 or 4 */
+    ENCODER_BAD_WIRING, /* no such bit, or pulse and direction swapped */
+    ENCODER_BAD_FILTER, /* not 0 .. 65535 */
+    ENCODER_BAD_INDEX,  /* less than a line period between two index pulses */
 };
 
 /* A line behind the filter. */
 struct encoder_line {
-    bool    level;              /* seen */
-    bool    pin;                /* at the pin */
-    int64_t edge;               /* [clock] the pin changed last */
+    bool level;   /* seen */
+    bool pin;     /* at the pin */
+    int64_t edge; /* [clock] the pin changed last */
 };
 
 struct encoder {
     struct encoder_config config;
-    int32_t sign;               /* +1, or -1 if the wiring turns the direction round */
-    int32_t shift;              /* quarter line periods from phase 0 to an edge that counts */
-    int32_t share;              /* quarter line periods per count */
+    int32_t sign;  /* +1, or -1 if the wiring turns the direction round */
+    int32_t shift; /* quarter line periods from phase 0 to an edge that counts */
+    int32_t share; /* quarter line periods per count */
 
-    struct quadrature pins;     /* edges at the pins, as far as worked off */
-    int64_t seen;               /* quarter behind the filter, less edges lost there */
-    int64_t lost;               /* [edges] whole line periods */
-    int32_t walked;             /* edges taken one by one since the latest sample */
-    struct encoder_line a, b, index;    /* as the counter sees them */
+    struct quadrature pins;          /* edges at the pins, as far as worked off */
+    int64_t seen;                    /* quarter behind the filter, less edges lost there */
+    int64_t lost;                    /* [edges] whole line periods */
+    int32_t walked;                  /* edges taken one by one since the latest sample */
+    struct encoder_line a, b, index; /* as the counter sees them */
 
-    bool    index_low;          /* the index is ON at the other level than the wiring says */
-    int64_t zero;               /* edges that count, up to where the counter is zero */
-    int64_t count;              /* [counts]; the register shows the low 32 bits */
-    bool    too_fast;           /* edges were lost in the filter; stays until cleared */
+    bool index_low; /* the index is ON at the other level than the wiring says */
+    int64_t zero;   /* edges that count, up to where the counter is zero */
+    int64_t count;  /* [counts]; the register shows the low 32 bits */
+    bool too_fast;  /* edges were lost in the filter; stays until cleared */
 
-    int32_t index_seen;         /* index pulses so far */
-    int64_t index_first;        /* [clock] of the first since the latest sample, -1 if none came */
-    int64_t index_clock;        /* [clock] of the latest */
-    int64_t index_count;        /* [counts] the counter's value at that clock */
+    int32_t index_seen;  /* index pulses so far */
+    int64_t index_first; /* [clock] of the first since the latest sample, -1 if none came */
+    int64_t index_clock; /* [clock] of the latest */
+    int64_t index_count; /* [counts] the counter's value at that clock */
 
-    bool    compare_on;
-    int32_t compare;            /* [counts] */
-    bool    reached;            /* compare_on and count >= compare */
-    int64_t compare_clock;      /* [clock] at which it was reached last */
+    bool compare_on;
+    int32_t compare;       /* [counts] */
+    bool reached;          /* compare_on and count >= compare */
+    int64_t compare_clock; /* [clock] at which it was reached last */
 };
 
 /* Events, as bits. */

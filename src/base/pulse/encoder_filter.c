@@ -68,7 +68,7 @@ static void skip(struct encoder *e, int way, int64_t left)
 {
     enum { MARGIN = 8, SETTLED = 4 };
     if (e->walked < SETTLED || e->index.pin || e->index.level)
-        return;     /* what came before may still stand in the filter */
+        return; /* what came before may still stand in the filter */
     const struct quadrature *q = &e->pins;
     double half = 0.5 * (double)(q->clock - q->from_clock) / fabs(q->to - q->from); /* [clocks] */
     bool all = half >= e->config.filter;
@@ -82,12 +82,12 @@ static void skip(struct encoder *e, int way, int64_t left)
     if (many < 4 || !(all || none) || (all && waiting < 0))
         return;
     e->pins.quarter += way * many;
-    for (int n = -1; n <= 0; n++) {         /* the two edges just passed */
+    for (int n = -1; n <= 0; n++) { /* the two edges just passed */
         int64_t upper = way > 0 ? e->pins.quarter + n : e->pins.quarter - n + 1;
         struct encoder_line *l = upper & 1 ? &e->b : &e->a;
         l->edge = quadrature_clock(&e->pins, upper);
         if (all)
-            l->level = !l->pin;             /* both still to be seen */
+            l->level = !l->pin; /* both still to be seen */
     }
     if (all)
         e->seen += way * (many + waiting - 2);

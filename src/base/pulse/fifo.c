@@ -12,7 +12,7 @@ static int32_t place(const struct fifo *f, int32_t n)
 
 void fifo_reset(struct fifo *f, int32_t depth)
 {
-    memset(f, 0, sizeof *f);    /* padding, too: equal states are equal bytes */
+    memset(f, 0, sizeof *f); /* padding, too: equal states are equal bytes */
     f->depth = depth;
 }
 

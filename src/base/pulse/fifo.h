@@ -7,10 +7,10 @@
 #include <stdint.h>
 
 struct fifo {
-    int32_t depth;      /* entries it can hold */
-    int32_t head;       /* place of the oldest entry */
-    int32_t stock;      /* entries held */
-    bool    high;       /* comparator: stock was above the minimum at the last look */
+    int32_t depth; /* entries it can hold */
+    int32_t head;  /* place of the oldest entry */
+    int32_t stock; /* entries held */
+    bool high;     /* comparator: stock was above the minimum at the last look */
 };
 
 /* Empty, of this depth. */

@@ -16,8 +16,8 @@
 
 /* A pulse on its line. */
 struct high {
-    int64_t fall;           /* [clock] it ends */
-    bool    backward;
+    int64_t fall; /* [clock] it ends */
+    bool backward;
 };
 
 enum pulse_status pulse_check(const struct pulse_config *c, int32_t widest)
@@ -51,18 +51,17 @@ static int32_t pulses_until(const struct dda *d, int channel, int64_t clock)
 
 void pulse_reset(struct pulse *p)
 {
-    memset(p, 0, sizeof *p);    /* padding, too: equal states are equal bytes */
+    memset(p, 0, sizeof *p); /* padding, too: equal states are equal bytes */
     p->last = -1;
 }
 
-void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct dda *d,
-                    int channel)
+void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct dda *d, int channel)
 {
     int32_t command = d->command[channel];
     if (command == 0)
         return;
     p->last = edge(d, channel, abs(command));
-    p->high = high_time(c, d->next_divider);    /* its next pulse comes in the next DDA time */
+    p->high = high_time(c, d->next_divider); /* its next pulse comes in the next DDA time */
     p->backward = command < 0;
 }
 
@@ -73,11 +72,11 @@ static struct high nth_pulse(const struct pulse_config *c, const struct pulse *p
 {
     int32_t command = d->command[channel];
     if (n == 0)
-        return (struct high){p->last == d->start ? p->last + p->high : d->start, p->backward};
+        return (struct high){ p->last == d->start ? p->last + p->high : d->start, p->backward };
     int64_t rise = edge(d, channel, n);
     int64_t next = n < abs(command) ? edge(d, channel, n + 1)
                                     : d->start + dda_time(d->ticks, d->divider) + d->divider;
-    return (struct high){rise + high_time(c, next - rise), command < 0};
+    return (struct high){ rise + high_time(c, next - rise), command < 0 };
 }
 
 struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const struct dda *d,
@@ -86,16 +85,16 @@ struct lines pulse_at(const struct pulse_config *c, const struct pulse *p, const
     int32_t command = d->command[channel];
     int32_t n = pulses_until(d, channel, clock);
     if (c->format == PULSE_NONE)
-        return lines_wired((struct lines){false, false}, c->wiring);
+        return lines_wired((struct lines){ false, false }, c->wiring);
     if (c->format == PULSE_AB) {
         const int64_t count = d->before[channel] + (command < 0 ? -n : n);
         return lines_wired(lines_of_quarter(count), c->wiring);
     }
     struct high h = nth_pulse(c, p, d, channel, n);
     bool on = (d->run ? clock : d->stop) < h.fall;
-    struct lines l = {on && !h.backward, on && h.backward};
+    struct lines l = { on && !h.backward, on && h.backward };
     if (c->format == PULSE_DIRECTION)
-        l = (struct lines){on, on || command == 0 ? h.backward : command < 0};
+        l = (struct lines){ on, on || command == 0 ? h.backward : command < 0 };
     return lines_wired(l, c->wiring);
 }
 

@@ -9,30 +9,30 @@
 #include "lines.h"
 
 enum pulse_format {
-    PULSE_DIRECTION,        /* a pulse on A; B is the direction, high = backward */
-    PULSE_CW_CCW,           /* a pulse on A forward, on B backward */
-    PULSE_AB,               /* quadrature, a pulse is an edge; A leads B forward */
-    PULSE_NONE,             /* both low */
+    PULSE_DIRECTION, /* a pulse on A; B is the direction, high = backward */
+    PULSE_CW_CCW,    /* a pulse on A forward, on B backward */
+    PULSE_AB,        /* quadrature, a pulse is an edge; A leads B forward */
+    PULSE_NONE,      /* both low */
 };
 
 struct pulse_config {
     enum pulse_format format;
-    uint32_t wiring;        /* see lines.h */
-    int32_t  width;         /* [clocks] a pulse is high, 1 or more; PULSE_AB does not use it */
+    uint32_t wiring; /* see lines.h */
+    int32_t width;   /* [clocks] a pulse is high, 1 or more; PULSE_AB does not use it */
 };
 
 enum pulse_status {
     PULSE_OK,
-    PULSE_BAD_FORMAT,       /* no such format */
-    PULSE_BAD_WIRING,       /* no such bit */
-    PULSE_BAD_WIDTH,        /* not 1 .. the largest */
+    PULSE_BAD_FORMAT, /* no such format */
+    PULSE_BAD_WIRING, /* no such bit */
+    PULSE_BAD_WIDTH,  /* not 1 .. the largest */
 };
 
 /* What is left of the DDA times before; `struct dda` has the one in progress. */
 struct pulse {
-    int64_t last;           /* [clock] of their latest pulse, -1 if there was none */
-    int32_t high;           /* [clocks] it reaches into the DDA time that begins at `last` */
-    bool    backward;       /* its direction */
+    int64_t last;  /* [clock] of their latest pulse, -1 if there was none */
+    int32_t high;  /* [clocks] it reaches into the DDA time that begins at `last` */
+    bool backward; /* its direction */
 };
 
 /* PULSE_OK, or the first member that is out of range; `widest` is the largest width [clocks]. */

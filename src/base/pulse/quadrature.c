@@ -20,7 +20,7 @@ static int64_t passed(double from, double to, int64_t span, double edge)
     const double way = fabs(to - from);
     const double need = fabs(edge - from) * (double)span;
     const bool up = to > from;
-    int64_t n = (int64_t)(need / way);  /* never beyond: rounding can only reach the next whole */
+    int64_t n = (int64_t)(need / way); /* never beyond: rounding can only reach the next whole */
     while (up ? way * (double)n < need : way * (double)n <= need)
         n++;
     return n < 1 ? 1 : n > span ? span : n;

@@ -11,21 +11,21 @@
 
 /* Largest |phase|: its quarters are whole numbers in a double, with room for one more
  * [line periods]. */
-#define QUADRATURE_PHASE_MAX 1125899906842624.0     /* 2^50 */
+#define QUADRATURE_PHASE_MAX 1125899906842624.0 /* 2^50 */
 
 enum quadrature_status {
     QUADRATURE_OK = 0,
-    QUADRATURE_BAD_PHASE = -1,      /* no number, or larger than QUADRATURE_PHASE_MAX */
-    QUADRATURE_TOO_FAST = -2,       /* more than one edge per clock */
+    QUADRATURE_BAD_PHASE = -1, /* no number, or larger than QUADRATURE_PHASE_MAX */
+    QUADRATURE_TOO_FAST = -2,  /* more than one edge per clock */
 };
 
 struct quadrature {
-    bool    primed;             /* there was a first sample */
-    double  from, to;           /* [line periods] phase at the two latest instants */
-    int64_t from_clock, clock;  /* [clock] of these instants */
-    int64_t quarter;            /* as the lines are: the edges up to here have been passed */
-    int64_t end;                /* floor(4 to): the quarter at `clock` */
-    int64_t start;              /* quarter at the first sample */
+    bool primed;               /* there was a first sample */
+    double from, to;           /* [line periods] phase at the two latest instants */
+    int64_t from_clock, clock; /* [clock] of these instants */
+    int64_t quarter;           /* as the lines are: the edges up to here have been passed */
+    int64_t end;               /* floor(4 to): the quarter at `clock` */
+    int64_t start;             /* quarter at the first sample */
 };
 
 /* What is wrong with a sample at `clock`, later than the latest. */

@@ -111,7 +111,7 @@ void cyclic_begin(struct cyclic *s, int task, int64_t due, int64_t clocks)
     t->active = true;
     t->event = t->woken;
     t->from = due;
-    s->processor.task[task].turn = INT64_MIN;   /* before its equals from now on */
+    s->processor.task[task].turn = INT64_MIN; /* before its equals from now on */
     processor_compute(&s->processor, task, clocks);
     at_least(&t->use.latency, s->processor.clock - due);
 }

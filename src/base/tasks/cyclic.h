@@ -19,43 +19,43 @@
 
 #include "processor.h"
 
-enum { CYCLIC_TASKS = 8 };      /* at most */
+enum { CYCLIC_TASKS = 8 }; /* at most */
 
 /* Longest time, offset, cycle, and last clock: more than a thousand years. */
 #define CYCLIC_LONGEST ((int64_t)1 << 61)
 
 struct cyclic_config {
-    int32_t tasks;                  /* the first so many are there */
+    int32_t tasks; /* the first so many are there */
     int32_t priority[CYCLIC_TASKS];
-    int64_t cycle[CYCLIC_TASKS];    /* [clocks]; 0: woken only */
-    int64_t offset[CYCLIC_TASKS];   /* [clocks] of the first cycle */
+    int64_t cycle[CYCLIC_TASKS];  /* [clocks]; 0: woken only */
+    int64_t offset[CYCLIC_TASKS]; /* [clocks] of the first cycle */
 };
 
 /* What a task has had so far. */
 struct cyclic_use {
-    int32_t runs;       /* ended */
-    int32_t missed;     /* deadlines */
-    int64_t latency;    /* [clocks] longest, due to begin */
-    int64_t response;   /* [clocks] longest, due to end */
-    int64_t busy;       /* [clocks] it has had the processor */
+    int32_t runs;     /* ended */
+    int32_t missed;   /* deadlines */
+    int64_t latency;  /* [clocks] longest, due to begin */
+    int64_t response; /* [clocks] longest, due to end */
+    int64_t busy;     /* [clocks] it has had the processor */
 };
 
 struct cyclic_task {
-    int64_t cycle;      /* [clocks] */
-    int64_t next;       /* [clock] its timer asks again; INT64_MAX without a cycle */
-    bool    asked;      /* a run waits */
-    bool    woken;      /* not by its timer */
-    int64_t ready;      /* [clock] at which the run that waits may begin, */
-    int64_t due;        /* [clock] and from which its latency counts */
-    bool    active;     /* a run has begun, not ended */
-    bool    event;      /* that run was woken */
-    int64_t from;       /* [clock] that run was due */
-    struct cyclic_use use;  /* but for `busy`, which the processor knows */
+    int64_t cycle;         /* [clocks] */
+    int64_t next;          /* [clock] its timer asks again; INT64_MAX without a cycle */
+    bool asked;            /* a run waits */
+    bool woken;            /* not by its timer */
+    int64_t ready;         /* [clock] at which the run that waits may begin, */
+    int64_t due;           /* [clock] and from which its latency counts */
+    bool active;           /* a run has begun, not ended */
+    bool event;            /* that run was woken */
+    int64_t from;          /* [clock] that run was due */
+    struct cyclic_use use; /* but for `busy`, which the processor knows */
 };
 
 struct cyclic {
-    struct processor processor;     /* everything before its clock is done */
-    int     running;    /* task that had the clock before; -1 none */
+    struct processor processor; /* everything before its clock is done */
+    int running;                /* task that had the clock before; -1 none */
     struct cyclic_task task[CYCLIC_TASKS];
 };
 
@@ -85,9 +85,9 @@ void cyclic_end(struct cyclic *s, int task);
 /* What there is to tell at a clock. */
 struct cyclic_report {
     int64_t clock;
-    int     running;
+    int running;
     struct cyclic_use task[CYCLIC_TASKS];
-    struct cyclic_use all;  /* sums; the longest latency and response */
+    struct cyclic_use all; /* sums; the longest latency and response */
 };
 
 void cyclic_tell(const struct cyclic *s, struct cyclic_report *r);

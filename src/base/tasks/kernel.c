@@ -3,25 +3,27 @@
 #include <string.h>
 
 enum {
-    SELF = KERNEL_TASKS + KERNEL_INTERRUPTS,    /* the kernel's own place on the processor */
-    LEVEL_MAX = 255, INTERRUPT_BASE = 2000
+    SELF = KERNEL_TASKS + KERNEL_INTERRUPTS, /* the kernel's own place on the processor */
+    LEVEL_MAX = 255,
+    INTERRUPT_BASE = 2000
 };
 
 static bool queue_valid(const struct kernel_queue_config *q)
 {
     const int32_t most = q->kind == KERNEL_COUNTING ? INT32_MAX
-                       : q->kind == KERNEL_QUEUE ? KERNEL_ITEMS : 0;
+                         : q->kind == KERNEL_QUEUE  ? KERNEL_ITEMS
+                                                    : 0;
     const int32_t count = q->kind == KERNEL_COUNTING ? q->length : q->kind == KERNEL_BINARY;
 
-    return q->kind >= KERNEL_BINARY && q->kind < KERNEL_KINDS &&
-           (most == 0 || (q->length >= 1 && q->length <= most)) &&
-           q->count >= 0 && q->count <= count;
+    return q->kind >= KERNEL_BINARY && q->kind < KERNEL_KINDS
+           && (most == 0 || (q->length >= 1 && q->length <= most)) && q->count >= 0
+           && q->count <= count;
 }
 
 static bool valid(const struct kernel_config *c)
 {
-    bool ok = c->tasks >= 0 && c->tasks <= KERNEL_TASKS && c->tick >= 0 && c->tick_time >= 0 &&
-              c->switch_time >= 0 && c->entry_time >= 0;
+    bool ok = c->tasks >= 0 && c->tasks <= KERNEL_TASKS && c->tick >= 0 && c->tick_time >= 0
+              && c->switch_time >= 0 && c->entry_time >= 0;
 
     for (int i = 0; i < KERNEL_TASKS; i++) {
         ok = ok && c->priority[i] >= 0 && c->priority[i] <= KERNEL_PRIORITY_MAX;
@@ -96,7 +98,8 @@ enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *co
     for (int i = 0; i < KERNEL_QUEUES; i++) {
         const struct kernel_queue_config *q = &config->queue[i];
         const bool counts = q->kind == KERNEL_COUNTING || q->kind == KERNEL_QUEUE;
-        k->queue[i] = (struct kernel_queue){ .length = counts ? q->length : 1, .holder = -1,
+        k->queue[i] = (struct kernel_queue){ .length = counts ? q->length : 1,
+                                             .holder = -1,
                                              .count = q->kind == KERNEL_MUTEX ? 1 : q->count };
     }
     start_tasks(k);
@@ -105,8 +108,8 @@ enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *co
 
 void kernel_note(struct kernel *k, enum kernel_what what, int32_t number, int32_t value)
 {
-    k->log[k->events++ % KERNEL_LOG] = (struct kernel_event){ k->processor.clock, what, number,
-                                                              value };
+    k->log[k->events++ % KERNEL_LOG] =
+        (struct kernel_event){ k->processor.clock, what, number, value };
 }
 
 void kernel_mark(struct kernel *k, int32_t number, int32_t value)
@@ -154,8 +157,8 @@ static int due_interrupt(const struct kernel *k)
 
     for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
         const int32_t priority = k->processor.task[KERNEL_TASKS + i].priority;
-        if (k->pending[i] <= k->processor.clock && priority > floor &&
-            (best < 0 || priority > k->processor.task[KERNEL_TASKS + best].priority)) {
+        if (k->pending[i] <= k->processor.clock && priority > floor
+            && (best < 0 || priority > k->processor.task[KERNEL_TASKS + best].priority)) {
             best = i;
         }
     }
@@ -178,8 +181,8 @@ static int due_task(const struct kernel *k)
 
     for (int i = 0; i < k->config.tasks; i++) {
         const struct kernel_task *t = &k->task[i], *f = &k->task[first < 0 ? i : first];
-        if (t->wake <= k->ticks &&
-            (first < 0 || t->wake < f->wake || (t->wake == f->wake && t->order < f->order))) {
+        if (t->wake <= k->ticks
+            && (first < 0 || t->wake < f->wake || (t->wake == f->wake && t->order < f->order))) {
             first = i;
         }
     }
@@ -216,7 +219,7 @@ static bool begin(struct kernel *k)
     if (k->processor.task[SELF].ready) {
         return false;
     }
-    if (k->first >= 0) {        /* interrupts are masked until then */
+    if (k->first >= 0) { /* interrupts are masked until then */
         switch_to(k, k->first);
         k->first = -1;
         return true;

@@ -40,8 +40,10 @@
 #include "processor.h"
 
 enum {
-    KERNEL_TASKS = 15, KERNEL_INTERRUPTS = 12, KERNEL_QUEUES = 16,
-    KERNEL_ITEMS = 8,           /* in a queue, at most */
+    KERNEL_TASKS = 15,
+    KERNEL_INTERRUPTS = 12,
+    KERNEL_QUEUES = 16,
+    KERNEL_ITEMS = 8, /* in a queue, at most */
     KERNEL_LOG = 256
 };
 static_assert(KERNEL_TASKS + KERNEL_INTERRUPTS + 1 == PROCESSOR_TASKS, "and the kernel itself");
@@ -53,84 +55,88 @@ enum kernel_kind { KERNEL_BINARY, KERNEL_COUNTING, KERNEL_MUTEX, KERNEL_QUEUE, K
 
 struct kernel_queue_config {
     enum kernel_kind kind;
-    int32_t length;             /* largest count; items of a queue; else unused */
-    int32_t count;              /* of a binary or counting semaphore, at first */
+    int32_t length; /* largest count; items of a queue; else unused */
+    int32_t count;  /* of a binary or counting semaphore, at first */
 };
 
 /* All times in units of the caller's clock. */
 struct kernel_config {
-    int32_t tasks;                      /* the first so many are there, ready at clock 0 */
-    int32_t priority[KERNEL_TASKS];     /* 0 .. 1000, the highest first */
-    int32_t level[KERNEL_INTERRUPTS];   /* 0 .. 255, the lowest first */
-    int32_t kernel_level;               /* interrupts below it must not call the kernel */
-    int64_t tick;                       /* period; 0: no tick */
-    int64_t tick_time, switch_time;     /* what a tick and another task take */
-    int64_t entry_time;                 /* from the interrupt to its first line */
-    struct kernel_queue_config queue[KERNEL_QUEUES];    /* 0: an empty binary semaphore */
+    int32_t tasks;                    /* the first so many are there, ready at clock 0 */
+    int32_t priority[KERNEL_TASKS];   /* 0 .. 1000, the highest first */
+    int32_t level[KERNEL_INTERRUPTS]; /* 0 .. 255, the lowest first */
+    int32_t kernel_level;             /* interrupts below it must not call the kernel */
+    int64_t tick;                     /* period; 0: no tick */
+    int64_t tick_time, switch_time;   /* what a tick and another task take */
+    int64_t entry_time;               /* from the interrupt to its first line */
+    struct kernel_queue_config queue[KERNEL_QUEUES]; /* 0: an empty binary semaphore */
 };
 
 /* The one status of the calls below. */
 enum kernel_status {
     KERNEL_OK = 0,
-    KERNEL_WAS_FULL = -1,       /* the semaphore had been given already: nothing is counted */
-    KERNEL_NOT_ALLOWED = -2,    /* not a call of this context: an interrupt that blocks, or is too
-                                 * urgent to call; a task that ends an interrupt; a mutex of
-                                 * another task; nobody is asked */
-    KERNEL_RANGE = -3,          /* no such task, queue or interrupt; a time below 0 */
-    KERNEL_IN_VAIN = -4         /* it was not there, or had no room, all the time to wait */
+    KERNEL_WAS_FULL = -1,    /* the semaphore had been given already: nothing is counted */
+    KERNEL_NOT_ALLOWED = -2, /* not a call of this context: an interrupt that blocks, or is too
+                              * urgent to call; a task that ends an interrupt; a mutex of
+                              * another task; nobody is asked */
+    KERNEL_RANGE = -3,       /* no such task, queue or interrupt; a time below 0 */
+    KERNEL_IN_VAIN = -4      /* it was not there, or had no room, all the time to wait */
 };
 
 /* What a task has asked for and has not got. */
 enum kernel_call {
-    KERNEL_NO_CALL, KERNEL_TAKES, KERNEL_RECEIVES, KERNEL_SENDS, KERNEL_NOTIFY_TAKES,
+    KERNEL_NO_CALL,
+    KERNEL_TAKES,
+    KERNEL_RECEIVES,
+    KERNEL_SENDS,
+    KERNEL_NOTIFY_TAKES,
     KERNEL_NOTIFY_WAITS
 };
 
 enum kernel_notified { KERNEL_NOT_WAITING, KERNEL_WAITING, KERNEL_NOTIFIED };
 
 struct kernel_task {
-    bool    ready;
-    bool    chosen;         /* the last among its equals that the kernel has chosen */
-    int64_t turn;           /* place among those that are ready */
-    int32_t priority;       /* perhaps a lent one; */
-    int32_t base;           /* its own */
-    int32_t rank;           /* priority by which it waits in front of others */
-    int32_t held;           /* mutexes */
-    int64_t wake;           /* tick at which it wakes; INT64_MAX never, */
-    int64_t order;          /* and its place among those of that tick */
+    bool ready;
+    bool chosen;      /* the last among its equals that the kernel has chosen */
+    int64_t turn;     /* place among those that are ready */
+    int32_t priority; /* perhaps a lent one; */
+    int32_t base;     /* its own */
+    int32_t rank;     /* priority by which it waits in front of others */
+    int32_t held;     /* mutexes */
+    int64_t wake;     /* tick at which it wakes; INT64_MAX never, */
+    int64_t order;    /* and its place among those of that tick */
 
-    enum kernel_call call;  /* not at its end */
-    int32_t queue;          /* of that call */
-    bool    waits;          /* for that queue, */
-    int64_t place;          /* there */
-    bool    lent;           /* its priority to the holder */
-    bool    expired;        /* its time is over, it has yet to look a last time */
-    int64_t ticks;          /* still to wait, */
-    int64_t since;          /* from this tick on */
-    int32_t value;          /* to be sent, or that came */
-    int32_t result;         /* of the latest call, an enum kernel_status */
+    enum kernel_call call; /* not at its end */
+    int32_t queue;         /* of that call */
+    bool waits;            /* for that queue, */
+    int64_t place;         /* there */
+    bool lent;             /* its priority to the holder */
+    bool expired;          /* its time is over, it has yet to look a last time */
+    int64_t ticks;         /* still to wait, */
+    int64_t since;         /* from this tick on */
+    int32_t value;         /* to be sent, or that came */
+    int32_t result;        /* of the latest call, an enum kernel_status */
 
     enum kernel_notified notified;
-    uint32_t bits;          /* the notification's value */
-    uint32_t clears;        /* bits to be cleared when the call ends */
+    uint32_t bits;   /* the notification's value */
+    uint32_t clears; /* bits to be cleared when the call ends */
 };
 
 struct kernel_queue {
     int32_t length, count;
-    int32_t holder;         /* of the mutex; -1 none */
-    int32_t first;          /* item */
+    int32_t holder; /* of the mutex; -1 none */
+    int32_t first;  /* item */
     int32_t item[KERNEL_ITEMS];
 };
 
 /* What the log tells, with a number and a value. */
 enum kernel_what {
-    KERNEL_RUNS,            /* this task gets the processor */
-    KERNEL_INTERRUPT,       /* this interrupt begins */
-    KERNEL_GIVEN,           /* this semaphore, or an item to this queue; by what: value */
-    KERNEL_FULL,            /* a give of this semaphore failed; by what: value */
-    KERNEL_TAKEN,           /* this semaphore, or an item; by what: value */
-    KERNEL_PRIORITY,        /* of this task: value */
-    KERNEL_MARK             /* the caller's own: kernel_mark */
+    KERNEL_RUNS,      /* this task gets the processor */
+    KERNEL_INTERRUPT, /* this interrupt begins */
+    KERNEL_GIVEN,     /* this semaphore, or an item to this queue; by what: value */
+    KERNEL_FULL,      /* a give of this semaphore failed; by what: value */
+    KERNEL_TAKEN,     /* this semaphore, or an item; by what: value */
+    KERNEL_PRIORITY,  /* of this task: value */
+    KERNEL_MARK       /* the caller's own: kernel_mark */
 };
 
 struct kernel_event {
@@ -142,21 +148,21 @@ struct kernel_event {
 struct kernel {
     struct kernel_config config;
     struct processor processor;
-    struct kernel_task task[KERNEL_TASKS + 1];      /* and the idle one */
+    struct kernel_task task[KERNEL_TASKS + 1]; /* and the idle one */
     struct kernel_queue queue[KERNEL_QUEUES];
     int64_t pending[KERNEL_INTERRUPTS]; /* clock from which it is due; INT64_MAX: it is not */
-    bool    woken[KERNEL_INTERRUPTS];   /* it has woken a task more urgent than the current one */
-    int32_t received;       /* value that an interrupt has received */
-    bool    chooses;        /* anew, as soon as no interrupt is served */
-    bool    owed;           /* a more urgent task is ready, and nobody may have asked to choose */
-    int64_t turns;          /* given out */
-    int64_t ticks;          /* so far */
-    int64_t next_tick;      /* clock; INT64_MAX: none */
-    int32_t first;          /* task that is to have the processor first; -1 one has had it */
-    int32_t current;        /* task that has the processor but for interrupts; -1 the idle one */
-    int32_t asked;          /* context that is to answer: a task, or KERNEL_TASKS + an interrupt */
-    struct kernel_event log[KERNEL_LOG];    /* the latest ones */
-    int64_t events;         /* so far; event i is log[i % KERNEL_LOG] */
+    bool woken[KERNEL_INTERRUPTS];      /* it has woken a task more urgent than the current one */
+    int32_t received;                   /* value that an interrupt has received */
+    bool chooses;                       /* anew, as soon as no interrupt is served */
+    bool owed;         /* a more urgent task is ready, and nobody may have asked to choose */
+    int64_t turns;     /* given out */
+    int64_t ticks;     /* so far */
+    int64_t next_tick; /* clock; INT64_MAX: none */
+    int32_t first;     /* task that is to have the processor first; -1 one has had it */
+    int32_t current;   /* task that has the processor but for interrupts; -1 the idle one */
+    int32_t asked;     /* context that is to answer: a task, or KERNEL_TASKS + an interrupt */
+    struct kernel_event log[KERNEL_LOG]; /* the latest ones */
+    int64_t events;                      /* so far; event i is log[i % KERNEL_LOG] */
 };
 
 /* KERNEL_RANGE if a priority, level, time or count is out of range; then *k is as it was. */
@@ -175,11 +181,11 @@ int kernel_next(struct kernel *k, int64_t until);
  * is asked next. */
 enum kernel_status kernel_compute(struct kernel *k, int64_t time);
 enum kernel_status kernel_give(struct kernel *k, int semaphore);
-enum kernel_status kernel_take(struct kernel *k, int semaphore);    /* waits for ever */
+enum kernel_status kernel_take(struct kernel *k, int semaphore); /* waits for ever */
 enum kernel_status kernel_take_within(struct kernel *k, int semaphore, int64_t ticks);
 enum kernel_status kernel_send(struct kernel *k, int queue, int32_t value, int64_t ticks);
-enum kernel_status kernel_receive(struct kernel *k, int queue, int64_t ticks);  /* kernel_value */
-enum kernel_status kernel_end_interrupt(struct kernel *k, bool yield);  /* if it woke a task */
+enum kernel_status kernel_receive(struct kernel *k, int queue, int64_t ticks); /* kernel_value */
+enum kernel_status kernel_end_interrupt(struct kernel *k, bool yield); /* if it woke a task */
 
 /* Answers of a task alone. A delay of 0 yields. kernel_delay_until: until the tick *previous +
  * ticks, which *previous is then; at once if that is behind. */
@@ -190,8 +196,14 @@ enum kernel_status kernel_set_priority(struct kernel *k, int task, int32_t prior
 /* Each task has a value that others change, which also wakes it. `take`: wait until it is not 0,
  * kernel_value has it, then one less, or 0. `wait`: for any notification; the bits are cleared
  * before it waits and when one has come, kernel_value has the value before that. */
-enum kernel_notify { KERNEL_WAKES, KERNEL_SETS_BITS, KERNEL_ADDS_ONE, KERNEL_WRITES,
-                     KERNEL_WRITES_FIRST /* fails if one is there */, KERNEL_NOTIFIES };
+enum kernel_notify {
+    KERNEL_WAKES,
+    KERNEL_SETS_BITS,
+    KERNEL_ADDS_ONE,
+    KERNEL_WRITES,
+    KERNEL_WRITES_FIRST /* fails if one is there */,
+    KERNEL_NOTIFIES
+};
 enum kernel_status kernel_notify(struct kernel *k, int task, enum kernel_notify what,
                                  uint32_t value);
 enum kernel_status kernel_notify_take(struct kernel *k, bool clear, int64_t ticks);

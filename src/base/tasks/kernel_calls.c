@@ -49,8 +49,9 @@ enum kernel_status kernel_set_priority(struct kernel *k, int task, int32_t prior
     }
     struct kernel_task *t = &k->task[task];
     if (t->base != priority) {
-        const bool chooses = task == k->asked ? priority < t->base
-                           : priority > t->base && priority > k->task[k->asked].priority;
+        const bool chooses = task == k->asked
+                                 ? priority < t->base
+                                 : priority > t->base && priority > k->task[k->asked].priority;
         const bool lent = t->base != t->priority && priority <= t->priority;
         t->base = t->rank = priority;
         kernel_change(k, task, lent ? t->priority : priority);
@@ -76,8 +77,7 @@ enum kernel_status kernel_end_interrupt(struct kernel *k, bool yield)
 
 enum kernel_status kernel_result(const struct kernel *k)
 {
-    return kernel_task_asked(k) ? (enum kernel_status)k->task[k->asked].result
-                                : KERNEL_NOT_ALLOWED;
+    return kernel_task_asked(k) ? (enum kernel_status)k->task[k->asked].result : KERNEL_NOT_ALLOWED;
 }
 
 int32_t kernel_value(const struct kernel *k)

@@ -33,10 +33,10 @@ void kernel_unready(struct kernel *k, int task)
     struct kernel_task *t = &k->task[task];
     struct kernel_task *before = NULL;
 
-    for (int i = 0; t->chosen && i <= KERNEL_IDLE; i++) {   /* the hand goes back by one */
+    for (int i = 0; t->chosen && i <= KERNEL_IDLE; i++) { /* the hand goes back by one */
         struct kernel_task *o = &k->task[i];
-        if (o->ready && o->priority == t->priority && o->turn < t->turn &&
-            (!before || o->turn > before->turn)) {
+        if (o->ready && o->priority == t->priority && o->turn < t->turn
+            && (!before || o->turn > before->turn)) {
             before = o;
         }
     }
@@ -72,8 +72,8 @@ int kernel_choose(struct kernel *k)
             continue;
         }
         first = first < 0 || t->turn < k->task[first].turn ? i : first;
-        if (before >= 0 && t->turn > k->task[before].turn &&
-            (next < 0 || t->turn < k->task[next].turn)) {
+        if (before >= 0 && t->turn > k->task[before].turn
+            && (next < 0 || t->turn < k->task[next].turn)) {
             next = i;
         }
     }
@@ -115,12 +115,12 @@ int kernel_first_waiting(const struct kernel *k, int queue, bool sends)
 void kernel_wait(struct kernel *k)
 {
     struct kernel_task *t = &k->task[k->current];
-    int behind = -1;        /* the first with a lower rank */
+    int behind = -1; /* the first with a lower rank */
 
     for (int i = 0; i < k->config.tasks; i++) {
         const struct kernel_task *o = &k->task[i];
-        if (waits_there(o, t->queue, t->call == KERNEL_SENDS) && o->rank < t->rank &&
-            (behind < 0 || o->place < k->task[behind].place)) {
+        if (waits_there(o, t->queue, t->call == KERNEL_SENDS) && o->rank < t->rank
+            && (behind < 0 || o->place < k->task[behind].place)) {
             behind = i;
         }
     }

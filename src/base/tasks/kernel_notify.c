@@ -5,23 +5,16 @@
 static bool change(struct kernel_task *t, enum kernel_notify what, uint32_t value)
 {
     switch (what) {
-    case KERNEL_SETS_BITS:
-        t->bits |= value;
-        return true;
-    case KERNEL_ADDS_ONE:
-        t->bits++;
-        return true;
+    case KERNEL_SETS_BITS: t->bits |= value; return true;
+    case KERNEL_ADDS_ONE:  t->bits++; return true;
     case KERNEL_WRITES_FIRST:
         if (t->notified == KERNEL_NOTIFIED) {
             return false;
         }
         t->bits = value;
         return true;
-    case KERNEL_WRITES:
-        t->bits = value;
-        return true;
-    default:
-        return true;
+    case KERNEL_WRITES: t->bits = value; return true;
+    default:            return true;
     }
 }
 
@@ -30,8 +23,8 @@ enum kernel_status kernel_notify(struct kernel *k, int task, enum kernel_notify 
 {
     const enum kernel_status may = kernel_may_call(k, 0);
 
-    if (may || task < 0 || task >= k->config.tasks || what < KERNEL_WAKES ||
-        what >= KERNEL_NOTIFIES) {
+    if (may || task < 0 || task >= k->config.tasks || what < KERNEL_WAKES
+        || what >= KERNEL_NOTIFIES) {
         return may ? may : KERNEL_RANGE;
     }
     struct kernel_task *t = &k->task[task];

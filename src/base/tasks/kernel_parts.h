@@ -64,9 +64,9 @@ static inline enum kernel_status kernel_answered(struct kernel *k)
 /* May the context that is asked call, with this time to wait? */
 static inline enum kernel_status kernel_may_call(const struct kernel *k, int64_t ticks)
 {
-    if (k->asked < 0 || (!kernel_task_asked(k) &&
-                         (k->config.level[k->asked - KERNEL_TASKS] < k->config.kernel_level ||
-                          ticks > 0))) {
+    if (k->asked < 0
+        || (!kernel_task_asked(k)
+            && (k->config.level[k->asked - KERNEL_TASKS] < k->config.kernel_level || ticks > 0))) {
         return KERNEL_NOT_ALLOWED;
     }
     return ticks < 0 ? KERNEL_RANGE : KERNEL_OK;
@@ -84,7 +84,7 @@ static inline void kernel_woke(struct kernel *k, bool urgent)
 }
 
 /* The call of a task that has the processor goes on. */
-void kernel_go_on(struct kernel *k, int task);      /* kernel_waits.c */
-void kernel_notify_end(struct kernel_task *t);      /* kernel_notify.c */
+void kernel_go_on(struct kernel *k, int task); /* kernel_waits.c */
+void kernel_notify_end(struct kernel_task *t); /* kernel_notify.c */
 
 #endif

@@ -17,7 +17,8 @@ int64_t latency_draw(const struct latency *l, uint64_t *random)
 {
     const double which = latency_uniform(random), u = latency_uniform(random);
     const double wait = which < l->rare ? u * (l->most - l->least)
-                      : l->mean > 0.0 ? -l->mean * el_log(1.0 - u) : 0.0;
+                        : l->mean > 0.0 ? -l->mean * el_log(1.0 - u)
+                                        : 0.0;
 
     return (int64_t)llround(l->least + wait);
 }

@@ -13,8 +13,8 @@
 #include <stdint.h>
 
 struct latency {
-    double least, mean, most;   /* [clocks]; mean is that of what is added to least */
-    double rare;                /* probability of the second line, 0..1 */
+    double least, mean, most; /* [clocks]; mean is that of what is added to least */
+    double rare;              /* probability of the second line, 0..1 */
 };
 
 /* Uniform in [0, 1). */

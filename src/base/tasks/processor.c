@@ -15,8 +15,9 @@ int processor_first(const struct processor *p)
 
     for (int i = 0; i < p->tasks; i++) {
         const struct processor_task *t = &p->task[i], *b = &p->task[best < 0 ? i : best];
-        if (t->ready && (best < 0 || t->priority > b->priority ||
-                         (t->priority == b->priority && t->turn < b->turn))) {
+        if (t->ready
+            && (best < 0 || t->priority > b->priority
+                || (t->priority == b->priority && t->turn < b->turn))) {
             best = i;
         }
     }

@@ -19,19 +19,19 @@
 enum { PROCESSOR_TASKS = 28 };
 
 struct processor_task {
-    bool    ready;
-    int32_t priority;       /* the highest number first */
-    int64_t turn;           /* among equals the lowest first */
-    int64_t left;           /* time it still needs for what it does */
-    int64_t busy;           /* time it has had the processor */
+    bool ready;
+    int32_t priority; /* the highest number first */
+    int64_t turn;     /* among equals the lowest first */
+    int64_t left;     /* time it still needs for what it does */
+    int64_t busy;     /* time it has had the processor */
 };
 
 struct processor {
-    int     tasks;          /* the first so many are there */
+    int tasks; /* the first so many are there */
     struct processor_task task[PROCESSOR_TASKS];
     int64_t clock;
-    int64_t idle;           /* time that nobody had it */
-    int     running;        /* that has the processor; -1 none */
+    int64_t idle; /* time that nobody had it */
+    int running;  /* that has the processor; -1 none */
 };
 
 /* So many tasks, at most PROCESSOR_TASKS; nothing is ready, clock 0. */

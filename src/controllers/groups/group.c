@@ -204,7 +204,7 @@ static void cycle(struct group *g, int64_t clock, const struct group_panel *pane
         g->started = true;
     }
     if (key_take(&g->abort)) {
-        g->started = true;      /* a program that waits for its start is dropped too */
+        g->started = true; /* a program that waits for its start is dropped too */
         MCC_motion_abort(&g->mcc);
     }
     if (key_take(&g->cycle_start)) {
@@ -230,7 +230,7 @@ static void show(const struct groups *s, struct group *g, const struct group_pan
         }
     }
     if (!g->voltage) {
-        inquiry_look(&g->mcc, s->config.bus);   /* a voltage group's servo looks by itself */
+        inquiry_look(&g->mcc, s->config.bus); /* a voltage group's servo looks by itself */
     }
 }
 
@@ -276,7 +276,7 @@ static void serve(struct groups *s, int card, int64_t clock, int64_t publish)
         pcl_turn(p, clock);
     }
     if (pcl_due(p) > clock) {
-        return;                 /* the transaction before has not been acknowledged */
+        return; /* the transaction before has not been acknowledged */
     }
     pcl_prepare(p);
     for (int n = 0; n < GROUP_MAX; n++) {

@@ -26,68 +26,68 @@ enum { GROUP_MAX = 6, GROUP_CARDS = 2, GROUP_DACS = 8, GROUP_COUNTERS = 9 };
 struct group_config {
     int64_t bus;            /* [clocks] T_b */
     int64_t ipo;            /* [clocks] interpolation cycle */
-    double  latency, jitter;    /* [clocks] as of pc */
+    double latency, jitter; /* [clocks] as of pc */
     int32_t seed;           /* of the first card; the next number for the next card */
     int32_t min_stock, batch;
 };
 
 struct group_panel {
-    bool   hold, abort, cycle_start;
-    double override;        /* 0..2 */
-    bool   probe;           /* it touches */
-    uint32_t digital;       /* inputs of M66, a bit each */
-    double analog[SIGNALS_ANALOG];      /* the same */
+    bool hold, abort, cycle_start;
+    double override;               /* 0..2 */
+    bool probe;                    /* it touches */
+    uint32_t digital;              /* inputs of M66, a bit each */
+    double analog[SIGNALS_ANALOG]; /* the same */
 };
 
 /* Command mode of a pulse channel, MCCL's wCommandMode. */
 enum group_command_mode {
-    GROUP_COMMAND_PULSE,    /* pulses to a drive in position mode */
-    GROUP_COMMAND_VOLTAGE   /* the card's position loop to the DAC of its number */
+    GROUP_COMMAND_PULSE,  /* pulses to a drive in position mode */
+    GROUP_COMMAND_VOLTAGE /* the card's position loop to the DAC of its number */
 };
 
 /* An axis at a DAC. */
 struct group_dac {
-    struct machine_axis axis;   /* ppr: counts per motor turn */
-    int32_t encoder;        /* its counter, from 0 */
-    double  position_gain;  /* [1/s] Kp, above 0 */
-    double  speed_per_volt; /* [rpm/V] of the drive */
-    double  feed_forward;   /* 0..1 part of the commanded speed */
-    double  lag;            /* [s] of the pre-filter; 0 none */
+    struct machine_axis axis; /* ppr: counts per motor turn */
+    int32_t encoder;          /* its counter, from 0 */
+    double position_gain;     /* [1/s] Kp, above 0 */
+    double speed_per_volt;    /* [rpm/V] of the drive */
+    double feed_forward;      /* 0..1 part of the commanded speed */
+    double lag;               /* [s] of the pre-filter; 0 none */
 };
 
 struct group {
-    bool    used;
-    bool    voltage;        /* its channels are DAC */
+    bool used;
+    bool voltage; /* its channels are DAC */
     int32_t card;
-    int32_t channel[AXES];  /* of the card, -1: no such axis */
-    struct pcl_part part;   /* of the card's transaction */
-    int32_t starved;        /* frames of standstill that were too late */
-    bool    program;        /* there is one */
-    int64_t start;          /* [clocks] it starts at the first cycle from here on */
-    bool    started;        /* or dropped by an abort */
+    int32_t channel[AXES]; /* of the card, -1: no such axis */
+    struct pcl_part part;  /* of the card's transaction */
+    int32_t starved;       /* frames of standstill that were too late */
+    bool program;          /* there is one */
+    int64_t start;         /* [clocks] it starts at the first cycle from here on */
+    bool started;          /* or dropped by an abort */
     struct key abort, cycle_start;
     /* From here on it is large, and anything may stand there while the group is not used. */
     struct mcc mcc;
-    struct servo servo;     /* of a voltage group */
+    struct servo servo; /* of a voltage group */
 };
 
 struct group_card {
     struct machine machine; /* settings of its channels; used: by a group */
     struct pcl pcl;
     uint64_t random;
-    int32_t command_mode[AXES];     /* enum group_command_mode of the pulse channels */
-    struct group_dac dac[GROUP_DACS];   /* used: by a voltage group */
-    int32_t counts[GROUP_COUNTERS]; /* the card's counters at this instant */
-    int32_t pulses[AXES];   /* [pulses] its channels have put out by then */
-    double  volts[GROUP_DACS];      /* [V] of the DAC, shown at the next one */
-    int32_t command[GROUP_DACS];    /* [pulses] of the axes at them then, */
-    int32_t error[GROUP_DACS];      /* [counts] and the errors the voltages are of */
+    int32_t command_mode[AXES];       /* enum group_command_mode of the pulse channels */
+    struct group_dac dac[GROUP_DACS]; /* used: by a voltage group */
+    int32_t counts[GROUP_COUNTERS];   /* the card's counters at this instant */
+    int32_t pulses[AXES];             /* [pulses] its channels have put out by then */
+    double volts[GROUP_DACS];         /* [V] of the DAC, shown at the next one */
+    int32_t command[GROUP_DACS];      /* [pulses] of the axes at them then, */
+    int32_t error[GROUP_DACS];        /* [counts] and the errors the voltages are of */
 };
 
 struct groups {
     struct group_config config;
-    bool    running;
-    int64_t next_ipo;       /* [clocks] */
+    bool running;
+    int64_t next_ipo; /* [clocks] */
     struct group group[GROUP_MAX];
     struct group_card card[GROUP_CARDS];
 };

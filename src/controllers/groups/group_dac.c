@@ -14,8 +14,8 @@ static bool there(int card, int number, int count)
 /* The card's own position loop of a group's pulse channel gives the voltage of its DAC. */
 static bool looped(const struct group_card *c, int channel)
 {
-    return channel < AXES && c->machine.axis[channel].used &&
-           c->command_mode[channel] == GROUP_COMMAND_VOLTAGE;
+    return channel < AXES && c->machine.axis[channel].used
+           && c->command_mode[channel] == GROUP_COMMAND_VOLTAGE;
 }
 
 /* An encoder counter that closes a loop. */
@@ -45,8 +45,8 @@ int group_dac_check(const struct groups *s, int card, const int32_t dac[AXES])
         if (looped(c, d)) {
             return MCC_VOLTAGE_COMMAND_CHANNEL;
         }
-        if (c->dac[d].position_gain <= 0.0 || (counters >> c->dac[d].encoder & 1) ||
-            counter_taken(c, c->dac[d].encoder)) {
+        if (c->dac[d].position_gain <= 0.0 || (counters >> c->dac[d].encoder & 1)
+            || counter_taken(c, c->dac[d].encoder)) {
             return MCC_GROUP_PARAMETER;
         }
         dacs |= 1u << d;
@@ -76,9 +76,9 @@ int group_dac_check_pulse(const struct groups *s, int card, const int32_t channe
 
 static bool settings_valid(const struct group_dac *d)
 {
-    return d->encoder >= 0 && d->encoder < GROUP_COUNTERS && machine_positive(d->position_gain) &&
-           machine_positive(d->speed_per_volt) && d->feed_forward >= 0.0 &&
-           d->feed_forward <= 1.0 && (d->lag == 0.0 || machine_positive(d->lag));
+    return d->encoder >= 0 && d->encoder < GROUP_COUNTERS && machine_positive(d->position_gain)
+           && machine_positive(d->speed_per_volt) && d->feed_forward >= 0.0
+           && d->feed_forward <= 1.0 && (d->lag == 0.0 || machine_positive(d->lag));
 }
 
 int groups_set_dac(struct groups *s, int card, int dac, const struct group_dac *settings)
@@ -162,10 +162,10 @@ void group_dac_start(struct groups *s, struct group *g)
         if (g->channel[i] >= 0) {
             const struct group_dac *d = &s->card[g->card].dac[g->channel[i]];
             const double volts = 60.0 / (d->axis.ppr * d->speed_per_volt);
-            law.axis[i] = (struct law_axis){
-                .gain = d->position_gain * volts, .volts = volts,
-                .feed_forward = d->feed_forward, .lag = d->lag
-            };
+            law.axis[i] = (struct law_axis){ .gain = d->position_gain * volts,
+                                             .volts = volts,
+                                             .feed_forward = d->feed_forward,
+                                             .lag = d->lag };
         }
     }
     servo_start(&g->servo, &law, &g->mcc.machine, s->config.bus);

@@ -30,5 +30,5 @@ void groups_publish(const struct groups *s, int card, struct link_host *link)
     memcpy(link->dac_volts_aux, c->volts + AXES, sizeof link->dac_volts_aux);
     link->loop_on_aux = groups_watched(s, card, &link->command_aux);
 }
-_Static_assert(sizeof ((struct link_host *)0)->dac_volts_aux / sizeof(double) ==
-               GROUP_DACS - AXES, "the DAC behind those of the axes");
+_Static_assert(sizeof((struct link_host *)0)->dac_volts_aux / sizeof(double) == GROUP_DACS - AXES,
+               "the DAC behind those of the axes");

@@ -67,6 +67,6 @@ void servo_instant(struct servo *s, struct mcc *m, int64_t now, int64_t bus,
     }
     dda_counts(&s->dda, now + bus, next);
     for (int i = 0; i < AXES; i++) {
-        s->next[i] = (int32_t)(uint64_t)next[i];    /* counters of 32 bit wrap */
+        s->next[i] = (int32_t)(uint64_t)next[i]; /* counters of 32 bit wrap */
     }
 }

@@ -17,13 +17,13 @@
 #include "voltage.h"
 
 struct servo {
-    struct dda dda;         /* in software: its pulses exist as numbers only */
+    struct dda dda; /* in software: its pulses exist as numbers only */
     struct voltage voltage;
-    int32_t before[AXES];   /* [pulses] command at k - 1, */
-    int32_t now[AXES];      /* at k */
-    int32_t next[AXES];     /* and at k + 1, which shows there */
-    double  volts[AXES];    /* [V] as the drive has it: of an inverted axis turned round */
-    int32_t starved;        /* DDA times of standstill in the middle of a motion */
+    int32_t before[AXES]; /* [pulses] command at k - 1, */
+    int32_t now[AXES];    /* at k */
+    int32_t next[AXES];   /* and at k + 1, which shows there */
+    double volts[AXES];   /* [V] as the drive has it: of an inverted axis turned round */
+    int32_t starved;      /* DDA times of standstill in the middle of a motion */
 };
 
 /* At rest at clock 0; the law's period, axes and pulses per mm come from the machine. */

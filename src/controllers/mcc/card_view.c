@@ -7,10 +7,11 @@ _Static_assert((int)LINK_AXES == (int)AXES && (int)LINK_PAGES == (int)ISR_PAGES,
 
 struct pcl_card card_of(const struct pcl *p, const struct link_card *link)
 {
-    struct pcl_card c = {
-        .irq_seq = link->irq_seq, .irq_clock = (int64_t)link->irq_clock, .cmd_ack = link->cmd_ack,
-        .frames_refused = link->frames_refused, .stock = link->stock[p->axis]
-    };
+    struct pcl_card c = { .irq_seq = link->irq_seq,
+                          .irq_clock = (int64_t)link->irq_clock,
+                          .cmd_ack = link->cmd_ack,
+                          .frames_refused = link->frames_refused,
+                          .stock = link->stock[p->axis] };
 
     memcpy(c.irq_flags, link->irq_flags, sizeof c.irq_flags);
     return c;
@@ -18,11 +19,11 @@ struct pcl_card card_of(const struct pcl *p, const struct link_card *link)
 
 struct signals card_signals(const struct link_card *link)
 {
-    struct signals s = {
-        .stop = link->stopped, .home = (uint32_t)link->home,
-        .upper = link->over_travel & 0x3f, .lower = (link->over_travel >> 8) & 0x3f,
-        .enc_aux = { link->enc_count_7, link->enc_count_8, link->enc_count_9 }
-    };
+    struct signals s = { .stop = link->stopped,
+                         .home = (uint32_t)link->home,
+                         .upper = link->over_travel & 0x3f,
+                         .lower = (link->over_travel >> 8) & 0x3f,
+                         .enc_aux = { link->enc_count_7, link->enc_count_8, link->enc_count_9 } };
 
     memcpy(s.pulses, link->pulse_count, sizeof s.pulses);
     memcpy(s.enc, link->enc_count, sizeof s.enc);
@@ -39,7 +40,7 @@ void card_write(const struct pcl *p, const struct machine *m, bool used, struct 
     link->dda_run = used;
     link->min_stock = p->min_stock;
     link->ack_seq = p->ack_seq;
-    link->clear_seq = 0;        /* never: an emergency stop empties the FIFOs in the card */
+    link->clear_seq = 0; /* never: an emergency stop empties the FIFOs in the card */
     for (int i = 0; i < ISR_PAGES; i++) {
         link->irq_mask[i] = used ? pcl_mask(p, i) : 0;
     }

@@ -6,8 +6,8 @@
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
 {
-    return !m->running && m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped &&
-           !m->mover.confirming;
+    return !m->running && m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped
+           && !m->mover.confirming;
 }
 
 void control_settle(struct mcc *m)
@@ -16,9 +16,9 @@ void control_settle(struct mcc *m)
         return;
     }
     m->mover.allowed = false;
-    memcpy(m->end, m->mover.rest, sizeof m->end);     /* an abort may have moved it, */
+    memcpy(m->end, m->mover.rest, sizeof m->end); /* an abort may have moved it, */
     if (m->mover.outputs.spindle == 0.0) {
-        m->program.switches.turning = 0;            /* and switched these off */
+        m->program.switches.turning = 0; /* and switched these off */
     }
     m->program.switches.told = m->mover.surface;
     m->program.switches.coolant = m->mover.outputs.coolant;

@@ -5,13 +5,14 @@
 
 int guard_switch(const struct machine *m, const struct signals *s, const double way[AXES])
 {
-    const bool both = m->limit_mode == MACHINE_LIMIT_BOTH ||
-                      m->limit_mode == MACHINE_LIMIT_BOTH_ERROR;
+    const bool both =
+        m->limit_mode == MACHINE_LIMIT_BOTH || m->limit_mode == MACHINE_LIMIT_BOTH_ERROR;
 
     for (int i = 0; m->limit_check && i < AXES; i++) {
         const bool upper = s->upper >> i & 1, lower = s->lower >> i & 1;
-        if (m->axis[i].used && ((way[i] > 0.0 && (upper || (both && lower))) ||
-                                (way[i] < 0.0 && (lower || (both && upper))))) {
+        if (m->axis[i].used
+            && ((way[i] > 0.0 && (upper || (both && lower)))
+                || (way[i] < 0.0 && (lower || (both && upper))))) {
             return i;
         }
     }

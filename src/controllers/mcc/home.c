@@ -7,9 +7,9 @@
 
 bool home_valid(const struct home_config *c)
 {
-    return (int)c->mode >= HOME_SENSOR_INDEX && c->mode <= HOME_LIMIT && c->direction <= 7 &&
-           machine_positive(c->high_speed) && machine_positive(c->low_speed) &&
-           isfinite(c->offset) && machine_positive(c->search) && machine_positive(c->index_way);
+    return (int)c->mode >= HOME_SENSOR_INDEX && c->mode <= HOME_LIMIT && c->direction <= 7
+           && machine_positive(c->high_speed) && machine_positive(c->low_speed)
+           && isfinite(c->offset) && machine_positive(c->search) && machine_positive(c->index_way);
 }
 
 static double sign(const struct home_config *c, int bit)
@@ -118,18 +118,10 @@ static void next_phase(struct home *h, const struct home_config *c, const struct
     const bool index = c->mode != HOME_SENSOR && c->mode != HOME_LIMIT;
 
     switch (h->phase) {
-    case HOME_SEARCH:
-        enter(h, HOME_LEAVE, in);
-        break;
-    case HOME_TURN:
-        enter(h, HOME_SEARCH, in);
-        break;
-    case HOME_LEAVE:
-        enter(h, index ? HOME_LATCH : HOME_GO, in);
-        break;
-    default:
-        enter(h, HOME_GO, in);
-        break;
+    case HOME_SEARCH: enter(h, HOME_LEAVE, in); break;
+    case HOME_TURN:   enter(h, HOME_SEARCH, in); break;
+    case HOME_LEAVE:  enter(h, index ? HOME_LATCH : HOME_GO, in); break;
+    default:          enter(h, HOME_GO, in); break;
     }
     if (h->phase == HOME_GO) {
         h->place += c->offset;
@@ -145,18 +137,10 @@ static void look(struct home *h, const struct home_config *c, const struct home_
         return;
     }
     switch (h->phase) {
-    case HOME_SEARCH:
-        search(h, c, in);
-        break;
-    case HOME_TURN:
-        turn(h, c, in);
-        break;
-    case HOME_LEAVE:
-        leave(h, c, in);
-        break;
-    case HOME_LATCH:
-        latch(h, c, in);
-        break;
+    case HOME_SEARCH: search(h, c, in); break;
+    case HOME_TURN:   turn(h, c, in); break;
+    case HOME_LEAVE:  leave(h, c, in); break;
+    case HOME_LATCH:  latch(h, c, in); break;
     case HOME_GO:
         if (in->rest && in->position == h->place) {
             h->phase = HOME_DONE;
@@ -164,8 +148,7 @@ static void look(struct home *h, const struct home_config *c, const struct home_
             fail(h, HOME_ON_LIMIT);
         }
         break;
-    default:
-        break;
+    default: break;
     }
 }
 
@@ -197,11 +180,8 @@ struct home_order home_step(struct home *h, const struct home_config *c,
         order.arm = !h->armed;
         h->armed = true;
         break;
-    case HOME_GO:
-        order = (struct home_order){ HOME_MOVE, c->low_speed, h->place, false };
-        break;
-    default:
-        break;
+    case HOME_GO: order = (struct home_order){ HOME_MOVE, c->low_speed, h->place, false }; break;
+    default:      break;
     }
     return order;
 }

@@ -19,9 +19,9 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool i
     if (mover_ordered(&m->mover) && m->homing.state == HOMING_RUNS) {
         return MCC_COMMAND_NOTFINISHED;
     }
-    if (axis < 0 || axis >= AXES || !home_valid(config) ||
-        el_max(config->high_speed, config->low_speed) >
-        machine_axis_speed(&m->machine.axis[axis])) {
+    if (axis < 0 || axis >= AXES || !home_valid(config)
+        || el_max(config->high_speed, config->low_speed)
+               > machine_axis_speed(&m->machine.axis[axis])) {
         return MCC_PARAMETER;
     }
     struct homing_axis *x = &m->homing.axis[axis];
@@ -63,8 +63,8 @@ static void watch(struct mcc *m, int i, int64_t clocks)
     struct homing_axis *x = &m->homing.axis[i];
     const int32_t moved = (int32_t)((uint32_t)m->signals.enc[i] - (uint32_t)x->still);
 
-    if (!axes_rests(&m->mover.axes, i) || m->written.pulses[i] != m->mover.pulses[i] ||
-        moved < -1 || moved > 1) {
+    if (!axes_rests(&m->mover.axes, i) || m->written.pulses[i] != m->mover.pulses[i] || moved < -1
+        || moved > 1) {
         x->still = m->signals.enc[i];
         x->clocks = 0;
     } else {
@@ -78,14 +78,15 @@ static struct home_inputs inputs(const struct mcc *m, int i)
     double place, speed;
 
     axes_state(&m->mover.axes, i, &place, &speed);
-    return (struct home_inputs){
-        .sensor = (m->signals.home >> i & 1) != 0,
-        .upper = (m->signals.upper >> i & 1) != 0, .lower = (m->signals.lower >> i & 1) != 0,
-        .rest = rests(m, i),
-        .position = x->home.phase == HOME_GO ? place : homing_place(m, i, m->signals.enc[i]),
-        .latched = m->signals.latched[i] != x->latched,
-        .latch = homing_place(m, i, m->signals.latch[i])
-    };
+    return (struct home_inputs){ .sensor = (m->signals.home >> i & 1) != 0,
+                                 .upper = (m->signals.upper >> i & 1) != 0,
+                                 .lower = (m->signals.lower >> i & 1) != 0,
+                                 .rest = rests(m, i),
+                                 .position = x->home.phase == HOME_GO
+                                                 ? place
+                                                 : homing_place(m, i, m->signals.enc[i]),
+                                 .latched = m->signals.latched[i] != x->latched,
+                                 .latch = homing_place(m, i, m->signals.latch[i]) };
 }
 
 static void obey(struct mcc *m, int i, const struct home_order *o)
@@ -98,8 +99,8 @@ static void obey(struct mcc *m, int i, const struct home_order *o)
         x->latched = m->signals.latched[i];
         m->latch_seq[i] = (int32_t)((uint32_t)m->latch_seq[i] + 1u);
     }
-    if (o->what == x->order.what && o->speed == x->order.speed &&
-        (o->what != HOME_MOVE || o->target == x->order.target)) {
+    if (o->what == x->order.what && o->speed == x->order.speed
+        && (o->what != HOME_MOVE || o->target == x->order.target)) {
         return;
     }
     x->order = *o;
@@ -145,8 +146,9 @@ static int check_order(const struct mcc *m, const int32_t order[AXES])
     bool any = false;
 
     for (int i = 0; i < AXES; i++) {
-        if (order[i] < 0 || order[i] == INT32_MAX ||
-            (order[i] > 0 && !(m->machine.axis[i].used && home_valid(&m->homing.axis[i].config)))) {
+        if (order[i] < 0 || order[i] == INT32_MAX
+            || (order[i] > 0
+                && !(m->machine.axis[i].used && home_valid(&m->homing.axis[i].config)))) {
             return MCC_PARAMETER;
         }
         any = any || order[i] > 0;
@@ -166,7 +168,7 @@ int MCC_go_home(struct mcc *m, const int32_t order[AXES])
         return MCC_COMMAND_NOTFINISHED;
     }
     if (m->dry_run) {
-        return MCC_COMMAND_NOTACCEPTED;     /* nothing would be found */
+        return MCC_COMMAND_NOTACCEPTED; /* nothing would be found */
     }
     for (int i = 0; i < AXES; i++) {
         if (order[i] > 0) {
@@ -183,14 +185,10 @@ int MCC_go_home(struct mcc *m, const int32_t order[AXES])
 int MCC_check_homef(const struct mcc *m)
 {
     switch (m->homing.state) {
-    case HOMING_RUNS:
-        return mover_ordered(&m->mover) ? 0 : MCC_HOME_COMMAND_NOTCALLED;
-    case HOMING_DONE:
-        return 1;
-    case HOMING_FAILED:
-        return MCC_RUN_TIME;
-    default:
-        return MCC_HOME_COMMAND_NOTCALLED;
+    case HOMING_RUNS:   return mover_ordered(&m->mover) ? 0 : MCC_HOME_COMMAND_NOTCALLED;
+    case HOMING_DONE:   return 1;
+    case HOMING_FAILED: return MCC_RUN_TIME;
+    default:            return MCC_HOME_COMMAND_NOTCALLED;
     }
 }
 

@@ -15,21 +15,21 @@ struct mcc;
 enum homing_state { HOMING_NEVER, HOMING_RUNS, HOMING_DONE, HOMING_FAILED };
 
 struct homing_axis {
-    struct home_config config;  /* mode, ways, speeds; not valid: the axis cannot be homed */
-    bool    inverted;           /* the encoder counts down when the axis moves up */
-    int32_t zero;               /* [counts] of the encoder where the axis is at 0 */
+    struct home_config config; /* mode, ways, speeds; not valid: the axis cannot be homed */
+    bool inverted;             /* the encoder counts down when the axis moves up */
+    int32_t zero;              /* [counts] of the encoder where the axis is at 0 */
     struct home home;
-    struct home_order order;    /* that the mover has */
-    int32_t latched;            /* the card's number of latches when armed last */
-    int32_t still;              /* [counts] the encoder has stood within a count of here ... */
-    int64_t clocks;             /* [clocks] for so long, all pulses being written */
+    struct home_order order; /* that the mover has */
+    int32_t latched;         /* the card's number of latches when armed last */
+    int32_t still;           /* [counts] the encoder has stood within a count of here ... */
+    int64_t clocks;          /* [clocks] for so long, all pulses being written */
 };
 
 struct homing {
     enum homing_state state;
-    int32_t order[AXES];        /* of the call */
-    int32_t group;              /* the number that is under way */
-    int64_t settle;             /* [clocks] an axis stands still before it counts as at rest */
+    int32_t order[AXES]; /* of the call */
+    int32_t group;       /* the number that is under way */
+    int64_t settle;      /* [clocks] an axis stands still before it counts as at rest */
     struct homing_axis axis[AXES];
 };
 

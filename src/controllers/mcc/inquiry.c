@@ -18,8 +18,8 @@ int inquiry_set_place(struct mcc *m, enum inquiry_place place)
 /* All commands so far have ended and the card has taken their points. */
 static bool ended(const struct mcc *m)
 {
-    return m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped &&
-           !m->mover.confirming && !m->mover.untold && m->queue.count == 0;
+    return m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped && !m->mover.confirming
+           && !m->mover.untold && m->queue.count == 0;
 }
 
 static double value_of(const struct signals *s, const struct waiting *w)
@@ -53,8 +53,8 @@ static void input(struct mcc *m, int64_t clocks)
 /* The card has latched a counter since the probe began to move. */
 static bool latched(const struct mcc *m, int i)
 {
-    return m->inquiry.place == INQUIRY_LATCH && m->program.wait.kind == WAIT_PROBE &&
-           m->machine.axis[i].used && m->signals.latched[i] != m->inquiry.latched[i];
+    return m->inquiry.place == INQUIRY_LATCH && m->program.wait.kind == WAIT_PROBE
+           && m->machine.axis[i].used && m->signals.latched[i] != m->inquiry.latched[i];
 }
 
 /* The probe is as G38 wants it. */
@@ -97,8 +97,8 @@ static double place_of(const struct mcc *m, int i)
     if (m->inquiry.place == INQUIRY_PULSES) {
         return reaction_put_out(m, i) / scale;
     }
-    return homing_place(m, i, latched(m, i) ? m->signals.latch[i] : m->signals.enc[i]) -
-           m->written.added[i] / scale;
+    return homing_place(m, i, latched(m, i) ? m->signals.latch[i] : m->signals.enc[i])
+           - m->written.added[i] / scale;
 }
 
 static void probe(struct mcc *m, int64_t clocks)
@@ -115,7 +115,7 @@ static void probe(struct mcc *m, int64_t clocks)
     if (!ended(m) || !reaction_arrived(m)) {
         return;
     }
-    q->clocks += clocks;        /* the axes are still behind their pulses */
+    q->clocks += clocks; /* the axes are still behind their pulses */
     if (q->touched) {
         waiting_probed(&m->program, q->contact, m->mover.rest, true);
     } else if (q->clocks >= m->homing.settle) {

@@ -16,19 +16,19 @@ struct mcc;
 
 /* Where the axes were at a contact. */
 enum inquiry_place {
-    INQUIRY_ENCODERS,   /* the encoder counters at the look that saw it */
-    INQUIRY_LATCH,      /* what the card's counters have latched, which is a contact, too */
-    INQUIRY_PULSES      /* the pulses put out at that look, where there are no encoders */
+    INQUIRY_ENCODERS, /* the encoder counters at the look that saw it */
+    INQUIRY_LATCH,    /* what the card's counters have latched, which is a contact, too */
+    INQUIRY_PULSES    /* the pulses put out at that look, where there are no encoders */
 };
 
 struct inquiry {
     enum inquiry_place place;
-    bool    waits;          /* for an input: motion has ended */
-    double  was;            /* its value at the latest look */
-    int64_t clocks;         /* waited so far, or stood still at the end of probing */
-    bool    touched;
-    double  contact[AXES];  /* [mm] then */
-    int32_t latched[AXES];  /* signals.latched as the probe began to move */
+    bool waits;     /* for an input: motion has ended */
+    double was;     /* its value at the latest look */
+    int64_t clocks; /* waited so far, or stood still at the end of probing */
+    bool touched;
+    double contact[AXES];  /* [mm] then */
+    int32_t latched[AXES]; /* signals.latched as the probe began to move */
 };
 
 /* How the place of a contact is found. Refused while a program runs. */

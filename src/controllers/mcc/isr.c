@@ -38,8 +38,8 @@ int isr_next(const struct isr *q, int64_t clock)
     int best = -1;
 
     for (int i = 0; i < ISR_PAGES; i++) {
-        if (q->waiting[i] && q->ready[i] <= clock &&
-            (best < 0 || q->config.priority[i] < q->config.priority[best])) {
+        if (q->waiting[i] && q->ready[i] <= clock
+            && (best < 0 || q->config.priority[i] < q->config.priority[best])) {
             best = i;
         }
     }

@@ -14,27 +14,27 @@
 
 enum {
     ISR_PAGES = 9,
-    ISR_FIFO_PAGE = 0,  /* its FIFO source asks for commands, see pcl */
-    ISR_LOOP_PAGE = 8   /* overflow of the error counters, a bit an axis */
+    ISR_FIFO_PAGE = 0, /* its FIFO source asks for commands, see pcl */
+    ISR_LOOP_PAGE = 8  /* overflow of the error counters, a bit an axis */
 };
 
 struct isr_config {
-    int32_t mask[ISR_PAGES];        /* sources served beside the FIFO */
+    int32_t mask[ISR_PAGES]; /* sources served beside the FIFO */
     int32_t priority[ISR_PAGES];
-    int64_t service;                /* [clocks] the PC needs for a page */
+    int64_t service; /* [clocks] the PC needs for a page */
 };
 
 struct isr {
     struct isr_config config;
-    int32_t waiting[ISR_PAGES];     /* sources read and not served */
-    int64_t raised[ISR_PAGES];      /* [clock] of the interrupt that brought the first of them */
-    int64_t ready[ISR_PAGES];       /* [clock] from which it may be served */
-    int     page;                   /* served last; -1 before the first */
+    int32_t waiting[ISR_PAGES]; /* sources read and not served */
+    int64_t raised[ISR_PAGES];  /* [clock] of the interrupt that brought the first of them */
+    int64_t ready[ISR_PAGES];   /* [clock] from which it may be served */
+    int page;                   /* served last; -1 before the first */
 
-    int32_t order;                  /* services begun so far */
-    int32_t served[ISR_PAGES];      /* of each page */
-    int32_t sources[ISR_PAGES];     /* that the latest service of the page found */
-    int64_t latency[ISR_PAGES];     /* [clocks] of the latest, from the interrupt to its begin */
+    int32_t order;              /* services begun so far */
+    int32_t served[ISR_PAGES];  /* of each page */
+    int32_t sources[ISR_PAGES]; /* that the latest service of the page found */
+    int64_t latency[ISR_PAGES]; /* [clocks] of the latest, from the interrupt to its begin */
 };
 
 void isr_start(struct isr *q, const struct isr_config *config);

@@ -69,8 +69,8 @@ static void cross_coupled(const struct law_config *c, struct law *s, const struc
                           double speed[3])
 {
     double before[3];
-    const bool both = dot(foot->tangent, foot->tangent) > 0.0 &&
-                      dot(s->foot.tangent, s->foot.tangent) > 0.0;
+    const bool both =
+        dot(foot->tangent, foot->tangent) > 0.0 && dot(s->foot.tangent, s->foot.tangent) > 0.0;
 
     memcpy(before, both ? s->foot.error : foot->error, sizeof before);
     if (both) {
@@ -79,14 +79,14 @@ static void cross_coupled(const struct law_config *c, struct law *s, const struc
     }
     for (int k = 0; k < 3; k++) {
         s->sum[k] += foot->error[k] * c->period;
-        speed[k] = c->cross_p * foot->error[k] + c->cross_i * s->sum[k] +
-                   c->cross_d * (foot->error[k] - before[k]) / c->period;
+        speed[k] = c->cross_p * foot->error[k] + c->cross_i * s->sum[k]
+                   + c->cross_d * (foot->error[k] - before[k]) / c->period;
     }
     s->foot = *foot;
 }
 
-void law_tick(const struct law_config *c, struct law *s, const struct law_look *look,
-              double limit, double volts[AXES])
+void law_tick(const struct law_config *c, struct law *s, const struct law_look *look, double limit,
+              double volts[AXES])
 {
     double speed[3] = { 0.0 }, sum[3], behind[AXES];
     bool limited = false;
@@ -95,7 +95,7 @@ void law_tick(const struct law_config *c, struct law *s, const struct law_look *
         s->begun = true;
         memcpy(s->pulses, look->pulses, sizeof s->pulses);
     }
-    memcpy(behind, s->behind, sizeof behind);   /* the errors are of the instant before */
+    memcpy(behind, s->behind, sizeof behind); /* the errors are of the instant before */
     prefilter(c, s, look);
     memcpy(sum, s->sum, sizeof sum);
     if (law_crosses(c)) {
@@ -115,7 +115,7 @@ void law_tick(const struct law_config *c, struct law *s, const struct law_look *
         limited = limited || (i < 3 && volts[i] != v);
     }
     if (limited) {
-        memcpy(s->sum, sum, sizeof sum);    /* the integral waits until the drives can follow */
+        memcpy(s->sum, sum, sizeof sum); /* the integral waits until the drives can follow */
     }
     memcpy(s->pulses, look->pulses, sizeof s->pulses);
 }

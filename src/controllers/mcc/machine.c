@@ -5,7 +5,7 @@
 
 #include "dda.h"
 
-enum { DIVIDER_MAX = 65535 };   /* 16-bit register of the card */
+enum { DIVIDER_MAX = 65535 }; /* 16-bit register of the card */
 
 static const double JERK_SHARE = 0.5;
 
@@ -26,19 +26,19 @@ static bool number(double x)
 
 static bool guard_valid(const struct machine *m, const struct machine_axis *a)
 {
-    return isfinite(a->high_limit) && isfinite(a->low_limit) && isfinite(a->hot_offset) &&
-           isfinite(a->lot_offset) && (!a->check_ot || machine_low(a) <= machine_high(a)) &&
-           a->max_dda_acc >= 0 && a->max_dda_acc <= 2 * machine_dda_limit(m) &&
-           a->track_limit >= 0 && number(a->inpos_tol) &&
-           (a->acc == 0.0 || machine_positive(a->acc)) &&
-           (a->jerk == 0.0 || (a->acc > 0.0 && machine_positive(a->jerk)));
+    return isfinite(a->high_limit) && isfinite(a->low_limit) && isfinite(a->hot_offset)
+           && isfinite(a->lot_offset) && (!a->check_ot || machine_low(a) <= machine_high(a))
+           && a->max_dda_acc >= 0 && a->max_dda_acc <= 2 * machine_dda_limit(m)
+           && a->track_limit >= 0 && number(a->inpos_tol)
+           && (a->acc == 0.0 || machine_positive(a->acc))
+           && (a->jerk == 0.0 || (a->acc > 0.0 && machine_positive(a->jerk)));
 }
 
 static bool axis_valid(const struct machine *m, const struct machine_axis *a)
 {
-    return machine_positive(a->pitch) && machine_positive(a->gear_ratio) && a->ppr >= 1 &&
-           machine_positive(a->rpm) && a->p_gain >= 0 && a->p_gain <= 65535 &&
-           a->max_dda >= 0 && a->max_dda <= machine_dda_limit(m) && guard_valid(m, a);
+    return machine_positive(a->pitch) && machine_positive(a->gear_ratio) && a->ppr >= 1
+           && machine_positive(a->rpm) && a->p_gain >= 0 && a->p_gain <= 65535 && a->max_dda >= 0
+           && a->max_dda <= machine_dda_limit(m) && guard_valid(m, a);
 }
 
 static bool type_valid(char type)
@@ -49,9 +49,9 @@ static bool type_valid(char type)
 static bool asyn_valid(const struct machine_asyn *r)
 {
     for (int i = 0; i < AXES; i++) {
-        if (!type_valid(r->acc_type[i]) || !type_valid(r->dec_type[i]) ||
-            !(r->acc_time[i] == 0.0 || machine_positive(r->acc_time[i])) ||
-            !(r->dec_time[i] == 0.0 || machine_positive(r->dec_time[i]))) {
+        if (!type_valid(r->acc_type[i]) || !type_valid(r->dec_type[i])
+            || !(r->acc_time[i] == 0.0 || machine_positive(r->acc_time[i]))
+            || !(r->dec_time[i] == 0.0 || machine_positive(r->dec_time[i]))) {
             return false;
         }
     }
@@ -74,17 +74,17 @@ bool machine_valid(const struct machine *m)
             return false;
         }
     }
-    if (m->limit_mode < 0 || m->limit_mode > MACHINE_LIMIT_TOWARD_ERROR ||
-        m->inpos_mode < 0 || m->inpos_mode > MACHINE_INPOS_SETTLE_UNBLOCK ||
-        !number(m->inpos_settle) || !number(m->inpos_timeout)) {
+    if (m->limit_mode < 0 || m->limit_mode > MACHINE_LIMIT_TOWARD_ERROR || m->inpos_mode < 0
+        || m->inpos_mode > MACHINE_INPOS_SETTLE_UNBLOCK || !number(m->inpos_settle)
+        || !number(m->inpos_timeout)) {
         return false;
     }
-    return machine_positive(m->dda_time) && machine_positive(m->feed) &&
-           machine_positive(m->max_feed) &&
-           (m->arc_tolerance == 0.0 || machine_positive(m->arc_tolerance)) &&
-           type_valid(m->acc_type) && type_valid(m->dec_type) &&
-           share_valid(m->jerk_share) && share_valid(m->ptp_ratio) && asyn_valid(&m->asyn) &&
-           m->feed <= m->max_feed && machine_positive(m->acc_time) && machine_positive(m->dec_time);
+    return machine_positive(m->dda_time) && machine_positive(m->feed)
+           && machine_positive(m->max_feed)
+           && (m->arc_tolerance == 0.0 || machine_positive(m->arc_tolerance))
+           && type_valid(m->acc_type) && type_valid(m->dec_type) && share_valid(m->jerk_share)
+           && share_valid(m->ptp_ratio) && asyn_valid(&m->asyn) && m->feed <= m->max_feed
+           && machine_positive(m->acc_time) && machine_positive(m->dec_time);
 }
 
 void machine_complete_asyn(struct machine *m)
@@ -136,7 +136,7 @@ static double smooth(const struct machine *m)
 {
     const double up = m->acc_type == 'S' ? m->acc_time : 0.0;
     const double down = m->dec_type == 'S' ? m->dec_time : 0.0;
-    return 0.5 * jerk_share(m) * (up + down);   /* from +acc to -dec at most: (acc + dec) / jerk */
+    return 0.5 * jerk_share(m) * (up + down); /* from +acc to -dec at most: (acc + dec) / jerk */
 }
 
 static double rapid(const struct machine *m)
@@ -146,10 +146,11 @@ static double rapid(const struct machine *m)
 
 struct motion_limits machine_limits(const struct machine *m)
 {
-    return (struct motion_limits){
-        .feed = m->max_feed, .rapid = rapid(m), .smooth = smooth(m),
-        .up = rule(m, m->acc_type, m->acc_time), .down = rule(m, m->dec_type, m->dec_time)
-    };
+    return (struct motion_limits){ .feed = m->max_feed,
+                                   .rapid = rapid(m),
+                                   .smooth = smooth(m),
+                                   .up = rule(m, m->acc_type, m->acc_time),
+                                   .down = rule(m, m->dec_type, m->dec_time) };
 }
 
 struct pace_limits machine_pace(const struct machine *m)

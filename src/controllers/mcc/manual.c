@@ -96,12 +96,14 @@ int MCC_get_ptp_asyn_dec_step(const struct mcc *m, double ms[AXES])
 
 int manual_allowed(const struct mcc *m)
 {
-    return !m->open ? MCC_INITIAL_MOTION :
-           m->error ? MCC_RUN_TIME :
-           m->mover.abort ? MCC_ABORT_NOT_FINISH :
-           m->running || m->ring.count || m->mover.stopped || m->mover.confirming ||
-           (mover_ordered(&m->mover) ? m->homing.state == HOMING_RUNS : mover_busy(&m->mover))
-           ? MCC_COMMAND_NOTFINISHED : MCC_NO_ERR;
+    return !m->open         ? MCC_INITIAL_MOTION
+           : m->error       ? MCC_RUN_TIME
+           : m->mover.abort ? MCC_ABORT_NOT_FINISH
+           : m->running || m->ring.count || m->mover.stopped || m->mover.confirming
+                   || (mover_ordered(&m->mover) ? m->homing.state == HOMING_RUNS
+                                                : mover_busy(&m->mover))
+               ? MCC_COMMAND_NOTFINISHED
+               : MCC_NO_ERR;
 }
 
 void manual_use(struct mcc *m, int axis, enum manual_use use)
@@ -111,7 +113,7 @@ void manual_use(struct mcc *m, int axis, enum manual_use use)
         const struct mechanism machine = machine_mechanism(&m->machine);
         mover_order(&m->mover, &machine);
         if (m->homing.state == HOMING_RUNS) {
-            m->homing.state = HOMING_NEVER;     /* an abort has dropped that search */
+            m->homing.state = HOMING_NEVER; /* an abort has dropped that search */
         }
     }
     m->manual.axis[axis].use = use;
@@ -153,8 +155,7 @@ static int movable(const struct mcc *m, int axis, double direction)
     if (axis < 0 || axis >= AXES || !m->machine.axis[axis].used) {
         return MCC_PARAMETER;
     }
-    return direction != 0.0 && on_limit(m, axis, direction) ? MCC_COMMAND_NOTACCEPTED
-                                                            : MCC_NO_ERR;
+    return direction != 0.0 && on_limit(m, axis, direction) ? MCC_COMMAND_NOTACCEPTED : MCC_NO_ERR;
 }
 
 /* Jog. */
@@ -162,7 +163,7 @@ static int movable(const struct mcc *m, int axis, double direction)
 static struct axes_limits jog_limits(const struct mcc *m, int axis, double percent)
 {
     return machine_axis_limits(&m->machine, axis,
-                          machine_axis_speed(&m->machine.axis[axis]) * percent / 100.0);
+                               machine_axis_speed(&m->machine.axis[axis]) * percent / 100.0);
 }
 
 int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
@@ -226,8 +227,8 @@ int MCC_jog_s(struct mcc *m, int axis, int32_t pulses)
     }
     const struct axes_limits l =
         machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
-    return step(m, axis, (pulses_of(m, axis) + pulses) /
-                         machine_pulses_per_mm(&m->machine.axis[axis]), &l);
+    return step(m, axis,
+                (pulses_of(m, axis) + pulses) / machine_pulses_per_mm(&m->machine.axis[axis]), &l);
 }
 
 /* Hand wheel. */
@@ -303,8 +304,8 @@ static void follow(struct mcc *m, int axis)
     if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
         axes_stand(&m->mover.axes, axis);
         rebase(m, axis);
-    } else if (m->mover.axes.axis[axis].order != AXES_GO ||
-               m->mover.axes.axis[axis].goal != target) {
+    } else if (m->mover.axes.axis[axis].order != AXES_GO
+               || m->mover.axes.axis[axis].goal != target) {
         const struct axes_limits l =
             machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
         axes_go(&m->mover.axes, axis, target, &l);
@@ -317,8 +318,8 @@ static void guard(struct mcc *m, int axis)
     double place, speed;
     axes_state(&m->mover.axes, axis, &place, &speed);
     const bool far = fabs(pulses_of(m, axis)) > COMMAND_PULSES_MAX && speed * place > 0.0;
-    if (m->mover.axes.axis[axis].order != AXES_STAND && speed != 0.0 &&
-        (far || on_limit(m, axis, speed))) {
+    if (m->mover.axes.axis[axis].order != AXES_STAND && speed != 0.0
+        && (far || on_limit(m, axis, speed))) {
         axes_stand(&m->mover.axes, axis);
     }
 }
@@ -330,14 +331,9 @@ void manual_look(struct mcc *m)
     }
     for (int i = 0; i < AXES; i++) {
         switch (m->manual.axis[i].use) {
-        case MANUAL_JOG:
-            guard(m, i);
-            break;
-        case MANUAL_WHEEL:
-            follow(m, i);
-            break;
-        default:
-            break;
+        case MANUAL_JOG:   guard(m, i); break;
+        case MANUAL_WHEEL: follow(m, i); break;
+        default:           break;
         }
     }
 }

@@ -12,15 +12,15 @@ struct mcc;
 
 enum manual_use { MANUAL_NONE, MANUAL_JOG, MANUAL_WHEEL, MANUAL_HOME };
 
-enum { MANUAL_ENCODERS = 9 };   /* counters of the card, those of the axes first */
+enum { MANUAL_ENCODERS = 9 }; /* counters of the card, those of the axes first */
 
 struct manual_axis {
     enum manual_use use;
-    int32_t encoder;    /* hand wheel: its counter, 0 .. 8 */
-    double  ratio;      /* [pulses/count] */
-    int32_t count;      /* [counts] of the counter at the latest look */
-    int64_t turned;     /* [counts] since the axis was at `base` */
-    int32_t base;       /* [pulses] */
+    int32_t encoder; /* hand wheel: its counter, 0 .. 8 */
+    double ratio;    /* [pulses/count] */
+    int32_t count;   /* [counts] of the counter at the latest look */
+    int64_t turned;  /* [counts] since the axis was at `base` */
+    int32_t base;    /* [pulses] */
 };
 
 struct manual {

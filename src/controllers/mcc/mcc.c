@@ -51,11 +51,12 @@ int MCC_get_errcode(const struct mcc *m)
 /* Whether a motion call can be taken now. */
 static int acceptable(const struct mcc *m)
 {
-    return !m->open ? MCC_INITIAL_MOTION :
-           m->error ? MCC_RUN_TIME :
-           m->mover.abort ? MCC_ABORT_NOT_FINISH :
-           m->running || mover_ordered(&m->mover) ? MCC_COMMAND_NOTACCEPTED :
-           ring_full(&m->ring) ? MCC_COMMAND_BUFFER_FULL : MCC_NO_ERR;
+    return !m->open                                 ? MCC_INITIAL_MOTION
+           : m->error                               ? MCC_RUN_TIME
+           : m->mover.abort                         ? MCC_ABORT_NOT_FINISH
+           : m->running || mover_ordered(&m->mover) ? MCC_COMMAND_NOTACCEPTED
+           : ring_full(&m->ring)                    ? MCC_COMMAND_BUFFER_FULL
+                                                    : MCC_NO_ERR;
 }
 
 /* A target of the user in machine coordinates; false if it is no number. */
@@ -97,16 +98,18 @@ static int plan(struct mcc *m, struct command *c, enum command_type type)
     const struct motion_limits l = machine_limits(&m->machine);
     struct command_refusal r;
 
-    return accept(m, c, type == COMMAND_PTP ? command_ptp(c, &machine, &l, &r)
-                      : type == COMMAND_PTP_ASYN ? command_ptp_asyn(c, &machine, &r)
-                      : command_move(c, &machine, &l, type, m->feed, &r));
+    return accept(m, c,
+                  type == COMMAND_PTP        ? command_ptp(c, &machine, &l, &r)
+                  : type == COMMAND_PTP_ASYN ? command_ptp_asyn(c, &machine, &r)
+                                             : command_move(c, &machine, &l, type, m->feed, &r));
 }
 
 /* A command with what is set for its ends. */
 static struct command smoothed(const struct mcc *m)
 {
-    return (struct command){ .blend = m->blend, .tolerance = m->tolerance, .curve = m->curve,
-                             .merge = m->merge };
+    return (struct command){
+        .blend = m->blend, .tolerance = m->tolerance, .curve = m->curve, .merge = m->merge
+    };
 }
 
 static int straight(struct mcc *m, const double target[AXES], enum command_type type)
@@ -141,8 +144,7 @@ int MCC_ptp_asyn(struct mcc *m, const double target[AXES])
 }
 
 /* Only some axes go somewhere: `count` from `first` on. */
-static int some(struct mcc *m, int first, int count, const double value[],
-                enum command_type type)
+static int some(struct mcc *m, int first, int count, const double value[], enum command_type type)
 {
     double target[AXES] = { 0.0 };
     if (!m->incremental) {
@@ -198,10 +200,10 @@ static void in_plane(const struct mcc *m, enum path_plane plane, double a, doubl
 /* An arc as it is asked for, in machine coordinates of its plane. */
 struct turn {
     enum path_plane plane;
-    bool   circle;          /* full circle about centre, else an arc through via */
-    bool   ccw;
+    bool circle; /* full circle about centre, else an arc through via */
+    bool ccw;
     double via[2], end[2], centre[2];
-    const double *follow;   /* U V W of the user that follow, or NULL */
+    const double *follow; /* U V W of the user that follow, or NULL */
 };
 
 /* End of an arc in all axes; false if an axis is not used or a number is none. */
@@ -236,10 +238,10 @@ static int turn(struct mcc *m, struct turn *t)
     if (!turn_end(m, t, end)) {
         return MCC_PARAMETER;
     }
-    if ((!t->circle &&
-         path_centre_by_point(t->plane, m->end, t->via, end, t->centre, &t->ccw) != PATH_OK) ||
-        !isfinite(t->centre[0]) || !isfinite(t->centre[1]) ||
-        path_arc(&c.path, t->plane, m->end, end, t->centre, t->ccw, 1, &miss) != PATH_OK) {
+    if ((!t->circle
+         && path_centre_by_point(t->plane, m->end, t->via, end, t->centre, &t->ccw) != PATH_OK)
+        || !isfinite(t->centre[0]) || !isfinite(t->centre[1])
+        || path_arc(&c.path, t->plane, m->end, end, t->centre, t->ccw, 1, &miss) != PATH_OK) {
         return MCC_PARAMETER;
     }
     return plan(m, &c, command_arc_type(&c.path));

@@ -7,12 +7,17 @@
 
 MCC_MACH_PARAM mcc_param_of(const struct machine_axis *a)
 {
-    return (MCC_MACH_PARAM){
-        .type = a->used ? MCC_LINEAR : MCC_UNUSED, .pos2encoder_dir = a->inverted,
-        .PPR = a->ppr, .RPM = a->rpm, .pitch = a->pitch, .gear_ratio = a->gear_ratio,
-        .high_limit = a->high_limit, .low_limit = a->low_limit,
-        .HOT_offset = a->hot_offset, .LOT_offset = a->lot_offset, .index_on = !a->index_low
-    };
+    return (MCC_MACH_PARAM){ .type = a->used ? MCC_LINEAR : MCC_UNUSED,
+                             .pos2encoder_dir = a->inverted,
+                             .PPR = a->ppr,
+                             .RPM = a->rpm,
+                             .pitch = a->pitch,
+                             .gear_ratio = a->gear_ratio,
+                             .high_limit = a->high_limit,
+                             .low_limit = a->low_limit,
+                             .HOT_offset = a->hot_offset,
+                             .LOT_offset = a->lot_offset,
+                             .index_on = !a->index_low };
 }
 
 static bool bit(int32_t x)
@@ -23,10 +28,10 @@ static bool bit(int32_t x)
 /* What machine_valid does not look at. */
 static bool valid(const MCC_MACH_PARAM *p)
 {
-    return p->type >= MCC_LINEAR && p->type <= MCC_UNUSED && bit(p->pos2encoder_dir) &&
-           isfinite(p->high_limit) && isfinite(p->low_limit) && p->low_limit <= p->high_limit &&
-           isfinite(p->HOT_offset) && isfinite(p->LOT_offset) &&
-           bit(p->sensor_on) && bit(p->index_on) && p->home_dir >= 0 && p->home_dir <= 7;
+    return p->type >= MCC_LINEAR && p->type <= MCC_UNUSED && bit(p->pos2encoder_dir)
+           && isfinite(p->high_limit) && isfinite(p->low_limit) && p->low_limit <= p->high_limit
+           && isfinite(p->HOT_offset) && isfinite(p->LOT_offset) && bit(p->sensor_on)
+           && bit(p->index_on) && p->home_dir >= 0 && p->home_dir <= 7;
 }
 
 static void set_axis(struct machine_axis *a, const MCC_MACH_PARAM *p)

@@ -17,7 +17,7 @@
 #include "task.h"
 
 /* Calls that differ by the name alone. */
-#define MCC_CloseSystem      MCC_close_motion   /* refused before standstill */
+#define MCC_CloseSystem      MCC_close_motion /* refused before standstill */
 #define MCC_ClearError       MCC_clear_error
 #define MCC_GetErrorCode     MCC_get_errcode
 #define MCC_SetAbsolute      MCC_set_abs
@@ -36,7 +36,7 @@
 #define MCC_CircleYZ         MCC_circle_yz
 #define MCC_CircleZX         MCC_circle_zx
 #define MCC_DelayMotion      MCC_motion_delay
-#define MCC_HoldMotion       MCC_motion_hold    /* at once, never behind the current command */
+#define MCC_HoldMotion       MCC_motion_hold /* at once, never behind the current command */
 #define MCC_ContiMotion      MCC_motion_conti
 #define MCC_AbortMotion      MCC_motion_abort
 #define MCC_SetFeedSpeed     MCC_set_fspd
@@ -60,7 +60,7 @@
 #define MCC_DisableDryRun    MCC_disable_dry_run
 #define MCC_CheckDryRun      MCC_check_dry_run
 #define MCC_RunSingleBlock   task_continue
-#define MCC_EnableInPos      MCC_enable_in_pos  /* an axis mask, as there */
+#define MCC_EnableInPos      MCC_enable_in_pos /* an axis mask, as there */
 #define MCC_DisableInPos     MCC_disable_in_pos
 #define MCC_GetGoHomeStatus  MCC_check_homef
 #define MCC_AbortGoHome      MCC_motion_abort
@@ -68,7 +68,7 @@
 
 /* Group status: 0 running, 1 stopped, 2 hold, 3 delay, 4 single block, 5 hand wheel;
  * MCC_check_stop tells 1 and 0. */
-#define MCC_GetMotionStatus  task_status
+#define MCC_GetMotionStatus task_status
 
 /* Six values to where the caller wants them. */
 static inline void mccl_give(const double from[AXES], double *const to[AXES])
@@ -108,8 +108,7 @@ static inline int MCC_SyncPtP(struct mcc *m, double x, double y, double z, doubl
 }
 
 /* Each axis for itself. */
-static inline int MCC_PtP(struct mcc *m, double x, double y, double z, double u, double v,
-                          double w)
+static inline int MCC_PtP(struct mcc *m, double x, double y, double z, double u, double v, double w)
 {
     const double target[AXES] = { x, y, z, u, v, w };
     return MCC_ptp_asyn(m, target);
@@ -155,20 +154,20 @@ static inline int MCC_DisableSingleBlock(struct mcc *m)
 }
 
 /* An arc through (ra, rb) to (a, b), a circle about (ca, cb), with U V W. */
-#define MCCL_TURNS(plane, lower)                                                                 \
+#define MCCL_TURNS(plane, lower) \
     static inline int MCC_Arc##plane##UVW(struct mcc *m, double ra, double rb, double a, double b, \
-                                          double u, double v, double w)                          \
-    {                                                                                            \
-        const double points[4] = { ra, rb, a, b };                                               \
-        const double uvw[3] = { u, v, w };                                                       \
-        return MCC_arc_##lower##uvw(m, points, uvw);                                             \
-    }                                                                                            \
-    static inline int MCC_Circle##plane##UVW(struct mcc *m, double ca, double cb, double u,      \
-                                             double v, double w, int direction)                  \
-    {                                                                                            \
-        const double centre[2] = { ca, cb };                                                     \
-        const double uvw[3] = { u, v, w };                                                       \
-        return MCC_circle_##lower##uvw(m, centre, direction, uvw);                               \
+                                          double u, double v, double w) \
+    { \
+        const double points[4] = { ra, rb, a, b }; \
+        const double uvw[3] = { u, v, w }; \
+        return MCC_arc_##lower##uvw(m, points, uvw); \
+    } \
+    static inline int MCC_Circle##plane##UVW(struct mcc *m, double ca, double cb, double u, \
+                                             double v, double w, int direction) \
+    { \
+        const double centre[2] = { ca, cb }; \
+        const double uvw[3] = { u, v, w }; \
+        return MCC_circle_##lower##uvw(m, centre, direction, uvw); \
     }
 
 MCCL_TURNS(XY, xy)
@@ -177,48 +176,48 @@ MCCL_TURNS(ZX, zx)
 #undef MCCL_TURNS
 
 /* Six values to set and to get, under the names of the later releases. */
-#define MCCL_SIX(type, give, set, get, set_six, get_six)                                         \
-    static inline int set(struct mcc *m, type x, type y, type z, type u, type v, type w)         \
-    {                                                                                            \
-        const type six[AXES] = { x, y, z, u, v, w };                                             \
-        return set_six(m, six);                                                                  \
-    }                                                                                            \
+#define MCCL_SIX(type, give, set, get, set_six, get_six) \
+    static inline int set(struct mcc *m, type x, type y, type z, type u, type v, type w) \
+    { \
+        const type six[AXES] = { x, y, z, u, v, w }; \
+        return set_six(m, six); \
+    } \
     MCCL_GET(type, give, get, get_six)
 
-#define MCCL_GET(type, give, get, get_six)                                                       \
-    static inline int get(const struct mcc *m, type *x, type *y, type *z, type *u, type *v,      \
-                          type *w)                                                               \
-    {                                                                                            \
-        type six[AXES] = { 0 };                                                                  \
-        type *const to[AXES] = { x, y, z, u, v, w };                                             \
-        const int code = get_six(m, six);                                                        \
-        give(six, to);                                                                           \
-        return code;                                                                             \
+#define MCCL_GET(type, give, get, get_six) \
+    static inline int get(const struct mcc *m, type *x, type *y, type *z, type *u, type *v, \
+                          type *w) \
+    { \
+        type six[AXES] = { 0 }; \
+        type *const to[AXES] = { x, y, z, u, v, w }; \
+        const int code = get_six(m, six); \
+        give(six, to); \
+        return code; \
     }
 
 /* The most pulses of an axis in a DDA time; there, in an interpolation period. */
-MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseSpeed, MCC_GetMaxPulseSpeed,
-         MCC_set_max_dda_spd, MCC_get_max_dda_spd)
+MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseSpeed, MCC_GetMaxPulseSpeed, MCC_set_max_dda_spd,
+         MCC_get_max_dda_spd)
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetPGain, MCC_GetPGain, MCC_set_P_gain, MCC_get_P_gain)
 
 /* Its largest change from one DDA time to the next; there, from period to period. */
-MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseAcc, MCC_GetMaxPulseAcc,
-         MCC_set_max_dda_acc, MCC_get_max_dda_acc)
-MCCL_SIX(int, mccl_give_int, MCC_SetOverTravelCheck, MCC_GetOverTravelCheck,
-         MCC_set_check_OT, MCC_get_check_OT)
-MCCL_SIX(double, mccl_give, MCC_SetInPosToleranceEx, MCC_GetInPosToleranceEx,
-         MCC_set_inpos_tol, MCC_get_inpos_tol)
+MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseAcc, MCC_GetMaxPulseAcc, MCC_set_max_dda_acc,
+         MCC_get_max_dda_acc)
+MCCL_SIX(int, mccl_give_int, MCC_SetOverTravelCheck, MCC_GetOverTravelCheck, MCC_set_check_OT,
+         MCC_get_check_OT)
+MCCL_SIX(double, mccl_give, MCC_SetInPosToleranceEx, MCC_GetInPosToleranceEx, MCC_set_inpos_tol,
+         MCC_get_inpos_tol)
 MCCL_GET(int, mccl_give_int, MCC_GetInPosStatus, MCC_check_in_pos)
 
 /* Of the axes that move for themselves. */
-MCCL_SIX(char, mccl_give_char, MCC_SetPtPAccType, MCC_GetPtPAccType,
-         MCC_set_ptp_asyn_acc_type, MCC_get_ptp_asyn_acc_type)
-MCCL_SIX(char, mccl_give_char, MCC_SetPtPDecType, MCC_GetPtPDecType,
-         MCC_set_ptp_asyn_decc_type, MCC_get_ptp_asyn_dec_type)
-MCCL_SIX(double, mccl_give, MCC_SetPtPAccTime, MCC_GetPtPAccTime,
-         MCC_set_ptp_asyn_acc_step, MCC_get_ptp_asyn_acc_step)
-MCCL_SIX(double, mccl_give, MCC_SetPtPDecTime, MCC_GetPtPDecTime,
-         MCC_set_ptp_asyn_dec_step, MCC_get_ptp_asyn_dec_step)
+MCCL_SIX(char, mccl_give_char, MCC_SetPtPAccType, MCC_GetPtPAccType, MCC_set_ptp_asyn_acc_type,
+         MCC_get_ptp_asyn_acc_type)
+MCCL_SIX(char, mccl_give_char, MCC_SetPtPDecType, MCC_GetPtPDecType, MCC_set_ptp_asyn_decc_type,
+         MCC_get_ptp_asyn_dec_type)
+MCCL_SIX(double, mccl_give, MCC_SetPtPAccTime, MCC_GetPtPAccTime, MCC_set_ptp_asyn_acc_step,
+         MCC_get_ptp_asyn_acc_step)
+MCCL_SIX(double, mccl_give, MCC_SetPtPDecTime, MCC_GetPtPDecTime, MCC_set_ptp_asyn_dec_step,
+         MCC_get_ptp_asyn_dec_step)
 
 /* Of the points the card has taken. */
 MCCL_GET(double, mccl_give, MCC_GetCurPos, MCC_get_cpos)

@@ -39,8 +39,9 @@ int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card)
     }
     /* All but the frames it refused. */
     const int64_t refused = (int64_t)card->frames_refused - p->refused;
-    const int32_t taken = refused < 0 ? p->count
-                        : refused > p->count ? 0 : (int32_t)(p->count - refused);
+    const int32_t taken = refused < 0          ? p->count
+                          : refused > p->count ? 0
+                                               : (int32_t)(p->count - refused);
     p->prime = p->prime > taken ? p->prime - taken : 0;
     p->refusals = taken > 0 ? 0 : p->refusals + 1;
     p->refused = card->frames_refused;
@@ -80,8 +81,8 @@ void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t
             p->ack_flags[i] = card->irq_flags[i] & pcl_mask(p, i);
         }
         p->ack_seq++;
-    } else if (!p->open && p->seq > 0 && p->prime == 0 && p->pending == 0 &&
-               card->stock <= p->min_stock) {
+    } else if (!p->open && p->seq > 0 && p->prime == 0 && p->pending == 0
+               && card->stock <= p->min_stock) {
         p->pending = 1;
         p->due = now;
         p->raised = -1;
@@ -130,8 +131,8 @@ void pcl_merge(struct pcl *p, const struct mcc *m, const int32_t channel[AXES],
         const struct point *point = queue_peek(&m->queue, i);
         for (int k = 0; k < AXES; k++) {
             if (channel[k] >= 0) {
-                p->frames[i][channel[k]] = m->machine.axis[k].inverted ? -point->frame[k]
-                                                                       : point->frame[k];
+                p->frames[i][channel[k]] =
+                    m->machine.axis[k].inverted ? -point->frame[k] : point->frame[k];
             }
         }
     }

@@ -16,50 +16,50 @@
 enum {
     PCL_FRAMES = LINK_FRAMES,
     PCL_FIFO = 63,
-    PCL_REFUSALS = 3    /* wholly refused transactions in a row that no full FIFO explains */
+    PCL_REFUSALS = 3 /* wholly refused transactions in a row that no full FIFO explains */
 };
 
 /* What one library has in a transaction. */
 struct pcl_part {
-    int32_t points;     /* frames from its queue; the others are standstill */
-    bool    late;       /* in the middle of a motion */
+    int32_t points; /* frames from its queue; the others are standstill */
+    bool late;      /* in the middle of a motion */
 };
 
 /* What the card shows on its bus. */
 struct pcl_card {
-    int32_t irq_seq;            /* pulls of the interrupt line */
-    int64_t irq_clock;          /* of the latest pull */
-    int32_t irq_flags[ISR_PAGES];   /* first page: DDA, bits 0 to 5 FIFO */
-    int32_t cmd_ack;            /* latest transaction taken */
+    int32_t irq_seq;              /* pulls of the interrupt line */
+    int64_t irq_clock;            /* of the latest pull */
+    int32_t irq_flags[ISR_PAGES]; /* first page: DDA, bits 0 to 5 FIFO */
+    int32_t cmd_ack;              /* latest transaction taken */
     int32_t frames_refused;
-    int32_t stock;              /* of the watched axis */
+    int32_t stock; /* of the watched axis */
 };
 
 struct pcl {
-    int32_t min_stock, batch;   /* n and N */
-    int32_t mask;               /* source that asks for commands: FIFO of the first used axis */
-    int32_t axis;               /* that axis */
-    int32_t prime;              /* frames still to write before the first service */
+    int32_t min_stock, batch; /* n and N */
+    int32_t mask;             /* source that asks for commands: FIFO of the first used axis */
+    int32_t axis;             /* that axis */
+    int32_t prime;            /* frames still to write before the first service */
 
-    int32_t seq;                /* the transaction: number, 0 before the first */
-    bool    open;               /* not yet acknowledged */
-    int64_t clock;              /* when it reaches the card */
-    int32_t count;              /* frames in it */
-    struct pcl_part part;       /* of a library that has the card for itself */
+    int32_t seq;          /* the transaction: number, 0 before the first */
+    bool open;            /* not yet acknowledged */
+    int64_t clock;        /* when it reaches the card */
+    int32_t count;        /* frames in it */
+    struct pcl_part part; /* of a library that has the card for itself */
     int32_t frames[PCL_FRAMES][AXES];
 
-    bool    halted;             /* emergency stop: the card takes nothing */
-    int32_t refusals;           /* transactions in a row of which the card took nothing */
-    int64_t pending;            /* interrupts not served */
-    int64_t due;                /* clock of the next service; INT64_MAX: with its page's */
-    int64_t raised;             /* clock of its interrupt, -1 if none asked for it */
-    int32_t irq_seq, refused;   /* as seen last */
-    int32_t ack_seq;            /* interrupt acknowledge to the card */
+    bool halted;              /* emergency stop: the card takes nothing */
+    int32_t refusals;         /* transactions in a row of which the card took nothing */
+    int64_t pending;          /* interrupts not served */
+    int64_t due;              /* clock of the next service; INT64_MAX: with its page's */
+    int64_t raised;           /* clock of its interrupt, -1 if none asked for it */
+    int32_t irq_seq, refused; /* as seen last */
+    int32_t ack_seq;          /* interrupt acknowledge to the card */
     int32_t ack_flags[ISR_PAGES];
-    struct isr isr;             /* the other sources */
+    struct isr isr; /* the other sources */
 
     int32_t services, starved;
-    int64_t latency;            /* [clocks] of the latest service */
+    int64_t latency; /* [clocks] of the latest service */
 };
 
 void pcl_start(struct pcl *p, const struct machine *m, int32_t min_stock, int32_t batch,

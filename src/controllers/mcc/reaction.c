@@ -6,9 +6,9 @@
 #include "reach.h"
 
 /* Pulses come as planned for the DDA time in progress; then two DDA times tell that none comes. */
-static const int64_t QUIET = 2;     /* [DDA times] */
+static const int64_t QUIET = 2; /* [DDA times] */
 
-static const int64_t OUTSIDE = -1;  /* of `settled`: not within the tolerance */
+static const int64_t OUTSIDE = -1; /* of `settled`: not within the tolerance */
 
 /* Frame of a point from the previous position, uncompensated; false if the card could not take
  * it. */
@@ -54,8 +54,8 @@ static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
     if (mechanism_bounded(machine)) {
         axis = mechanism_outside(machine, m->mover.pulses, p->pulses);
         const struct mover_beside beside = mcc_beside(m);
-        axis = axis >= 0 ? axis : reach_beyond(&m->mover, &beside, machine,
-                                               machine_dda_time(&m->machine));
+        axis = axis >= 0 ? axis
+                         : reach_beyond(&m->mover, &beside, machine, machine_dda_time(&m->machine));
     }
     *error = MCC_ERROR_TRAVEL + axis;
     if (axis < 0 && !ramping) {
@@ -64,8 +64,8 @@ static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
     return axis < 0;
 }
 
-bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping,
-                    struct point *p, int32_t *error)
+bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping, struct point *p,
+                    int32_t *error)
 {
     *error = MCC_ERROR_SPEED;
     if (!frame(m, p)) {
@@ -73,8 +73,8 @@ bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping
     }
     if (!m->error) {
         *error = MCC_ERROR_ACC;
-        if (guard_change(&m->machine, m->protection.frame, p->frame) >= 0 ||
-            (!homing(m) && !within(m, machine, ramping, p, error))) {
+        if (guard_change(&m->machine, m->protection.frame, p->frame) >= 0
+            || (!homing(m) && !within(m, machine, ramping, p, error))) {
             return false;
         }
     }
@@ -150,7 +150,7 @@ static void emergency(struct mcc *m)
     m->running = false;
     mover_stop(&m->mover, &m->ring);
     queue_clear(&m->queue);
-    m->written.outputs = m->mover.outputs;    /* off now, not with a point */
+    m->written.outputs = m->mover.outputs; /* off now, not with a point */
     m->mover.untold = false;
 }
 
@@ -228,7 +228,7 @@ void reaction_look(struct mcc *m, const struct reaction_look *l)
     if (!m->error && !m->mover.abort && !homing(m) && m->queue.count > 0) {
         const int32_t error = blocked(m, &m->written, queue_peek(&m->queue, 0), &axis);
         if (axis >= 0) {
-            reaction_stop(m, error);     /* the newest points may go another way */
+            reaction_stop(m, error); /* the newest points may go another way */
         }
     }
     if (m->mover.confirming) {

@@ -23,8 +23,8 @@
 /* Complete a point with its frame; m->mover is there, `ramping` if an abort has brought it. False
  * if it must not be queued: then *error is the run-time error to raise, 0 for a stop without one.
  * The machine is that of m. */
-bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping,
-                    struct point *p, int32_t *error);
+bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping, struct point *p,
+                    int32_t *error);
 
 /* Ramp to rest; a second error, met on the ramp of the first, stops without a ramp. */
 void reaction_stop(struct mcc *m, int32_t error);
@@ -33,9 +33,9 @@ void reaction_stop(struct mcc *m, int32_t error);
 int32_t reaction_error_of(const struct fault_report *r);
 
 struct reaction_look {
-    int64_t  clocks;        /* since the latest look */
-    int32_t  flying;        /* points at the head of the queue that a transaction holds */
-    uint32_t overflow;      /* axes whose error counter has told an overflow since, a bit each */
+    int64_t clocks;    /* since the latest look */
+    int32_t flying;    /* points at the head of the queue that a transaction holds */
+    uint32_t overflow; /* axes whose error counter has told an overflow since, a bit each */
 };
 
 /* Look at m->signals. */

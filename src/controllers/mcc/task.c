@@ -8,12 +8,16 @@
 
 struct program task_program(const struct mcc *m, const struct source *s)
 {
-    return (struct program){ .source = s, .machine = machine_mechanism(&m->machine),
+    return (struct program){ .source = s,
+                             .machine = machine_mechanism(&m->machine),
                              .limits = machine_limits(&m->machine),
                              .arc = { m->machine.arc_tolerance, 1e-3 },
-                             .block_delete = m->block_delete, .optional_stop = m->optional_stop,
-                             .change_stops = m->change_stops, .has_inputs = true,
-                             .has_probe = true, .angles = m->dialect.angles,
+                             .block_delete = m->block_delete,
+                             .optional_stop = m->optional_stop,
+                             .change_stops = m->change_stops,
+                             .has_inputs = true,
+                             .has_probe = true,
+                             .angles = m->dialect.angles,
                              .fanuc = m->dialect.fanuc,
                              .strict_feed = m->dialect.strict_feed,
                              .least_increment = m->dialect.least_increment };
@@ -156,8 +160,8 @@ static bool works(const struct mcc *m)
 /* Room for a command, if what has left the ring since its head was there is kept. */
 static bool has_room(const struct mcc *m, int32_t head)
 {
-    return works(m) && m->running && !waiting_now(&m->program) &&
-           m->ring.count + (m->ring.head - head + RING_SIZE) % RING_SIZE < RING_SIZE;
+    return works(m) && m->running && !waiting_now(&m->program)
+           && m->ring.count + (m->ring.head - head + RING_SIZE) % RING_SIZE < RING_SIZE;
 }
 
 bool task_can_read(const struct mcc *m)
@@ -178,15 +182,12 @@ void task_read(struct mcc *m, const struct source *s)
         memcpy(m->end, m->program.point, sizeof m->end);
         ring_push(&m->ring, &c);
         break;
-    case INTERPRETER_WAIT:
-        break;
+    case INTERPRETER_WAIT: break;
     case INTERPRETER_END:
         m->running = false;
         m->curve_plan.last = true;
         break;
-    case INTERPRETER_FAULT:
-        reaction_stop(m, reaction_error_of(&r));
-        break;
+    case INTERPRETER_FAULT: reaction_stop(m, reaction_error_of(&r)); break;
     }
 }
 
@@ -209,8 +210,8 @@ int task_read_all(struct mcc *m, const struct source *s)
 
 bool task_can_point(const struct mcc *m)
 {
-    return works(m) && m->queue.count < m->machine.queue_depth &&
-           (m->mover.untold || compensate_due(m) || !mover_resting(&m->mover, &m->ring));
+    return works(m) && m->queue.count < m->machine.queue_depth
+           && (m->mover.untold || compensate_due(m) || !mover_resting(&m->mover, &m->ring));
 }
 
 int task_point(struct mcc *m, const struct source *s)
@@ -273,13 +274,14 @@ enum task_status task_status(const struct mcc *m)
     if (MCC_check_stop(m)) {
         return TASK_STOPPED;
     }
-    if ((mover_held(&m->mover) || m->mover.stopped) && m->queue.count == 0 && !m->mover.untold &&
-        mover_resting(&m->mover, &m->ring)) {
+    if ((mover_held(&m->mover) || m->mover.stopped) && m->queue.count == 0 && !m->mover.untold
+        && mover_resting(&m->mover, &m->ring)) {
         return TASK_HOLD;
     }
     if (mover_waits(&m->mover, &m->ring) && m->queue.count == 0 && !m->mover.untold) {
         return TASK_BLOCK_HOLD;
     }
-    return manual_wheel(m) ? TASK_WHEEL
-         : m->written.waits || m->inquiry.waits ? TASK_DELAY : TASK_RUNNING;
+    return manual_wheel(m)                        ? TASK_WHEEL
+           : m->written.waits || m->inquiry.waits ? TASK_DELAY
+                                                  : TASK_RUNNING;
 }

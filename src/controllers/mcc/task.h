@@ -5,9 +5,7 @@
 #include "mcc.h"
 
 /* Codes of the library's group status that occur here. */
-enum task_status {
-    TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY, TASK_BLOCK_HOLD, TASK_WHEEL
-};
+enum task_status { TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY, TASK_BLOCK_HOLD, TASK_WHEEL };
 
 /* What a program is read against, whose text comes from s. */
 struct program task_program(const struct mcc *m, const struct source *s);
@@ -74,8 +72,8 @@ enum task_status task_status(const struct mcc *m);
 
 /* A key of a panel: it counts as pressed when it goes down, until somebody takes that. */
 struct key {
-    bool down;          /* when it was looked at last */
-    bool pressed;       /* since it was taken last */
+    bool down;    /* when it was looked at last */
+    bool pressed; /* since it was taken last */
 };
 
 static inline void key_look(struct key *k, bool down)

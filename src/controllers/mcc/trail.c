@@ -84,11 +84,11 @@ static void bend(const struct trail *t, int64_t middle, double out[3])
 
 /* A piece of the path and what of it is nearest. */
 struct trail_piece {
-    double from[3], chord[3], along[3];     /* [mm], [mm], unit */
-    double size;            /* [mm] of the chord */
-    double foot[3];         /* [mm] */
+    double from[3], chord[3], along[3]; /* [mm], [mm], unit */
+    double size;                        /* [mm] of the chord */
+    double foot[3];                     /* [mm] */
     double tangent[3];
-    double square;          /* [mm^2] distance to the foot */
+    double square; /* [mm^2] distance to the foot */
 };
 
 /* Nearest point on the chord from a point to the next. */
@@ -167,7 +167,7 @@ static struct trail_piece refined(const struct trail *t, int64_t i, const double
     }
     const double reach = length(spoke);
     if (reach == 0.0) {
-        return p;       /* at the centre every point is as near */
+        return p; /* at the centre every point is as near */
     }
     double foot[3], way[3], square = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -192,8 +192,8 @@ static struct trail_piece refined(const struct trail *t, int64_t i, const double
 /* Places that stand still have no piece of their own. */
 static void pass_rest(struct trail *t, int64_t last)
 {
-    while (t->foot + 1 < last &&
-           memcmp(place_at(t, t->foot), place_at(t, t->foot + 1), 3 * sizeof(double)) == 0) {
+    while (t->foot + 1 < last
+           && memcmp(place_at(t, t->foot), place_at(t, t->foot + 1), 3 * sizeof(double)) == 0) {
         t->foot++;
     }
 }

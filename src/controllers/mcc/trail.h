@@ -13,28 +13,28 @@
 #include "machine.h"
 
 enum {
-    TRAIL_SIZE = 512,   /* frames: the FIFO and some 0.4 s behind it */
-    TRAIL_AHEAD = 2     /* frames that the tool may be ahead of the one being put out */
+    TRAIL_SIZE = 512, /* frames: the FIFO and some 0.4 s behind it */
+    TRAIL_AHEAD = 2   /* frames that the tool may be ahead of the one being put out */
 };
 
 /* The end of a frame. */
 struct trail_point {
-    double place[3];        /* [mm] X Y Z, without compensation */
-    double speed[AXES];     /* [pulses/s] during the frame, with compensation */
-    int32_t added[3];       /* [pulses] compensation since the start */
+    double place[3];    /* [mm] X Y Z, without compensation */
+    double speed[AXES]; /* [pulses/s] during the frame, with compensation */
+    int32_t added[3];   /* [pulses] compensation since the start */
 };
 
 struct trail {
     struct trail_point point[TRAIL_SIZE];
-    int64_t frames;         /* taken so far; that number's end is the latest point */
-    int64_t first;          /* the oldest whose point is there; 0 is the start */
-    int64_t foot;           /* the nearest point lies between this one and the next */
+    int64_t frames; /* taken so far; that number's end is the latest point */
+    int64_t first;  /* the oldest whose point is there; 0 is the start */
+    int64_t foot;   /* the nearest point lies between this one and the next */
 };
 
 /* Where the tool is nearest to the path. */
 struct trail_foot {
-    double error[3];        /* [mm] from the tool to the path, across it */
-    double tangent[3];      /* of the path there; 0 where it has no direction yet */
+    double error[3];   /* [mm] from the tool to the path, across it */
+    double tangent[3]; /* of the path there; 0 where it has no direction yet */
 };
 
 /* A path that has only its start. */

@@ -40,8 +40,8 @@ void voltage_follow(struct voltage *v, const struct machine *m)
         }
         const struct machine_axis *a = &m->axis[i];
         const double unit = machine_pulses_per_mm(a);
-        other = other || v->config.axis[i].on != a->used || v->inverted[i] != a->inverted ||
-                (i < 3 && v->config.pulses_per_mm[i] != unit);
+        other = other || v->config.axis[i].on != a->used || v->inverted[i] != a->inverted
+                || (i < 3 && v->config.pulses_per_mm[i] != unit);
         v->config.axis[i].on = a->used;
         v->inverted[i] = a->inverted;
         if (i < 3) {
@@ -115,8 +115,8 @@ static struct trail_foot nearest(struct voltage *v, const struct mcc *m, int64_t
     return trail_nearest(&v->trail, tool, v->frame);
 }
 
-void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock,
-                  double limit, double volts[AXES])
+void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock, double limit,
+                  double volts[AXES])
 {
     struct law_look look = { .foot = { { 0.0 }, { 0.0 } } };
 

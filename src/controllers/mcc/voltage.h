@@ -11,21 +11,21 @@
 #include "law.h"
 #include "pcl.h"
 
-enum { VOLTAGE_RANGE = 10 };    /* [V] of the card's DAC, both ways */
+enum { VOLTAGE_RANGE = 10 }; /* [V] of the card's DAC, both ways */
 
 struct voltage {
-    struct law_config config;   /* its axes and pulses per mm as of the machine now */
-    bool    wanted[AXES], inverted[AXES];
-    bool    special;        /* more than the P law is wanted */
+    struct law_config config; /* its axes and pulses per mm as of the machine now */
+    bool wanted[AXES], inverted[AXES];
+    bool special; /* more than the P law is wanted */
     struct law law;
     struct trail trail;
-    int32_t base[3];        /* [pulses] put out where the trail's coordinates are 0 */
-    int64_t sum[AXES];      /* [pulses] of the frames taken since, without compensation */
-    double  place[AXES];    /* [pulses] the ideal point of it */
-    int32_t added[AXES];    /* [pulses] compensation of the latest frame, */
-    int32_t added_base[3];  /* and where the trail begins */
-    int64_t frame;          /* being put out, */
-    int64_t since;          /* [clock] the instant at which that was first seen */
+    int32_t base[3];       /* [pulses] put out where the trail's coordinates are 0 */
+    int64_t sum[AXES];     /* [pulses] of the frames taken since, without compensation */
+    double place[AXES];    /* [pulses] the ideal point of it */
+    int32_t added[AXES];   /* [pulses] compensation of the latest frame, */
+    int32_t added_base[3]; /* and where the trail begins */
+    int64_t frame;         /* being put out, */
+    int64_t since;         /* [clock] the instant at which that was first seen */
 };
 
 /* At rest, with these gains; the first look is where the trail begins. Of the axes that are on here
@@ -41,7 +41,7 @@ void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part
                    int32_t taken);
 
 /* Voltages at a bus instant [clock], counted as the library counts, within +-limit [V]. */
-void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock,
-                  double limit, double volts[AXES]);
+void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock, double limit,
+                  double volts[AXES]);
 
 #endif

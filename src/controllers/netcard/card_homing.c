@@ -18,8 +18,10 @@ static int32_t lead(const struct card_settings *s)
 
 static struct home_cycle_input seen(struct netcard *c)
 {
-    struct home_cycle_input in = { .origin = c->axes.origin, .plus = c->axes.plus,
-                                   .minus = c->axes.minus, .latched = c->latched };
+    struct home_cycle_input in = { .origin = c->axes.origin,
+                                   .plus = c->axes.plus,
+                                   .minus = c->axes.minus,
+                                   .latched = c->latched };
 
     player_counts(&c->player, card_clock(c), in.position);
     memcpy(in.latch, c->latch, sizeof in.latch);
@@ -35,12 +37,16 @@ static bool begin(struct netcard *c)
     const struct home_cycle_input in = seen(c);
 
     for (int i = 0; i < CARD_AXES; i++) {
-        h.axis[i] = (struct home_axis){
-            .order = s->home_order[i], .trigger = (enum card_trigger)s->origin_trigger[i],
-            .plus = s->home_plus[i], .fast = s->home_speed[i], .slow = s->home_slow[i],
-            .acc = s->acc_max[i] * (1.0 - s->reserve), .start = s->speed_min[i],
-            .back = s->home_back[i], .travel = s->home_travel[i], .offset = s->home_offset[i]
-        };
+        h.axis[i] = (struct home_axis){ .order = s->home_order[i],
+                                        .trigger = (enum card_trigger)s->origin_trigger[i],
+                                        .plus = s->home_plus[i],
+                                        .fast = s->home_speed[i],
+                                        .slow = s->home_slow[i],
+                                        .acc = s->acc_max[i] * (1.0 - s->reserve),
+                                        .start = s->speed_min[i],
+                                        .back = s->home_back[i],
+                                        .travel = s->home_travel[i],
+                                        .offset = s->home_offset[i] };
         job.speed[i] = s->home_speed[i];
         job.acc[i] = s->acc_max[i];
     }
@@ -97,8 +103,7 @@ void card_home_frame(struct netcard *c, bool goes)
         c->homing = HOMING_GIVEN;
         go(c, HOME_LAST);
     }
-    card_spend(c, NETCARD_HOME, card_frame_ns(c, c->settings.step_cycles),
-               c->step[NETCARD_HOME]);
+    card_spend(c, NETCARD_HOME, card_frame_ns(c, c->settings.step_cycles), c->step[NETCARD_HOME]);
 }
 
 bool card_home_found(struct netcard *c)
@@ -137,11 +142,10 @@ static bool given_up(const struct netcard *c)
 {
     const int32_t at = c->step[NETCARD_HOME];
     const bool paused = c->state == NET_PAUSING || c->state == NET_PAUSED,
-               goes_on = stops(c) || c->state == NET_HOMING ||
-                         (paused && c->resumes == NET_HOMING);
+               goes_on = stops(c) || c->state == NET_HOMING || (paused && c->resumes == NET_HOMING);
 
-    return (at > HOME_LOWERED && at < HOME_RAISE && !goes_on) ||
-           (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE);
+    return (at > HOME_LOWERED && at < HOME_RAISE && !goes_on)
+           || (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE);
 }
 
 static void look(struct netcard *c)
@@ -192,29 +196,16 @@ void card_home(struct netcard *c)
         return;
     }
     switch (c->step[NETCARD_HOME]) {
-    case HOME_WAIT:
-        card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_LOOK);
-        break;
-    case HOME_LOOK:
-        look(c);
-        break;
+    case HOME_WAIT: card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_LOOK); break;
+    case HOME_LOOK: look(c); break;
     case HOME_LOWERED:
         go(c, HOME_STILL);
-        kernel_give(&c->kernel, NETCARD_GIVE_FIFO);     /* run gives its job up */
+        kernel_give(&c->kernel, NETCARD_GIVE_FIFO); /* run gives its job up */
         break;
-    case HOME_STILL:
-        come_to_rest(c);
-        break;
-    case HOME_CLEARED:
-        card_home_begin(c);
-        break;
-    case HOME_STEP:
-        step(c);
-        break;
-    case HOME_LAST:
-        last(c);
-        break;
-    default:
-        card_home_raise(c);
+    case HOME_STILL:   come_to_rest(c); break;
+    case HOME_CLEARED: card_home_begin(c); break;
+    case HOME_STEP:    step(c); break;
+    case HOME_LAST:    last(c); break;
+    default:           card_home_raise(c);
     }
 }

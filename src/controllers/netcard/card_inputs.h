@@ -23,26 +23,28 @@ enum { CARD_VECTORS = 7 };
 struct card_input {
     enum card_action action;
     enum card_edge edge;
-    int64_t debounce;       /* [ns] 0 or more */
+    int64_t debounce; /* [ns] 0 or more */
 };
 
-struct card_inputs_config { struct card_input line[CARD_INPUTS]; };
+struct card_inputs_config {
+    struct card_input line[CARD_INPUTS];
+};
 
 struct card_inputs {
     struct card_inputs_config config;
-    uint32_t levels;        /* at the pins */
-    uint32_t taken;         /* as the routines know them */
-    uint32_t pending;       /* lines */
-    uint32_t waiting;       /* lines whose action waits for the end of the deaf time */
-    uint32_t ended;         /* lines whose deaf time is over, not served since */
-    int64_t deaf[CARD_INPUTS];      /* [ns] until then; -1: it hears */
-    int64_t edges, lost, ignored;   /* all; while one was pending; while deaf */
+    uint32_t levels;              /* at the pins */
+    uint32_t taken;               /* as the routines know them */
+    uint32_t pending;             /* lines */
+    uint32_t waiting;             /* lines whose action waits for the end of the deaf time */
+    uint32_t ended;               /* lines whose deaf time is over, not served since */
+    int64_t deaf[CARD_INPUTS];    /* [ns] until then; -1: it hears */
+    int64_t edges, lost, ignored; /* all; while one was pending; while deaf */
 };
 
 /* What a routine has found. */
 struct card_input_served {
-    int line;                   /* -1 nothing: a line of this vector was not pending */
-    enum card_action action;    /* to be done now; CARD_NONE also for an edge without one */
+    int line;                /* -1 nothing: a line of this vector was not pending */
+    enum card_action action; /* to be done now; CARD_NONE also for an edge without one */
 };
 
 /* Levels at power on: no edge. */

@@ -64,8 +64,8 @@ bool card_job_header(struct netcard *c)
     struct job_header h;
     struct player_job job;
 
-    if (!c->page.good || job_header_read(&h, c->page.bytes) != JOB_GOOD ||
-        job_reader_start(&c->reader, &h, 0) != JOB_GOOD) {
+    if (!c->page.good || job_header_read(&h, c->page.bytes) != JOB_GOOD
+        || job_reader_start(&c->reader, &h, 0) != JOB_GOOD) {
         return false;
     }
     job = (struct player_job){ .period = (int32_t)(h.period_ns / PLAYER_CLOCK_NS),

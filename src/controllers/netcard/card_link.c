@@ -31,8 +31,8 @@ void card_tell_store(struct netcard *c)
         c->asked = false;
         c->credit = credit(c);
         session_job(&c->session, NET_DONE, 0, c->credit, missing(c));
-    } else if (!c->asked && c->store.phase == STORE_TAKE && c->credit < FEW_PAGES &&
-               credit(c) >= 2 * FEW_PAGES) {
+    } else if (!c->asked && c->store.phase == STORE_TAKE && c->credit < FEW_PAGES
+               && credit(c) >= 2 * FEW_PAGES) {
         c->credit = credit(c);
         session_ack(&c->session, c->credit, missing(c));
     }
@@ -46,7 +46,7 @@ static int job_begin(struct netcard *c, const uint8_t *payload)
 
     net_get_job_begin(payload, &m);
     if (card_job_under_way(c) && c->place.slot != c->store.job.slot) {
-        code = NET_BUSY;        /* the free slot is the one that is read */
+        code = NET_BUSY; /* the free slot is the one that is read */
     }
     if (card_job_under_way(c) && c->settings.slots == 1) {
         code = NET_BUSY;
@@ -71,15 +71,16 @@ static int job_data(struct netcard *c, const struct session_message *m)
 
     net_get_job_pages(m->payload, &p);
     for (uint32_t i = 0; i < p.count; i++) {
-        const enum net_code code = job_store_page(
-            &c->store, p.page + i, m->payload + NET_BYTES_job_pages + i * NET_PAGE_BYTES);
+        const enum net_code code =
+            job_store_page(&c->store, p.page + i,
+                           m->payload + NET_BYTES_job_pages + i * NET_PAGE_BYTES);
         if (code != NET_DONE) {
             session_nak(&c->session, m->sequence, code, (uint16_t)(p.page + i));
             return NETCARD_GIVE_STORAGE;
         }
     }
     c->credit = credit(c);
-    session_drop(&c->session);      /* the credit counts from behind this message */
+    session_drop(&c->session); /* the credit counts from behind this message */
     session_ack(&c->session, c->credit, missing(c));
     return NETCARD_GIVE_STORAGE;
 }
@@ -175,9 +176,10 @@ static void config_get(struct netcard *c, const struct session_message *m)
     }
 }
 
-_Static_assert(NET_PAUSE - NET_START == (int)CARD_DO_PAUSE &&
-               NET_STOP - NET_START == (int)CARD_DO_STOP &&
-               NET_RESET - NET_START == (int)CARD_DO_RESET, "messages of commands in their order");
+_Static_assert(NET_PAUSE - NET_START == (int)CARD_DO_PAUSE
+                   && NET_STOP - NET_START == (int)CARD_DO_STOP
+                   && NET_RESET - NET_START == (int)CARD_DO_RESET,
+               "messages of commands in their order");
 
 int card_message(struct netcard *c)
 {
@@ -189,32 +191,22 @@ int card_message(struct netcard *c)
         return -1;
     }
     switch (m.type) {
-    case NET_JOB_BEGIN:
-        return job_begin(c, m.payload);
-    case NET_JOB_DATA:
-        return job_data(c, &m);
-    case NET_JOB_END:
-        return job_end(c, m.payload);
+    case NET_JOB_BEGIN: return job_begin(c, m.payload);
+    case NET_JOB_DATA:  return job_data(c, &m);
+    case NET_JOB_END:   return job_end(c, m.payload);
     case NET_HOME:
         net_get_home(m.payload, &h);
         return order(c, h.number, CARD_DO_HOME, h.axes & ((1u << CARD_AXES) - 1));
-    case NET_OUTPUT:
-        output(c, m.payload);
-        return -1;
-    case NET_CONFIG_SET:
-        config_set(c, m.payload);
-        return -1;
-    case NET_CONFIG_GET:
-        config_get(c, &m);
-        return -1;
+    case NET_OUTPUT:     output(c, m.payload); return -1;
+    case NET_CONFIG_SET: config_set(c, m.payload); return -1;
+    case NET_CONFIG_GET: config_get(c, &m); return -1;
     case NET_START:
     case NET_PAUSE:
     case NET_STOP:
     case NET_RESET:
         net_get_command(m.payload, &n);
         return order(c, n.number, (enum card_command)(m.type - NET_START), 0);
-    default:
-        return -1;
+    default: return -1;
     }
 }
 
@@ -222,8 +214,8 @@ static uint32_t switches(const struct netcard *c)
 {
     const struct netcard_axes *a = &c->axes;
 
-    return a->plus | a->minus << 4 | a->origin << 8 | a->alarm << 12 | c->homed << 16 |
-           (uint32_t)a->stop << 20;
+    return a->plus | a->minus << 4 | a->origin << 8 | a->alarm << 12 | c->homed << 16
+           | (uint32_t)a->stop << 20;
 }
 
 void card_busy(const struct netcard *c, int64_t busy[CARD_LOADS])
@@ -240,15 +232,17 @@ void card_busy(const struct netcard *c, int64_t busy[CARD_LOADS])
 
 void card_tell_status(struct netcard *c)
 {
-    struct net_status s = {
-        .state = (uint8_t)c->state, .error = (uint8_t)c->error,
-        .inputs = (uint16_t)c->input_levels, .outputs = (uint16_t)c->outputs.levels,
-        .stock = (uint16_t)c->player.fifo.stock,
-        .job = card_job_under_way(c) ? c->played_id : c->store.job.id,
-        .frame = (uint32_t)netcard_frames(c), .underflows = (uint32_t)c->player.dry,
-        .switches = switches(c), .rate = (uint16_t)(player_rate(&c->player) * 1000.0),
-        .wear = flash_wear(&c->flash)
-    };
+    struct net_status s = { .state = (uint8_t)c->state,
+                            .error = (uint8_t)c->error,
+                            .inputs = (uint16_t)c->input_levels,
+                            .outputs = (uint16_t)c->outputs.levels,
+                            .stock = (uint16_t)c->player.fifo.stock,
+                            .job = card_job_under_way(c) ? c->played_id : c->store.job.id,
+                            .frame = (uint32_t)netcard_frames(c),
+                            .underflows = (uint32_t)c->player.dry,
+                            .switches = switches(c),
+                            .rate = (uint16_t)(player_rate(&c->player) * 1000.0),
+                            .wear = flash_wear(&c->flash) };
     int64_t busy[CARD_LOADS];
 
     _Static_assert(sizeof s.load == 2 * CARD_LOADS, "what STATUS has room for");
@@ -266,12 +260,9 @@ static int lost(struct netcard *c)
     enum net_code code;
 
     switch (c->settings.on_link_loss) {
-    case CARD_LOSS_PAUSE:
-        return card_order(c, CARD_DO_PAUSE, 0, &code);
-    case CARD_LOSS_STOP:
-        return card_order(c, CARD_DO_STOP, 0, &code);
-    default:
-        return -1;
+    case CARD_LOSS_PAUSE: return card_order(c, CARD_DO_PAUSE, 0, &code);
+    case CARD_LOSS_STOP:  return card_order(c, CARD_DO_STOP, 0, &code);
+    default:              return -1;
     }
 }
 
@@ -290,12 +281,10 @@ void card_parse(struct netcard *c)
     int semaphore;
 
     switch (c->step[NETCARD_PARSER]) {
-    case LOAD:          /* before all else: the job is looked for in the flash */
+    case LOAD: /* before all else: the job is looked for in the flash */
         card_spend(c, NETCARD_PARSER, c->loading, WAIT);
         return;
-    case WAIT:
-        card_take(c, NETCARD_PARSER, NETCARD_GIVE_BYTES, LOOK);
-        return;
+    case WAIT: card_take(c, NETCARD_PARSER, NETCARD_GIVE_BYTES, LOOK); return;
     case MESSAGE:
         c->step[NETCARD_PARSER] = LOOK;
         semaphore = card_message(c);
@@ -304,8 +293,8 @@ void card_parse(struct netcard *c)
         return;
     case ORDER:
         c->step[NETCARD_PARSER] = LOOK;
-        semaphore = order(c, 0, (enum card_command)c->order[c->first].command,
-                          c->order[c->first].axes);
+        semaphore =
+            order(c, 0, (enum card_command)c->order[c->first].command, c->order[c->first].axes);
         c->first = (c->first + 1) % NETCARD_ORDERS;
         c->orders--;
         give(c, semaphore);
@@ -318,16 +307,16 @@ void card_parse(struct netcard *c)
         c->step[NETCARD_PARSER] = LOOK;
         card_tell_status(c);
         return;
-    default:
-        break;
+    default: break;
     }
     if (c->clear == CLEAR_OVER) {
         card_work(c, NETCARD_PARSER, c->settings.step_cycles, CLEARED);
     } else if (c->orders > 0) {
         card_work(c, NETCARD_PARSER, c->settings.packet_cycles, ORDER);
     } else if (session_next(&c->session, &m, c->now)) {
-        card_work(c, NETCARD_PARSER, c->settings.packet_cycles +
-                  (int64_t)c->settings.byte_cycles * (int64_t)m.length, MESSAGE);
+        card_work(c, NETCARD_PARSER,
+                  c->settings.packet_cycles + (int64_t)c->settings.byte_cycles * (int64_t)m.length,
+                  MESSAGE);
     } else if (session_status_time(&c->session) <= c->now) {
         card_work(c, NETCARD_PARSER, c->settings.packet_cycles, STATUS);
     } else {

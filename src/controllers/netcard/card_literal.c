@@ -7,20 +7,15 @@ int literal_order(struct netcard *c, enum card_command command, uint32_t axes)
 {
     switch (command) {
     case CARD_DO_START:
-        if (c->hold != HOLD_NONE) {     /* a pause holds the processor: it ends, no job begins */
+        if (c->hold != HOLD_NONE) { /* a pause holds the processor: it ends, no job begins */
             c->hold = HOLD_RELEASED;
             return -1;
         }
         return NETCARD_GIVE_RUN;
-    case CARD_DO_PAUSE:
-        return NETCARD_GIVE_PAUSE;
-    case CARD_DO_STOP:
-        return NETCARD_GIVE_STOP;
-    case CARD_DO_HOME:
-        c->home_axes = axes;
-        return NETCARD_GIVE_HOME;
-    default:
-        return -1;
+    case CARD_DO_PAUSE: return NETCARD_GIVE_PAUSE;
+    case CARD_DO_STOP:  return NETCARD_GIVE_STOP;
+    case CARD_DO_HOME:  c->home_axes = axes; return NETCARD_GIVE_HOME;
+    default:            return -1;
     }
 }
 
@@ -40,18 +35,13 @@ static void stop(struct netcard *c)
 static void stop_task(struct netcard *c)
 {
     switch (c->step[NETCARD_STOP]) {
-    case TURN_WAIT:
-        card_take(c, NETCARD_STOP, NETCARD_GIVE_STOP, TURN_LOOK);
-        break;
-    case TURN_LOOK:
-        card_work(c, NETCARD_STOP, c->settings.step_cycles, TURN_ACT);
-        break;
+    case TURN_WAIT: card_take(c, NETCARD_STOP, NETCARD_GIVE_STOP, TURN_LOOK); break;
+    case TURN_LOOK: card_work(c, NETCARD_STOP, c->settings.step_cycles, TURN_ACT); break;
     case TURN_RELEASE:
         c->step[NETCARD_STOP] = TURN_WAIT;
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);
         break;
-    default:
-        stop(c);
+    default: stop(c);
     }
 }
 
@@ -76,14 +66,9 @@ static void hold(struct netcard *c)
 static void pause_task(struct netcard *c)
 {
     switch (c->step[NETCARD_PAUSE]) {
-    case TURN_WAIT:
-        card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, TURN_LOOK);
-        break;
-    case TURN_LOOK:
-        card_work(c, NETCARD_PAUSE, c->settings.step_cycles, TURN_ACT);
-        break;
-    default:
-        hold(c);
+    case TURN_WAIT: card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, TURN_LOOK); break;
+    case TURN_LOOK: card_work(c, NETCARD_PAUSE, c->settings.step_cycles, TURN_ACT); break;
+    default:        hold(c);
     }
 }
 
@@ -114,11 +99,10 @@ static void home_last(struct netcard *c)
 /* A stop or a fault ends homing. */
 static bool home_ends(const struct netcard *c, enum card_home_step at)
 {
-    const bool over = c->state == NET_FAULT || c->homing == HOMING_STOPPED ||
-                      card_job_given_up(c);
+    const bool over = c->state == NET_FAULT || c->homing == HOMING_STOPPED || card_job_given_up(c);
 
-    return (at > HOME_LOWERED && at < HOME_RAISE && over) ||
-           (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE);
+    return (at > HOME_LOWERED && at < HOME_RAISE && over)
+           || (at > HOME_CLEARED && at < HOME_RAISE && c->home.state == HOME_CYCLE_IDLE);
 }
 
 static void home_task(struct netcard *c)
@@ -130,12 +114,8 @@ static void home_task(struct netcard *c)
         return;
     }
     switch (at) {
-    case HOME_WAIT:
-        card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_LOOK);
-        break;
-    case HOME_LOOK:
-        card_home_lower(c);
-        break;
+    case HOME_WAIT: card_take(c, NETCARD_HOME, NETCARD_GIVE_HOME, HOME_LOOK); break;
+    case HOME_LOOK: card_home_lower(c); break;
     case HOME_LOWERED:
         c->step[NETCARD_HOME] = HOME_STILL;
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);
@@ -144,21 +124,17 @@ static void home_task(struct netcard *c)
         c->state = NET_HOMING;
         card_home_clear(c);
         break;
-    case HOME_CLEARED:
-        card_home_begin(c);
-        break;
+    case HOME_CLEARED: card_home_begin(c); break;
     case HOME_STEP:
-        if (card_home_full(c)) {        /* the task keeps the processor */
+        if (card_home_full(c)) { /* the task keeps the processor */
             card_spend(c, NETCARD_HOME, c->settings.period_ns, HOME_STEP);
         } else {
             card_home_frame(c, true);
         }
         break;
-    case HOME_LAST:
-        home_last(c);
-        break;
+    case HOME_LAST: home_last(c); break;
     default:
-        if (c->state == NET_HOMING) {   /* stopped */
+        if (c->state == NET_HOMING) { /* stopped */
             card_rest(c);
         }
         card_home_raise(c);
@@ -222,9 +198,7 @@ static void run_task(struct netcard *c)
         return;
     }
     switch (step) {
-    case RUN_WAIT:
-        card_take(c, NETCARD_RUN, NETCARD_GIVE_RUN, RUN_BEGIN);
-        break;
+    case RUN_WAIT: card_take(c, NETCARD_RUN, NETCARD_GIVE_RUN, RUN_BEGIN); break;
     case RUN_BEGIN:
         if (c->store.job.slot >= 0) {
             card_job_begin(c);
@@ -234,15 +208,9 @@ static void run_task(struct netcard *c)
         }
         break;
     case RUN_HEADER:
-    case RUN_PAGE:
-        read_page(c, step);
-        break;
-    case RUN_WRITTEN:
-        push(c);
-        break;
-    case RUN_FULL:
-        card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, RUN_NEXT);
-        break;
+    case RUN_PAGE:    read_page(c, step); break;
+    case RUN_WRITTEN: push(c); break;
+    case RUN_FULL:    card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, RUN_NEXT); break;
     case RUN_LAST:
         if (c->phase == JOB_PLAYED) {
             card_rest(c);
@@ -251,24 +219,16 @@ static void run_task(struct netcard *c)
             card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, RUN_LAST);
         }
         break;
-    default:
-        next(c);
+    default: next(c);
     }
 }
 
 void literal_task(struct netcard *c, enum netcard_task task)
 {
     switch (task) {
-    case NETCARD_HOME:
-        home_task(c);
-        break;
-    case NETCARD_STOP:
-        stop_task(c);
-        break;
-    case NETCARD_PAUSE:
-        pause_task(c);
-        break;
-    default:
-        run_task(c);
+    case NETCARD_HOME:  home_task(c); break;
+    case NETCARD_STOP:  stop_task(c); break;
+    case NETCARD_PAUSE: pause_task(c); break;
+    default:            run_task(c);
     }
 }

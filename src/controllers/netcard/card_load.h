@@ -16,11 +16,11 @@
 enum { CARD_LOADS = 7, CARD_LOAD_MARKS = 11 };
 
 struct card_load {
-    int32_t latest;             /* mark */
+    int32_t latest; /* mark */
     struct card_load_mark {
-        int64_t clock;          /* [ns] of the kernel */
-        int64_t busy[CARD_LOADS];   /* [ns] so far */
-    } mark[CARD_LOAD_MARKS];    /* all 0: that of power-up */
+        int64_t clock;            /* [ns] of the kernel */
+        int64_t busy[CARD_LOADS]; /* [ns] so far */
+    } mark[CARD_LOAD_MARKS];      /* all 0: that of power-up */
 };
 
 /* What each has had so far at this clock; its share. [1/1000] */

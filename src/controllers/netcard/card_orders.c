@@ -36,7 +36,7 @@ void card_fault(struct netcard *c, enum net_code error)
         c->state = NET_FAULT;
         c->error = error;
         card_job_give_up(c);
-        c->told.what |= PLAYER_REST;    /* all that wait for the player look again */
+        c->told.what |= PLAYER_REST; /* all that wait for the player look again */
         card_pend(c, NETCARD_FPGA);
     }
 }

@@ -12,9 +12,10 @@ void card_outputs_start(struct card_outputs *c)
 
 static bool good(const struct mc_po *po)
 {
-    return po->pin < CARD_OUTPUTS && po->active <= 1 &&
-           (po->mode == MC_PO_LEVEL || (po->mode == MC_PO_PULSE && po->width_us >= 1 &&
-                                        po->width_us <= MC_PO_WIDTH_LONGEST));
+    return po->pin < CARD_OUTPUTS && po->active <= 1
+           && (po->mode == MC_PO_LEVEL
+               || (po->mode == MC_PO_PULSE && po->width_us >= 1
+                   && po->width_us <= MC_PO_WIDTH_LONGEST));
 }
 
 bool card_outputs_flag(struct card_outputs *c, const struct mc_po *po)
@@ -54,8 +55,8 @@ uint32_t card_outputs_serve(struct card_outputs *c, int64_t now)
         if (c->flag[pin]) {
             served |= (uint32_t)1 << pin;
             high |= (uint32_t)po->active << pin;
-            c->pulse_end[pin] = po->mode == MC_PO_PULSE ? now + 1000 * (int64_t)po->width_us
-                                                        : INT64_MAX;
+            c->pulse_end[pin] =
+                po->mode == MC_PO_PULSE ? now + 1000 * (int64_t)po->width_us : INT64_MAX;
             c->flag[pin] = false;
         }
     }

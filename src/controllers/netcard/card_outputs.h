@@ -17,23 +17,23 @@
 
 enum mc_po_mode { MC_PO_LEVEL, MC_PO_PULSE };
 
-enum { MC_PO_WIDTH_LONGEST = 1000000 };     /* [us] */
+enum { MC_PO_WIDTH_LONGEST = 1000000 }; /* [us] */
 
 /* What an output shall do. No padding: it is copied whole into the state. */
 struct mc_po {
-    uint16_t pin;           /* 0 .. 15 */
-    uint8_t  mode;          /* enum mc_po_mode */
-    uint8_t  active;        /* level: what it becomes; pulse: its level: 1 high, 0 low */
-    uint32_t width_us;      /* of a pulse, 1 .. MC_PO_WIDTH_LONGEST */
+    uint16_t pin;      /* 0 .. 15 */
+    uint8_t mode;      /* enum mc_po_mode */
+    uint8_t active;    /* level: what it becomes; pulse: its level: 1 high, 0 low */
+    uint32_t width_us; /* of a pulse, 1 .. MC_PO_WIDTH_LONGEST */
 };
 
 struct card_outputs {
     struct mc_po po[CARD_OUTPUTS];
-    bool     flag[CARD_OUTPUTS];        /* MC_PO_Pins */
+    bool flag[CARD_OUTPUTS]; /* MC_PO_Pins */
     uint32_t levels;
-    int64_t  pulse_end[CARD_OUTPUTS];   /* [ns]; INT64_MAX: no pulse */
-    int64_t  stores;                    /* how often levels were written by the routine */
-    int64_t  merged;                    /* variables written again before they were served */
+    int64_t pulse_end[CARD_OUTPUTS]; /* [ns]; INT64_MAX: no pulse */
+    int64_t stores;                  /* how often levels were written by the routine */
+    int64_t merged;                  /* variables written again before they were served */
 };
 
 void card_outputs_start(struct card_outputs *c);

@@ -97,8 +97,7 @@ static void next(struct netcard *c)
         go(c, RUN_FULL);
         card_job_slept(c);
         break;
-    case JOB_NEXT_COMES:
-        break;
+    case JOB_NEXT_COMES: break;
     }
 }
 
@@ -112,22 +111,12 @@ void card_run(struct netcard *c)
         return;
     }
     switch (step) {
-    case RUN_WAIT:
-        card_take(c, NETCARD_RUN, NETCARD_GIVE_RUN, RUN_BEGIN);
-        break;
-    case RUN_BEGIN:
-        begin(c);
-        break;
+    case RUN_WAIT:    card_take(c, NETCARD_RUN, NETCARD_GIVE_RUN, RUN_BEGIN); break;
+    case RUN_BEGIN:   begin(c); break;
     case RUN_HEADER:
-    case RUN_PAGE:
-        read_page(c, step);
-        break;
-    case RUN_WRITTEN:
-        push(c);
-        break;
-    case RUN_FULL:
-        card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, RUN_NEXT);
-        break;
+    case RUN_PAGE:    read_page(c, step); break;
+    case RUN_WRITTEN: push(c); break;
+    case RUN_FULL:    card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, RUN_NEXT); break;
     case RUN_LAST:
         if (played) {
             c->works = false;
@@ -144,7 +133,6 @@ void card_run(struct netcard *c)
             card_take(c, NETCARD_RUN, NETCARD_GIVE_FIFO, RUN_ARRIVED);
         }
         break;
-    default:
-        next(c);
+    default: next(c);
     }
 }

@@ -26,8 +26,7 @@ static bool within(struct card_wrong *w, const char *name, size_t index, double 
     return value >= low && value <= high;
 }
 
-static bool refuse(struct card_wrong *w, const char *name, int index, double value,
-                   const char *why)
+static bool refuse(struct card_wrong *w, const char *name, int index, double value, const char *why)
 {
     *w = (struct card_wrong){ name, why, index, value, value, value };
     return false;
@@ -67,10 +66,10 @@ bool card_settings_good(const struct card_settings *s, struct card_wrong *wrong)
     if (s->block_ms > s->block_most_ms) {
         return refuse(wrong, "block_ms", 0, s->block_ms, "above block_most_ms");
     }
-    return clocks(wrong, "period_ns", s->period_ns) &&
-           clocks(wrong, "pulse_width_ns", s->pulse_width_ns) &&
-           clocks(wrong, "dir_setup_ns", s->dir_setup_ns) &&
-           clocks(wrong, "dir_hold_ns", s->dir_hold_ns);
+    return clocks(wrong, "period_ns", s->period_ns)
+           && clocks(wrong, "pulse_width_ns", s->pulse_width_ns)
+           && clocks(wrong, "dir_setup_ns", s->dir_setup_ns)
+           && clocks(wrong, "dir_hold_ns", s->dir_hold_ns);
 }
 
 /* Where the settings stand, in the order of their numbers. */
@@ -78,10 +77,11 @@ enum kind { KIND_BOOL, KIND_INT, KIND_DOUBLE };
 #define KIND(x) _Generic((x), bool: KIND_BOOL, int32_t: KIND_INT, double: KIND_DOUBLE)
 #define PLACE(type, name, elements, unit, start, low, high, words) \
     { offsetof(struct card_settings, name), \
-      sizeof ((struct card_settings *)0)->name / sizeof(type), KIND((type)0) },
-static const struct place { size_t offset, count; enum kind kind; } places[] = {
-    CARD_SETTINGS(PLACE)
-};
+      sizeof((struct card_settings *)0)->name / sizeof(type), KIND((type)0) },
+static const struct place {
+    size_t offset, count;
+    enum kind kind;
+} places[] = { CARD_SETTINGS(PLACE) };
 
 static bool there(int id, int index)
 {
@@ -95,14 +95,9 @@ bool card_settings_get(const struct card_settings *s, int id, int index, int64_t
     }
     const char *at = (const char *)s + places[id].offset;
     switch (places[id].kind) {
-    case KIND_BOOL:
-        *value = ((const bool *)at)[index];
-        break;
-    case KIND_INT:
-        *value = ((const int32_t *)at)[index];
-        break;
-    default:
-        *value = llround(((const double *)at)[index]);
+    case KIND_BOOL: *value = ((const bool *)at)[index]; break;
+    case KIND_INT:  *value = ((const int32_t *)at)[index]; break;
+    default:        *value = llround(((const double *)at)[index]);
     }
     return true;
 }
@@ -129,8 +124,7 @@ bool card_settings_set(struct card_settings *s, int id, int index, int64_t value
         }
         ((int32_t *)at)[index] = (int32_t)value;
         break;
-    default:
-        ((double *)at)[index] = (double)value;
+    default: ((double *)at)[index] = (double)value;
     }
     if (!card_settings_good(&next, &wrong)) {
         return false;

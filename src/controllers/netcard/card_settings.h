@@ -18,9 +18,7 @@ enum { CARD_AXES = 4, CARD_INPUTS = 16, CARD_OUTPUTS = 16 };
  * the link does, of rules for commands. */
 enum card_trigger { CARD_RISING, CARD_FALLING, CARD_HIGH, CARD_LOW };
 enum card_edge { CARD_EDGE_RISE, CARD_EDGE_FALL, CARD_EDGE_BOTH };
-enum card_action {
-    CARD_NONE, CARD_START, CARD_PAUSE, CARD_STOP, CARD_HOME, CARD_EVENT
-};
+enum card_action { CARD_NONE, CARD_START, CARD_PAUSE, CARD_STOP, CARD_HOME, CARD_EVENT };
 enum card_link_loss { CARD_LOSS_PAUSE, CARD_LOSS_STOP, CARD_LOSS_GO_ON };
 enum card_policy { CARD_SAFE, CARD_LITERAL };
 
@@ -31,9 +29,8 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
       "Lowest position a job may lead to [pulses]") \
     X(int32_t, position_high, [4], "", 2147483647, -2147483647, 2147483647, \
       "Highest position a job may lead to [pulses]") \
-    X(bool,    limit_high, [4], "", true, false, true, \
-      "Limit switches are active at the high level") \
-    X(bool,    alarm_high, [4], "", true, false, true, \
+    X(bool, limit_high, [4], "", true, false, true, "Limit switches are active at the high level") \
+    X(bool, alarm_high, [4], "", true, false, true, \
       "The drive's alarm is active at the high level") \
     X(int32_t, origin_trigger, [4], "", 0, 0, 3, \
       "Origin switch: 0 rising edge, 1 falling edge, 2 high level, 3 low level") \
@@ -41,14 +38,11 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
       "Highest speed [pulses/s]; what the page and homing keep to") \
     X(int32_t, speed_min, [4], "1/s", 500, 0, 500000, \
       "Speed at which an axis may start and stop at once [pulses/s]") \
-    X(int32_t, acc_max, [4], "1/s2", 1000000, 1, 2000000000, \
-      "Highest acceleration [pulses/s2]") \
-    X(double,  jerk_max, [4], "1/s3", 5e7, 1.0, 1e15, \
-      "Highest jerk [pulses/s3]") \
+    X(int32_t, acc_max, [4], "1/s2", 1000000, 1, 2000000000, "Highest acceleration [pulses/s2]") \
+    X(double, jerk_max, [4], "1/s3", 5e7, 1.0, 1e15, "Highest jerk [pulses/s3]") \
     X(int32_t, home_order, [4], "", 1, 0, 4, \
       "Turn in which the axis goes home, equal numbers together; 0 not at all") \
-    X(bool,    home_plus, [4], "", false, false, true, \
-      "The axis looks for its origin upwards") \
+    X(bool, home_plus, [4], "", false, false, true, "The axis looks for its origin upwards") \
     X(int32_t, home_speed, [4], "1/s", 20000, 1, 500000, \
       "Speed towards the origin switch [pulses/s]") \
     X(int32_t, home_slow, [4], "1/s", 1000, 1, 500000, \
@@ -61,8 +55,7 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
       "Way from the origin to where the position is 0 [pulses]")
 
 #define CARD_SETTINGS_FPGA(X) \
-    X(int32_t, fifo_depth, , "", 512, 16, 2304, \
-      "Frames of the FIFO in the FPGA") \
+    X(int32_t, fifo_depth, , "", 512, 16, 2304, "Frames of the FIFO in the FPGA") \
     X(int32_t, period_ns, , "ns", 1000000, 20000, 10000000, \
       "DDA period of homing, a multiple of 20 ns; a job brings its own") \
     X(int32_t, pulse_width_ns, , "ns", 1000, 20, 1000000, \
@@ -71,7 +64,7 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
       "From a change of direction to the first pulse, in whole 20 ns") \
     X(int32_t, dir_hold_ns, , "ns", 5000, 0, 1000000, \
       "From the last pulse to a change of direction, in whole 20 ns") \
-    X(double,  reserve, , "", 0.1, 0.02, 1.0, \
+    X(double, reserve, , "", 0.1, 0.02, 1.0, \
       "Share of a job's acceleration and jerk that its plan leaves free for pauses") \
     X(int32_t, fsmc_word_ns, , "ns", 48, 1, 10000, \
       "A word of 16 bits written to the FPGA; a frame has five")
@@ -109,7 +102,7 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
     X(int32_t, flash_spread, , "", 0, 0, 1000, \
       "Share of the way from usual to longest that a time is drawn from [1/1000]") \
     X(int32_t, spi_hz, , "Hz", 42000000, 100000, 200000000, "Clock of the bus of the flash") \
-    X(bool,    write_during_run, , "", false, false, true, \
+    X(bool, write_during_run, , "", false, false, true, \
       "A job may be received while another one runs")
 
 #define CARD_SETTINGS_WIRES(X) \
@@ -120,18 +113,21 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
     X(int32_t, in_edge, [16], "", 0, 0, 2, "At which edge: 0 rising, 1 falling, 2 both") \
     X(int32_t, in_debounce_us, [16], "us", 10000, 0, 1000000, \
       "Time in which an input is deaf behind an edge") \
-    X(bool,    must_home, , "", false, false, true, \
+    X(bool, must_home, , "", false, false, true, \
       "A job starts only when every axis with a home_order is homed") \
     X(int32_t, policy, , "", 0, 0, 1, \
       "Rules: 0 safe, a table of state and command; 1 literal, the document's scheme") \
     X(int32_t, seed, , "", 1, 0, 2147483647, "Seed of nonces, of torn writes, of jitter") \
     X(int32_t, card_id, , "", 1, 0, 2147483647, "Number of the card")
 
-#define CARD_SETTINGS(X) CARD_SETTINGS_AXES(X) CARD_SETTINGS_FPGA(X) CARD_SETTINGS_TASKS(X) \
-                         CARD_SETTINGS_FLASH(X) CARD_SETTINGS_WIRES(X)
+#define CARD_SETTINGS(X) \
+    CARD_SETTINGS_AXES(X) \
+    CARD_SETTINGS_FPGA(X) CARD_SETTINGS_TASKS(X) CARD_SETTINGS_FLASH(X) CARD_SETTINGS_WIRES(X)
 
 #define CARD_MEMBER(type, name, elements, unit, start, low, high, words) type name elements;
-struct card_settings { CARD_SETTINGS(CARD_MEMBER) };
+struct card_settings {
+    CARD_SETTINGS(CARD_MEMBER)
+};
 
 /* Number of each setting on the wire. */
 #define CARD_NUMBER(type, name, elements, unit, start, low, high, words) CARD_SET_##name,
@@ -141,9 +137,9 @@ struct card_settings card_settings_start(void);
 
 /* What is wrong with a setting. */
 struct card_wrong {
-    const char *name, *why;     /* why NULL: not within low .. high */
-    int32_t index;              /* from 0 */
-    double  value, low, high;
+    const char *name, *why; /* why NULL: not within low .. high */
+    int32_t index;          /* from 0 */
+    double value, low, high;
 };
 
 /* Whether a card can have these settings; if not, the first that is wrong. */

@@ -17,16 +17,21 @@
 #include "net_codes.h"
 
 enum card_command {
-    CARD_DO_START, CARD_DO_PAUSE, CARD_DO_STOP, CARD_DO_HOME, CARD_DO_RESET, CARD_DO_OUTPUT,
-    CARD_DO_SET,        /* of a setting */
-    CARD_DO_RECEIVE,    /* of a job */
+    CARD_DO_START,
+    CARD_DO_PAUSE,
+    CARD_DO_STOP,
+    CARD_DO_HOME,
+    CARD_DO_RESET,
+    CARD_DO_OUTPUT,
+    CARD_DO_SET,     /* of a setting */
+    CARD_DO_RECEIVE, /* of a job */
     CARD_COMMANDS
 };
 
 /* What the table says. */
 struct card_rule {
-    enum net_code code;     /* NET_DONE: accepted */
-    bool acts;              /* the task of the command is woken: else there is nothing to do */
+    enum net_code code; /* NET_DONE: accepted */
+    bool acts;          /* the task of the command is woken: else there is nothing to do */
 };
 
 /* Rule of a command in a state. */

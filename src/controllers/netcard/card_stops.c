@@ -33,13 +33,9 @@ static void stop(struct netcard *c)
 void card_stop(struct netcard *c)
 {
     switch (c->step[NETCARD_STOP]) {
-    case TURN_WAIT:
-        card_take(c, NETCARD_STOP, NETCARD_GIVE_STOP, TURN_LOOK);
-        break;
-    case TURN_LOOK:
-        card_work(c, NETCARD_STOP, c->settings.step_cycles, TURN_ACT);
-        break;
-    case TURN_RELEASE:                  /* run and home give up */
+    case TURN_WAIT: card_take(c, NETCARD_STOP, NETCARD_GIVE_STOP, TURN_LOOK); break;
+    case TURN_LOOK: card_work(c, NETCARD_STOP, c->settings.step_cycles, TURN_ACT); break;
+    case TURN_RELEASE: /* run and home give up */
         go(c, NETCARD_STOP, c->homing != HOMING_NONE ? TURN_RELEASE_HOME : TURN_WAIT);
         kernel_give(&c->kernel, NETCARD_GIVE_FIFO);
         break;
@@ -47,8 +43,7 @@ void card_stop(struct netcard *c)
         go(c, NETCARD_STOP, TURN_WAIT);
         kernel_give(&c->kernel, NETCARD_GIVE_HOME);
         break;
-    default:
-        stop(c);
+    default: stop(c);
     }
 }
 
@@ -79,18 +74,12 @@ static void pause(struct netcard *c)
 void card_pause(struct netcard *c)
 {
     switch (c->step[NETCARD_PAUSE]) {
-    case TURN_WAIT:
-        card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, TURN_LOOK);
-        break;
-    case TURN_LOOK:
-        card_work(c, NETCARD_PAUSE, c->settings.step_cycles, TURN_ACT);
-        break;
-    case TURN_RELEASE:          /* they look what has become of the motion meanwhile */
+    case TURN_WAIT: card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, TURN_LOOK); break;
+    case TURN_LOOK: card_work(c, NETCARD_PAUSE, c->settings.step_cycles, TURN_ACT); break;
+    case TURN_RELEASE: /* they look what has become of the motion meanwhile */
         go(c, NETCARD_PAUSE, TURN_WAIT);
-        kernel_give(&c->kernel,
-                    c->state == NET_HOMING ? NETCARD_GIVE_HOME : NETCARD_GIVE_FIFO);
+        kernel_give(&c->kernel, c->state == NET_HOMING ? NETCARD_GIVE_HOME : NETCARD_GIVE_FIFO);
         break;
-    default:
-        pause(c);
+    default: pause(c);
     }
 }

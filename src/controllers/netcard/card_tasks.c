@@ -10,8 +10,8 @@ static const int64_t ERASE_MARGIN_NS = 10000000;
 static bool must_wait(const struct netcard *c)
 {
     const struct flash_config *f = &c->flash.config;
-    const int64_t erase = f->sector.typical +
-                          (f->sector.longest - f->sector.typical) / 1000 * f->spread;
+    const int64_t erase =
+        f->sector.typical + (f->sector.longest - f->sector.typical) / 1000 * f->spread;
     const int64_t stock = c->player.fifo.stock * (int64_t)c->player.job.period;
 
     return stock * PLAYER_CLOCK_NS < erase + ERASE_MARGIN_NS;
@@ -24,17 +24,14 @@ void card_store(struct netcard *c)
     int64_t ns;
 
     switch (c->step[NETCARD_STORAGE]) {
-    case WAIT:
-        card_take(c, NETCARD_STORAGE, NETCARD_GIVE_STORAGE, LOOK);
-        return;
+    case WAIT: card_take(c, NETCARD_STORAGE, NETCARD_GIVE_STORAGE, LOOK); return;
     case READ:
         p->wanted = false;
         p->good = p->good && job_page_whole(p->bytes);
         c->step[NETCARD_STORAGE] = LOOK;
         kernel_give(&c->kernel, NETCARD_GIVE_PAGE);
         return;
-    default:
-        break;
+    default: break;
     }
     if (p->wanted) {
         ns = job_store_read(&c->place, &c->flash, p->number, p->bytes, c->now);
@@ -46,7 +43,7 @@ void card_store(struct netcard *c)
     c->deferred = c->store.phase != STORE_REST && card_job_reads(c) && must_wait(c);
     ns = c->deferred ? 0 : job_store_step(&c->store, &c->flash, c->now);
     card_tell_store(c);
-    if (ns > 0) {       /* nobody reads while it writes */
+    if (ns > 0) { /* nobody reads while it writes */
         kernel_pend(&c->kernel, NETCARD_FLASH, c->now + ns - c->boot);
         card_take(c, NETCARD_STORAGE, NETCARD_GIVE_FLASH, LOOK);
     } else {
@@ -68,7 +65,8 @@ static uint32_t told(struct netcard *c)
         gives |= c->state == NET_PAUSING ? 1u << NETCARD_GIVE_PAUSE : 0;
         gives |= c->state == NET_STOPPING ? 1u << NETCARD_GIVE_STOP : 0;
         gives |= c->homing != HOMING_NONE && (c->state == NET_HOMING || c->state == NET_FAULT)
-                 ? 1u << NETCARD_GIVE_HOME : 0;
+                     ? 1u << NETCARD_GIVE_HOME
+                     : 0;
     }
     for (uint32_t i = 1; events && i <= c->reader.header.events; i++) {
         const struct job_event *e = &c->reader.header.event[i - 1];
@@ -86,10 +84,10 @@ static uint32_t told(struct netcard *c)
 /* An input's routine: what it does is a command like any other. */
 static uint32_t served(struct netcard *c, int vector)
 {
-    static const enum card_command COMMAND[] = {
-        [CARD_START] = CARD_DO_START, [CARD_PAUSE] = CARD_DO_PAUSE, [CARD_STOP] = CARD_DO_STOP,
-        [CARD_HOME] = CARD_DO_HOME
-    };
+    static const enum card_command COMMAND[] = { [CARD_START] = CARD_DO_START,
+                                                 [CARD_PAUSE] = CARD_DO_PAUSE,
+                                                 [CARD_STOP] = CARD_DO_STOP,
+                                                 [CARD_HOME] = CARD_DO_HOME };
     const struct card_input_served s = card_inputs_serve(&c->inputs, vector, c->now);
     enum net_code code;
 

@@ -15,8 +15,11 @@ static uint64_t draw(uint64_t *random)
 struct flash_config flash_config_usual(void)
 {
     return (struct flash_config){
-        .program = {700000, 3000000}, .sector = {45000000, 400000000},
-        .block = {150000000, 2000000000}, .read_hz = 42000000, .seed = 1,
+        .program = { 700000, 3000000 },
+        .sector = { 45000000, 400000000 },
+        .block = { 150000000, 2000000000 },
+        .read_hz = 42000000,
+        .seed = 1,
     };
 }
 
@@ -145,8 +148,8 @@ static uint8_t bits_of(uint64_t *random, uint32_t p)
 void flash_cut(struct flash_chip *f, int64_t now)
 {
     settle(f, now);
-    const uint32_t p = f->work == FLASH_IDLE
-                       ? 0 : (uint32_t)(((now - f->begin) << 16) / (f->end - f->begin));
+    const uint32_t p =
+        f->work == FLASH_IDLE ? 0 : (uint32_t)(((now - f->begin) << 16) / (f->end - f->begin));
     for (int32_t k = 0; f->work != FLASH_IDLE && k < f->bytes; k += FLASH_SECTOR)
         open_sector(f, (f->at + k) / FLASH_SECTOR);
     for (int32_t k = 0; f->work != FLASH_IDLE && k < f->bytes; k++) {
@@ -171,4 +174,3 @@ uint32_t flash_wear(const struct flash_chip *f)
         most = f->wear[k] > most ? f->wear[k] : most;
     return most;
 }
-

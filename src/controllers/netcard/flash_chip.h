@@ -14,7 +14,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-
 enum {
     FLASH_PAGE = 256,
     FLASH_SECTOR = 4096,
@@ -25,17 +24,19 @@ enum {
     FLASH_BLOCKS = FLASH_BYTES / FLASH_BLOCK,
     FLASH_SECTOR_PAGES = FLASH_SECTOR / FLASH_PAGE,
     FLASH_BLOCK_SECTORS = FLASH_BLOCK / FLASH_SECTOR,
-    FLASH_COMMAND_BYTES = 5,    /* of a fast read: code, address, a byte of waiting */
+    FLASH_COMMAND_BYTES = 5, /* of a fast read: code, address, a byte of waiting */
 };
 
 /* Time of an operation: typical + a share of (longest - typical) that is drawn evenly from 0 to
  * `spread`. */
-struct flash_time { int64_t typical, longest; };
+struct flash_time {
+    int64_t typical, longest;
+};
 
 struct flash_config {
-    struct flash_time program, sector, block;   /* [ns] */
-    int32_t  spread;                            /* [1/1000], 0 .. 1000 */
-    int32_t  read_hz;                           /* [Hz] clock of the bus, a bit each */
+    struct flash_time program, sector, block; /* [ns] */
+    int32_t spread;                           /* [1/1000], 0 .. 1000 */
+    int32_t read_hz;                          /* [Hz] clock of the bus, a bit each */
     uint64_t seed;
 };
 
@@ -44,14 +45,14 @@ enum flash_work { FLASH_IDLE, FLASH_PROGRAM, FLASH_ERASE };
 struct flash_chip {
     struct flash_config config;
     uint64_t random;
-    enum flash_work work;               /* under way until `end` */
-    int32_t  at, bytes;                 /* what it changes */
-    int64_t  begin, end;                /* [ns] */
-    uint8_t  page[FLASH_PAGE];          /* to be programmed */
-    uint32_t wear[FLASH_SECTORS];       /* erases begun */
+    enum flash_work work;         /* under way until `end` */
+    int32_t at, bytes;            /* what it changes */
+    int64_t begin, end;           /* [ns] */
+    uint8_t page[FLASH_PAGE];     /* to be programmed */
+    uint32_t wear[FLASH_SECTORS]; /* erases begun */
     uint32_t programs, sector_erases, block_erases, refused;
-    bool     written[FLASH_SECTORS];    /* something was programmed since its latest erase */
-    uint8_t  array[FLASH_BYTES];        /* of the others nobody reads it: they are 0xff */
+    bool written[FLASH_SECTORS]; /* something was programmed since its latest erase */
+    uint8_t array[FLASH_BYTES];  /* of the others nobody reads it: they are 0xff */
 };
 
 /* Of the data sheet: 0.7 / 3 ms a page, 45 / 400 ms a sector, 150 / 2000 ms a block, no spread,

@@ -25,11 +25,11 @@ bool home_cycle_valid(const struct home_cycle_config *c)
 
     for (int i = 0; ok && i < CARD_AXES; i++) {
         const struct home_axis *a = &c->axis[i];
-        ok = a->order >= 0 && a->order <= CARD_AXES && (int)a->trigger >= CARD_RISING &&
-             a->trigger <= CARD_LOW && between(a->fast * c->period, 1e-6, INT16_MAX - 1) &&
-             between(a->slow * c->period, 1e-6, INT16_MAX - 1) && between(a->acc, 1.0, 1e12) &&
-             between(a->start, 0.0, 1e9) && a->back > 0 && a->back <= LONGEST &&
-             a->travel > 0 && a->travel <= LONGEST && abs(a->offset) <= LONGEST;
+        ok = a->order >= 0 && a->order <= CARD_AXES && (int)a->trigger >= CARD_RISING
+             && a->trigger <= CARD_LOW && between(a->fast * c->period, 1e-6, INT16_MAX - 1)
+             && between(a->slow * c->period, 1e-6, INT16_MAX - 1) && between(a->acc, 1.0, 1e12)
+             && between(a->start, 0.0, 1e9) && a->back > 0 && a->back <= LONGEST && a->travel > 0
+             && a->travel <= LONGEST && abs(a->offset) <= LONGEST;
     }
     return ok;
 }
@@ -163,7 +163,7 @@ static void edge(struct home_cycle *h, int i, const struct home_cycle_input *in)
 
     c->off = c->off || !on(h, i, in);
     if (!c->off) {
-        fail(h, i, HOME_CYCLE_STUCK);       /* it is on before it can come on */
+        fail(h, i, HOME_CYCLE_STUCK); /* it is on before it can come on */
     } else if (by_edge(a->trigger) ? latched : on(h, i, in)) {
         c->place = by_edge(a->trigger) ? in->latch[i] : in->position[i];
         c->stopping = true;
@@ -178,21 +178,14 @@ static void next_phase(struct home_cycle *h, int i)
     struct home_course *c = &h->axis[i];
 
     switch (c->phase) {
-    case HOME_CYCLE_TURN:
-        enter(c, HOME_CYCLE_SEARCH);
-        break;
-    case HOME_CYCLE_SEARCH:
-        enter(c, HOME_CYCLE_BACK);
-        break;
-    case HOME_CYCLE_BACK:
-        enter(c, HOME_CYCLE_EDGE);
-        break;
+    case HOME_CYCLE_TURN:   enter(c, HOME_CYCLE_SEARCH); break;
+    case HOME_CYCLE_SEARCH: enter(c, HOME_CYCLE_BACK); break;
+    case HOME_CYCLE_BACK:   enter(c, HOME_CYCLE_EDGE); break;
     case HOME_CYCLE_EDGE:
         c->place += h->config.axis[i].offset;
         enter(c, HOME_CYCLE_OFFSET);
         break;
-    default:
-        enter(c, HOME_CYCLE_DONE);
+    default: enter(c, HOME_CYCLE_DONE);
     }
 }
 
@@ -208,26 +201,17 @@ static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
         return;
     }
     switch (c->phase) {
-    case HOME_CYCLE_SEARCH:
-        search(h, i, in, seen);
-        break;
-    case HOME_CYCLE_TURN:
-        turn(h, i, in, seen);
-        break;
-    case HOME_CYCLE_BACK:
-        back(h, i, in, seen);
-        break;
-    case HOME_CYCLE_EDGE:
-        edge(h, i, in);
-        break;
+    case HOME_CYCLE_SEARCH: search(h, i, in, seen); break;
+    case HOME_CYCLE_TURN:   turn(h, i, in, seen); break;
+    case HOME_CYCLE_BACK:   back(h, i, in, seen); break;
+    case HOME_CYCLE_EDGE:   edge(h, i, in); break;
     case HOME_CYCLE_OFFSET:
         c->stopping = home_motion_at(&c->motion, c->place);
         if (!c->stopping && limit(in, i, (double)(c->place - c->motion.commanded))) {
             fail(h, i, HOME_CYCLE_LIMIT);
         }
         return;
-    default:
-        return;
+    default: return;
     }
     if (!c->stopping && llabs(c->motion.commanded - c->begin) > h->config.axis[i].travel) {
         fail(h, i, c->phase == HOME_CYCLE_BACK ? HOME_CYCLE_STUCK : HOME_CYCLE_NO_ORIGIN);
@@ -238,15 +222,11 @@ static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
 static double speed_of(const struct home_axis *a, enum home_cycle_phase phase)
 {
     switch (phase) {
-    case HOME_CYCLE_SEARCH:
-        return way(a) * a->fast;
+    case HOME_CYCLE_SEARCH: return way(a) * a->fast;
     case HOME_CYCLE_TURN:
-    case HOME_CYCLE_BACK:
-        return -way(a) * a->fast;
-    case HOME_CYCLE_EDGE:
-        return way(a) * a->slow;
-    default:
-        return 0.0;
+    case HOME_CYCLE_BACK:   return -way(a) * a->fast;
+    case HOME_CYCLE_EDGE:   return way(a) * a->slow;
+    default:                return 0.0;
     }
 }
 
@@ -274,8 +254,7 @@ struct frame home_cycle_step(struct home_cycle *h, const struct home_cycle_input
 
     for (int i = 0; i < CARD_AXES && h->state == HOME_CYCLE_RUNNING; i++) {
         look(h, i, in);
-        done = done && (h->axis[i].phase == HOME_CYCLE_NONE ||
-                        h->axis[i].phase == HOME_CYCLE_DONE);
+        done = done && (h->axis[i].phase == HOME_CYCLE_NONE || h->axis[i].phase == HOME_CYCLE_DONE);
     }
     if (h->state == HOME_CYCLE_RUNNING && done) {
         next_order(h, in);

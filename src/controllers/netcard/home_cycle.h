@@ -25,57 +25,66 @@
 #include "home_motion.h"
 
 struct home_axis {
-    int32_t order;          /* 1 .. 4; 0: the axis is not homed */
+    int32_t order; /* 1 .. 4; 0: the axis is not homed */
     enum card_trigger trigger;
-    bool    plus;           /* it looks for its origin upwards */
-    double  fast, slow;     /* [pulses/s] > 0 */
-    double  acc;            /* [pulses/s^2] > 0 */
-    double  start;          /* [pulses/s] at which it may start and stop at once, 0 or more */
-    int32_t back;           /* [pulses] > 0 */
-    int32_t travel;         /* [pulses] > 0 longest way of any phase */
-    int32_t offset;         /* [pulses] */
+    bool plus;         /* it looks for its origin upwards */
+    double fast, slow; /* [pulses/s] > 0 */
+    double acc;        /* [pulses/s^2] > 0 */
+    double start;      /* [pulses/s] at which it may start and stop at once, 0 or more */
+    int32_t back;      /* [pulses] > 0 */
+    int32_t travel;    /* [pulses] > 0 longest way of any phase */
+    int32_t offset;    /* [pulses] */
 };
 
 struct home_cycle_config {
-    double  period;         /* [s] DDA period > 0 */
-    int32_t settle;         /* [periods] of rest between phases, 1 or more */
+    double period;  /* [s] DDA period > 0 */
+    int32_t settle; /* [periods] of rest between phases, 1 or more */
     struct home_axis axis[CARD_AXES];
 };
 
 enum home_cycle_phase {
-    HOME_CYCLE_NONE, HOME_CYCLE_SEARCH, HOME_CYCLE_TURN, HOME_CYCLE_BACK, HOME_CYCLE_EDGE,
-    HOME_CYCLE_OFFSET, HOME_CYCLE_DONE
+    HOME_CYCLE_NONE,
+    HOME_CYCLE_SEARCH,
+    HOME_CYCLE_TURN,
+    HOME_CYCLE_BACK,
+    HOME_CYCLE_EDGE,
+    HOME_CYCLE_OFFSET,
+    HOME_CYCLE_DONE
 };
 
 /* Why it failed. */
 enum home_cycle_fault {
     HOME_CYCLE_OK,
-    HOME_CYCLE_NO_ORIGIN,   /* none within the travel or between the limit switches */
-    HOME_CYCLE_STUCK,       /* the switch stays on */
-    HOME_CYCLE_LIMIT        /* a limit switch stood in the way of phase 2, 3 or 4 */
+    HOME_CYCLE_NO_ORIGIN, /* none within the travel or between the limit switches */
+    HOME_CYCLE_STUCK,     /* the switch stays on */
+    HOME_CYCLE_LIMIT      /* a limit switch stood in the way of phase 2, 3 or 4 */
 };
 
 enum home_cycle_state {
-    HOME_CYCLE_IDLE, HOME_CYCLE_RUNNING, HOME_CYCLE_STOPPING, HOME_CYCLE_ENDED,
-    HOME_CYCLE_STOPPED, HOME_CYCLE_FAILED
+    HOME_CYCLE_IDLE,
+    HOME_CYCLE_RUNNING,
+    HOME_CYCLE_STOPPING,
+    HOME_CYCLE_ENDED,
+    HOME_CYCLE_STOPPED,
+    HOME_CYCLE_FAILED
 };
 
 /* What is seen, once each period. */
 struct home_cycle_input {
-    int64_t  position[CARD_AXES];   /* [pulses] put out so far, any zero */
-    uint32_t origin;                /* levels of the switches, a bit each axis */
-    uint32_t plus, minus;           /* limit switches that are met */
-    uint32_t latched;               /* an edge of the trigger's kind came since the last call, */
-    int64_t  latch[CARD_AXES];      /* [pulses] the position at its clock, the latest */
+    int64_t position[CARD_AXES]; /* [pulses] put out so far, any zero */
+    uint32_t origin;             /* levels of the switches, a bit each axis */
+    uint32_t plus, minus;        /* limit switches that are met */
+    uint32_t latched;            /* an edge of the trigger's kind came since the last call, */
+    int64_t latch[CARD_AXES];    /* [pulses] the position at its clock, the latest */
 };
 
 struct home_course {
     enum home_cycle_phase phase;
-    bool    stopping;       /* found; it comes to rest */
-    bool    turned, passed; /* met a limit in the search; was on the switch in this phase */
-    bool    off;            /* phase 2: has left the switch, goes on; 3: was seen off it */
-    int64_t begin;          /* [pulses] commanded, where the phase began */
-    int64_t place;          /* [pulses] what was found, or the target */
+    bool stopping;       /* found; it comes to rest */
+    bool turned, passed; /* met a limit in the search; was on the switch in this phase */
+    bool off;            /* phase 2: has left the switch, goes on; 3: was seen off it */
+    int64_t begin;       /* [pulses] commanded, where the phase began */
+    int64_t place;       /* [pulses] what was found, or the target */
     struct home_motion motion;
 };
 
@@ -83,9 +92,9 @@ struct home_cycle {
     struct home_cycle_config config;
     enum home_cycle_state state;
     enum home_cycle_fault fault;
-    int32_t fault_axis;     /* -1 none */
-    uint32_t mask;          /* axes to be homed */
-    int32_t order;          /* of those that go now */
+    int32_t fault_axis; /* -1 none */
+    uint32_t mask;      /* axes to be homed */
+    int32_t order;      /* of those that go now */
     struct home_course axis[CARD_AXES];
 };
 

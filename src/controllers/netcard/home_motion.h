@@ -9,14 +9,16 @@
 #include <stdint.h>
 
 struct home_motion {
-    int64_t commanded;      /* [pulses] in whole */
-    double  rest;           /* [pulses] of a pulse not yet given, within 0 .. 1 */
-    double  speed;          /* [pulses/period] signed */
-    int32_t still;          /* periods at rest */
+    int64_t commanded; /* [pulses] in whole */
+    double rest;       /* [pulses] of a pulse not yet given, within 0 .. 1 */
+    double speed;      /* [pulses/period] signed */
+    int32_t still;     /* periods at rest */
 };
 
 /* What one may have, in pulses and periods. */
-struct home_limits { double acc, start; };
+struct home_limits {
+    double acc, start;
+};
 
 /* Pulses of the next period, |pulses| <= |speed| + 1: towards a speed, or to a target with this
  * speed at most. At the target there is no rest. */

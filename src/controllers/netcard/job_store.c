@@ -4,7 +4,7 @@
 
 enum { RECORD_CRC_AT = 28, MARK_HASH_AT = 16, MARK_CRC_AT = 60 };
 
-static const struct job_place NOWHERE = {.slot = -1};
+static const struct job_place NOWHERE = { .slot = -1 };
 
 void store_write_record(const struct job_place *p, uint8_t page[FLASH_PAGE])
 {
@@ -23,8 +23,11 @@ bool store_read_record(struct job_place *p, int32_t slots, int32_t slot,
                        const uint8_t page[FLASH_PAGE])
 {
     const struct job_place read = {
-        .slot = slot, .sequence = job_get32(page + 4), .bytes = job_get32(page + 12),
-        .crc = job_get32(page + 16), .id = job_get32(page + 20),
+        .slot = slot,
+        .sequence = job_get32(page + 4),
+        .bytes = job_get32(page + 12),
+        .crc = job_get32(page + 16),
+        .id = job_get32(page + 20),
     };
     if (memcmp(page, "MCR1", 4)
         || job_get32(page + RECORD_CRC_AT) != net_crc(0, page, RECORD_CRC_AT)
@@ -62,7 +65,7 @@ static uint32_t file_crc(const struct job_place *p, struct flash_chip *f, int64_
 {
     uint32_t crc = 0;
     for (uint32_t k = 0; k < store_pages(p); k++) {
-        uint8_t page[FLASH_PAGE] = {0};
+        uint8_t page[FLASH_PAGE] = { 0 };
         *took += job_store_read(p, f, k, page, now);
         crc = net_crc(crc, page, FLASH_PAGE);
     }
@@ -76,8 +79,8 @@ int64_t job_store_start(struct job_store *s, struct flash_chip *f, int32_t slots
     s->slots = slots;
     memcpy(s->start_speed, start_speed, sizeof s->start_speed);
     s->job = s->next = NOWHERE;
-    struct job_place found[2] = {NOWHERE, NOWHERE};
-    uint8_t page[FLASH_PAGE] = {0};
+    struct job_place found[2] = { NOWHERE, NOWHERE };
+    uint8_t page[FLASH_PAGE] = { 0 };
     int64_t took = 0;
     for (int32_t k = 0; k < slots; k++) {
         const int32_t at = store_record_sector(slots, k) * FLASH_SECTOR_PAGES;
@@ -86,8 +89,8 @@ int64_t job_store_start(struct job_store *s, struct flash_chip *f, int32_t slots
             found[k] = NOWHERE;
     }
     /* the newest first */
-    const int newest = found[1].slot >= 0
-                       && (found[0].slot < 0 || found[1].sequence > found[0].sequence);
+    const int newest =
+        found[1].slot >= 0 && (found[0].slot < 0 || found[1].sequence > found[0].sequence);
     for (int k = 0; k < 2 && s->job.slot < 0; k++) {
         const struct job_place *p = &found[k ? 1 - newest : newest];
         if (p->slot >= 0 && file_crc(p, f, now, &took) == p->crc)
@@ -95,7 +98,7 @@ int64_t job_store_start(struct job_store *s, struct flash_chip *f, int32_t slots
     }
     if (s->job.slot < 0)
         return took;
-    struct job_place mark = {0};
+    struct job_place mark = { 0 };
     took += flash_read(f, store_mark_sector(slots, s->job.slot) * FLASH_SECTOR_PAGES, page, now);
     if (store_read_mark(&mark, page) && mark.bytes == s->job.bytes && mark.crc == s->job.crc)
         memcpy(s->job.hash, mark.hash, sizeof mark.hash);
@@ -110,8 +113,9 @@ enum net_code job_store_load(struct job_store *s, struct flash_chip *f, const ui
     s->fault = job_check(&s->check, file, bytes, s->start_speed);
     if (s->fault)
         return NET_BAD_JOB;
-    s->job = (struct job_place){.sequence = 1, .bytes = bytes, .crc = net_crc(0, file, bytes),
-                                .id = s->check.header.id};
+    s->job = (struct job_place){
+        .sequence = 1, .bytes = bytes, .crc = net_crc(0, file, bytes), .id = s->check.header.id
+    };
     net_sha(file, bytes, s->job.hash);
     uint8_t page[FLASH_PAGE];
     flash_put(f, 0, file, (int32_t)store_pages(&s->job));
@@ -125,7 +129,9 @@ enum net_code job_store_load(struct job_store *s, struct flash_chip *f, const ui
 enum net_code job_store_begin(struct job_store *s, uint32_t bytes,
                               const uint8_t hash[NET_SHA_BYTES], uint32_t crc)
 {
-    struct job_place want = {.slot = s->job.slot == 0 && s->slots == 2, .bytes = bytes, .crc = crc};
+    struct job_place want = { .slot = s->job.slot == 0 && s->slots == 2,
+                              .bytes = bytes,
+                              .crc = crc };
     memcpy(want.hash, hash, sizeof want.hash);
     if (bytes % FLASH_PAGE || bytes < 2 * FLASH_PAGE)
         return NET_RANGE;

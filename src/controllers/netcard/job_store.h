@@ -27,28 +27,28 @@
 #include "net_sha.h"
 
 enum {
-    STORE_BUFFER = 16,      /* pages that wait for the chip */
+    STORE_BUFFER = 16, /* pages that wait for the chip */
 };
 
 /* A job in the flash. */
 struct job_place {
-    int32_t  slot;                  /* -1: none */
+    int32_t slot; /* -1: none */
     uint32_t sequence;
-    uint32_t bytes, crc;            /* of the file */
+    uint32_t bytes, crc; /* of the file */
     uint32_t id;
-    uint8_t  hash[NET_SHA_BYTES];   /* of the file */
+    uint8_t hash[NET_SHA_BYTES]; /* of the file */
 };
 
 enum store_phase {
-    STORE_REST,         /* no transfer */
-    STORE_SCAN,         /* reads what a transfer before the power went has left */
+    STORE_REST, /* no transfer */
+    STORE_SCAN, /* reads what a transfer before the power went has left */
     STORE_ERASE,
     STORE_MARK,
-    STORE_TAKE,         /* programs pages as they come */
-    STORE_VERIFY,       /* reads the file back */
-    STORE_RECORD,       /* erases what a torn record has left, programs the record */
-    STORE_CONFIRM,      /* reads the record back */
-    STORE_DISCARD,      /* erases the mark of a file that is no job */
+    STORE_TAKE,    /* programs pages as they come */
+    STORE_VERIFY,  /* reads the file back */
+    STORE_RECORD,  /* erases what a torn record has left, programs the record */
+    STORE_CONFIRM, /* reads the record back */
+    STORE_DISCARD, /* erases the mark of a file that is no job */
     STORE_PHASES
 };
 
@@ -57,23 +57,23 @@ struct job_store {
     uint32_t start_speed[JOB_AXES]; /* [pulses/s], for job_check */
     struct job_place job;           /* in force */
     enum store_phase phase;
-    struct job_place next;          /* the transfer under way */
-    bool     hurried;               /* the caller's: no erase longer than that of a sector */
-    bool     marked;                /* its mark is in the flash */
-    bool     again;                 /* JOB_BEGIN was that of the job in force */
-    bool     ending;                /* JOB_END has come */
-    bool     ended;                 /* job_store_ended has a result to tell, */
-    enum net_code result;           /* this one */
-    enum job_fault fault;           /* of a job refused as NET_BAD_JOB */
-    int32_t  at;                    /* page or sector that the phase has come to */
-    uint32_t crc;                   /* of the pages verified so far */
+    struct job_place next; /* the transfer under way */
+    bool hurried;          /* the caller's: no erase longer than that of a sector */
+    bool marked;           /* its mark is in the flash */
+    bool again;            /* JOB_BEGIN was that of the job in force */
+    bool ending;           /* JOB_END has come */
+    bool ended;            /* job_store_ended has a result to tell, */
+    enum net_code result;  /* this one */
+    enum job_fault fault;  /* of a job refused as NET_BAD_JOB */
+    int32_t at;            /* page or sector that the phase has come to */
+    uint32_t crc;          /* of the pages verified so far */
     struct net_sha sha;
     struct job_check check;
-    int32_t  waiting;               /* pages in the buffer */
+    int32_t waiting; /* pages in the buffer */
     uint16_t number[STORE_BUFFER];
-    uint8_t  buffer[STORE_BUFFER][FLASH_PAGE];
-    uint8_t  have[FLASH_PAGES / 8];         /* a bit for each page that is programmed */
-    uint8_t  dirty[FLASH_SECTORS / 8];      /* a bit for each sector to be erased */
+    uint8_t buffer[STORE_BUFFER][FLASH_PAGE];
+    uint8_t have[FLASH_PAGES / 8];    /* a bit for each page that is programmed */
+    uint8_t dirty[FLASH_SECTORS / 8]; /* a bit for each sector to be erased */
 };
 
 /* Power-up, the chip idle: choose the job. Returns the time that the reading takes [ns]. */

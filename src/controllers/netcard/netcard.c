@@ -6,7 +6,7 @@ static const int64_t NS_PER_US = 1000, NS_PER_MS = 1000000;
 
 int64_t card_cycles_ns(int64_t cycles)
 {
-    return (cycles * 125 + 20) / 21;    /* 168 MHz, rounded up */
+    return (cycles * 125 + 20) / 21; /* 168 MHz, rounded up */
 }
 
 int64_t card_frame_ns(const struct netcard *c, int64_t cycles)
@@ -36,16 +36,17 @@ void card_take(struct netcard *c, enum netcard_task task, int semaphore, int ste
 static void start_kernel(struct netcard *c)
 {
     const struct card_settings *s = &c->settings;
-    struct kernel_config k = {
-        .tasks = NETCARD_TASKS,
-        .priority = {
-            [NETCARD_PARSER] = s->priority_parser, [NETCARD_STORAGE] = s->priority_storage,
-            [NETCARD_HOME] = s->priority_home, [NETCARD_STOP] = s->priority_stop,
-            [NETCARD_PAUSE] = s->priority_pause, [NETCARD_RUN] = s->priority_run
-        },
-        .tick = s->tick_ns, .tick_time = s->tick_time_ns, .switch_time = s->switch_ns,
-        .entry_time = s->entry_ns
-    };
+    struct kernel_config k = { .tasks = NETCARD_TASKS,
+                               .priority = { [NETCARD_PARSER] = s->priority_parser,
+                                             [NETCARD_STORAGE] = s->priority_storage,
+                                             [NETCARD_HOME] = s->priority_home,
+                                             [NETCARD_STOP] = s->priority_stop,
+                                             [NETCARD_PAUSE] = s->priority_pause,
+                                             [NETCARD_RUN] = s->priority_run },
+                               .tick = s->tick_ns,
+                               .tick_time = s->tick_time_ns,
+                               .switch_time = s->switch_ns,
+                               .entry_time = s->entry_ns };
 
     for (int i = 0; i < CARD_VECTORS; i++) {
         k.level[i] = 6;
@@ -63,20 +64,18 @@ static void start_inputs(struct netcard *c)
     struct card_inputs_config inputs;
 
     for (int i = 0; i < CARD_INPUTS; i++) {
-        inputs.line[i] = (struct card_input){
-            (enum card_action)c->settings.in_action[i], (enum card_edge)c->settings.in_edge[i],
-            c->settings.in_debounce_us[i] * NS_PER_US
-        };
+        inputs.line[i] = (struct card_input){ (enum card_action)c->settings.in_action[i],
+                                              (enum card_edge)c->settings.in_edge[i],
+                                              c->settings.in_debounce_us[i] * NS_PER_US };
     }
     card_inputs_start(&c->inputs, &inputs, c->input_levels);
 }
 
 static struct player_config player_of(const struct card_settings *s)
 {
-    return (struct player_config){
-        s->fifo_depth, s->pulse_width_ns / PLAYER_CLOCK_NS, s->dir_setup_ns / PLAYER_CLOCK_NS,
-        s->dir_hold_ns / PLAYER_CLOCK_NS
-    };
+    return (struct player_config){ s->fifo_depth, s->pulse_width_ns / PLAYER_CLOCK_NS,
+                                   s->dir_setup_ns / PLAYER_CLOCK_NS,
+                                   s->dir_hold_ns / PLAYER_CLOCK_NS };
 }
 
 /* All that power brings up; the flash and the counts of pulses have kept what they had. */
@@ -119,14 +118,18 @@ static struct flash_config flash_of(const struct card_settings *s)
         .program = { s->program_us * NS_PER_US, s->program_most_us * NS_PER_US },
         .sector = { s->erase_ms * NS_PER_MS, s->erase_most_ms * NS_PER_MS },
         .block = { s->block_ms * NS_PER_MS, s->block_most_ms * NS_PER_MS },
-        .spread = s->flash_spread, .read_hz = s->spi_hz, .seed = (uint64_t)s->seed
+        .spread = s->flash_spread,
+        .read_hz = s->spi_hz,
+        .seed = (uint64_t)s->seed
     };
 }
 
 static void start_link(struct netcard *c, const uint8_t key[NET_SHA_BYTES])
 {
-    struct session_config s = { .card = (uint32_t)c->settings.card_id, .firmware = 1,
-                                .slots = (uint8_t)c->settings.slots, .axes = CARD_AXES };
+    struct session_config s = { .card = (uint32_t)c->settings.card_id,
+                                .firmware = 1,
+                                .slots = (uint8_t)c->settings.slots,
+                                .axes = CARD_AXES };
 
     memcpy(s.key, key, sizeof s.key);
     memcpy(s.seed, &c->settings.seed, sizeof c->settings.seed);
@@ -192,8 +195,7 @@ int64_t netcard_frames(const struct netcard *c)
 /* The drives' error clear has helped or its time is over: the parser answers the RESET. */
 static void look_cleared(struct netcard *c)
 {
-    if (c->clear == CLEAR_GIVEN &&
-        (!c->axes.alarm || c->axes.stop || c->now >= c->clear_until)) {
+    if (c->clear == CLEAR_GIVEN && (!c->axes.alarm || c->axes.stop || c->now >= c->clear_until)) {
         c->clear = CLEAR_OVER;
         card_pend(c, NETCARD_NETWORK);
     }
@@ -203,8 +205,7 @@ static void look_cleared(struct netcard *c)
 static void guard(struct netcard *c)
 {
     const struct netcard_axes *a = &c->axes;
-    const bool job = c->state == NET_RUNNING || c->state == NET_PAUSING ||
-                     c->state == NET_STOPPING;
+    const bool job = c->state == NET_RUNNING || c->state == NET_PAUSING || c->state == NET_STOPPING;
 
     if (c->state == NET_FAULT) {
         return;
@@ -309,17 +310,10 @@ static int64_t horizon(const struct netcard *c, int64_t until)
 static void table_task(struct netcard *c, enum netcard_task task)
 {
     switch (task) {
-    case NETCARD_HOME:
-        card_home(c);
-        break;
-    case NETCARD_STOP:
-        card_stop(c);
-        break;
-    case NETCARD_PAUSE:
-        card_pause(c);
-        break;
-    default:
-        card_run(c);
+    case NETCARD_HOME:  card_home(c); break;
+    case NETCARD_STOP:  card_stop(c); break;
+    case NETCARD_PAUSE: card_pause(c); break;
+    default:            card_run(c);
     }
 }
 
@@ -347,7 +341,7 @@ void netcard_advance(struct netcard *c, int64_t until)
         if (who >= 0) {
             card_advance_player(c);
             answer(c, who);
-            card_advance_player(c);     /* an answer makes it tell, too */
+            card_advance_player(c); /* an answer makes it tell, too */
         } else {
             hardware(c);
         }
@@ -388,7 +382,7 @@ void netcard_set_axes(struct netcard *c, const struct netcard_axes *axes)
 {
     struct netcard_axes a = *axes;
 
-    for (int i = 0; i < CARD_AXES; i++) {       /* what is active is 1 from here on */
+    for (int i = 0; i < CARD_AXES; i++) { /* what is active is 1 from here on */
         if (!c->settings.limit_high[i]) {
             a.plus ^= 1u << i;
             a.minus ^= 1u << i;
@@ -413,9 +407,8 @@ bool netcard_command(struct netcard *c, enum card_command command, uint8_t axes)
     if (!c->power || c->orders == NETCARD_ORDERS) {
         return false;
     }
-    c->order[(c->first + c->orders++) % NETCARD_ORDERS] = (struct netcard_order){
-        (uint8_t)command, axes
-    };
+    c->order[(c->first + c->orders++) % NETCARD_ORDERS] =
+        (struct netcard_order){ (uint8_t)command, axes };
     card_pend(c, NETCARD_NETWORK);
     return true;
 }

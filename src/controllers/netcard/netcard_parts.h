@@ -27,11 +27,25 @@ void card_interrupt(struct netcard *c, int interrupt);
 
 /* Where such a task goes on: c->step has it. */
 enum card_run_step {
-    RUN_WAIT, RUN_BEGIN, RUN_HEADER, RUN_NEXT, RUN_PAGE, RUN_WRITTEN, RUN_FULL, RUN_LAST,
+    RUN_WAIT,
+    RUN_BEGIN,
+    RUN_HEADER,
+    RUN_NEXT,
+    RUN_PAGE,
+    RUN_WRITTEN,
+    RUN_FULL,
+    RUN_LAST,
     RUN_ARRIVED
 };
 enum card_home_step {
-    HOME_WAIT, HOME_LOOK, HOME_LOWERED, HOME_STILL, HOME_CLEARED, HOME_STEP, HOME_LAST, HOME_RAISE
+    HOME_WAIT,
+    HOME_LOOK,
+    HOME_LOWERED,
+    HOME_STILL,
+    HOME_CLEARED,
+    HOME_STEP,
+    HOME_LAST,
+    HOME_RAISE
 };
 enum card_turn_step { TURN_WAIT, TURN_LOOK, TURN_ACT, TURN_RELEASE, TURN_RELEASE_HOME };
 

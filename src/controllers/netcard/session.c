@@ -5,7 +5,7 @@
 /* Room that is kept for the answer to a message, and for each that may come later. */
 enum { ANSWER = NET_HEADER + NET_BYTES_auth + NET_MAC, LATER = NET_HEADER + 8 + NET_MAC };
 
-enum { DOUBLINGS = 6 };     /* of the pause, 0.5 s to 30 s */
+enum { DOUBLINGS = 6 }; /* of the pause, 0.5 s to 30 s */
 
 static bool queue(struct session *s, uint8_t type, const uint8_t *payload, size_t n)
 {
@@ -80,9 +80,16 @@ bool session_lost(struct session *s)
 void session_connected(struct session *s, const struct session_about *a, int64_t now)
 {
     struct net_hello hello = {
-        .card = s->config.card, .oldest = NET_PROTOCOL, .newest = NET_PROTOCOL,
-        .firmware = s->config.firmware, .slots = s->config.slots, .axes = s->config.axes,
-        .credit = a->credit, .last_command = s->last_command, .state = a->state, .life = s->life,
+        .card = s->config.card,
+        .oldest = NET_PROTOCOL,
+        .newest = NET_PROTOCOL,
+        .firmware = s->config.firmware,
+        .slots = s->config.slots,
+        .axes = s->config.axes,
+        .credit = a->credit,
+        .last_command = s->last_command,
+        .state = a->state,
+        .life = s->life,
     };
     uint8_t payload[NET_BYTES_hello];
     if (s->phase != SESSION_CALLING)
@@ -161,7 +168,7 @@ static void greet(struct session *s, int64_t now)
 
 static void tell_result(struct session *s, const struct session_kept *k)
 {
-    const struct net_result result = {k->number, k->code, k->state};
+    const struct net_result result = { k->number, k->code, k->state };
     uint8_t payload[NET_BYTES_result];
     net_put_result(payload, &result);
     queue(s, NET_RESULT, payload, sizeof payload);
@@ -187,13 +194,12 @@ static bool command_is_new(struct session *s)
     }
     const bool old = command.number <= s->last_command;
     if (old || oldest->open) {
-        const struct session_kept refused = {
-            command.number, old ? NET_STATE : NET_BUSY, s->state, false
-        };
+        const struct session_kept refused = { command.number, old ? NET_STATE : NET_BUSY, s->state,
+                                              false };
         tell_result(s, &refused);
         return false;
     }
-    *oldest = (struct session_kept){.number = command.number, .open = true};
+    *oldest = (struct session_kept){ .number = command.number, .open = true };
     s->last_command = command.number;
     return true;
 }
@@ -289,10 +295,10 @@ void session_drop(struct session *s)
 /* The ACK that waits, if answers leave room for it. */
 static void flush(struct session *s)
 {
-    const struct net_ack ack = {s->acked, s->credit, s->missing};
+    const struct net_ack ack = { s->acked, s->credit, s->missing };
     uint8_t payload[NET_BYTES_ack];
-    if (!s->ack || s->phase != SESSION_UP ||
-        !net_channel_room(&s->channel, sizeof payload, reserve(s)))
+    if (!s->ack || s->phase != SESSION_UP
+        || !net_channel_room(&s->channel, sizeof payload, reserve(s)))
         return;
     net_put_ack(payload, &ack);
     queue(s, NET_ACK, payload, sizeof payload);
@@ -316,7 +322,7 @@ static void tick_up(struct session *s, int64_t now)
     enum net_alive_event event;
     uint8_t payload[NET_BYTES_token];
     while ((event = net_alive_tick(&s->alive, now)) == NET_ASK) {
-        const struct net_token token = {(uint32_t)s->alive.pings};
+        const struct net_token token = { (uint32_t)s->alive.pings };
         net_put_token(payload, &token);
         if (net_channel_room(&s->channel, sizeof payload, reserve(s)))
             queue(s, NET_PING, payload, sizeof payload);
@@ -344,7 +350,7 @@ void session_result(struct session *s, uint32_t number, enum net_code code, uint
         struct session_kept *k = &s->kept[i];
         if (k->number != number || !k->open)
             continue;
-        *k = (struct session_kept){number, (uint16_t)code, state, false};
+        *k = (struct session_kept){ number, (uint16_t)code, state, false };
         if (s->phase == SESSION_UP)
             tell_result(s, k);
     }
@@ -361,7 +367,7 @@ void session_ack(struct session *s, uint16_t credit, uint16_t missing)
 
 void session_nak(struct session *s, uint32_t sequence, enum net_code code, uint16_t detail)
 {
-    const struct net_nak nak = {sequence, (uint16_t)code, detail};
+    const struct net_nak nak = { sequence, (uint16_t)code, detail };
     uint8_t payload[NET_BYTES_nak];
     net_put_nak(payload, &nak);
     if (s->phase == SESSION_UP)

@@ -16,68 +16,66 @@
 #include "net_channel.h"
 #include "net_proof.h"
 
-#define SESSION_RETRY_NS   INT64_C(500000000)       /* first pause before a new connection */
-#define SESSION_RETRY_MOST INT64_C(30000000000)     /* it doubles up to here; each is +-25 % */
-#define SESSION_CALL_NS    INT64_C(3000000000)      /* for a connection to come about */
-#define SESSION_PROVE_NS   INT64_C(5000000000)      /* for the handshake */
+#define SESSION_RETRY_NS   INT64_C(500000000)   /* first pause before a new connection */
+#define SESSION_RETRY_MOST INT64_C(30000000000) /* it doubles up to here; each is +-25 % */
+#define SESSION_CALL_NS    INT64_C(3000000000)  /* for a connection to come about */
+#define SESSION_PROVE_NS   INT64_C(5000000000)  /* for the handshake */
 enum { SESSION_KEPT = 8 };
 
-enum session_phase {
-    SESSION_IDLE, SESSION_CALLING, SESSION_GREETING, SESSION_PROVING, SESSION_UP
-};
+enum session_phase { SESSION_IDLE, SESSION_CALLING, SESSION_GREETING, SESSION_PROVING, SESSION_UP };
 
 struct session_config {
     uint32_t card;
     uint32_t firmware;
-    uint8_t  slots, axes;
-    uint8_t  key[NET_SHA_BYTES];    /* 0: open */
-    uint8_t  seed[NET_SHA_BYTES];   /* of nonces and pauses: never the same twice but in a test */
+    uint8_t slots, axes;
+    uint8_t key[NET_SHA_BYTES];  /* 0: open */
+    uint8_t seed[NET_SHA_BYTES]; /* of nonces and pauses: never the same twice but in a test */
 };
 
 /* What HELLO says of the card at that moment. */
 struct session_about {
-    uint16_t credit;                /* [pages] */
-    uint8_t  state;                 /* enum net_state */
-    uint8_t  job[NET_SHA_BYTES];    /* hash of the job in flash; 0 none */
+    uint16_t credit;            /* [pages] */
+    uint8_t state;              /* enum net_state */
+    uint8_t job[NET_SHA_BYTES]; /* hash of the job in flash; 0 none */
 };
 
 struct session_kept {
-    uint32_t number;                /* of the command; 0 none */
+    uint32_t number; /* of the command; 0 none */
     uint16_t code, state;
-    bool     open;                  /* taken, without a result yet */
+    bool open; /* taken, without a result yet */
 };
 
 struct session {
     struct session_config config;
-    struct net_random  random;
-    struct net_secret  secret;
+    struct net_random random;
+    struct net_secret secret;
     struct net_channel channel;
-    struct net_alive   alive;
-    uint8_t  phase;                 /* enum session_phase */
-    bool     lost;                  /* was up, until session_lost() asks */
-    bool     offered;               /* the channel's frame is a message for the card */
-    int64_t  due;                   /* [ns] end of the phase, but for UP */
-    int32_t  attempts;              /* since it was up */
-    uint16_t life;                  /* drawn at power-up */
-    uint16_t state;                 /* of the card, as told last */
-    int64_t  interval, status_due;  /* [ns] of STATUS; 0 none */
-    uint32_t last_command;          /* highest number taken */
+    struct net_alive alive;
+    uint8_t phase;                /* enum session_phase */
+    bool lost;                    /* was up, until session_lost() asks */
+    bool offered;                 /* the channel's frame is a message for the card */
+    int64_t due;                  /* [ns] end of the phase, but for UP */
+    int32_t attempts;             /* since it was up */
+    uint16_t life;                /* drawn at power-up */
+    uint16_t state;               /* of the card, as told last */
+    int64_t interval, status_due; /* [ns] of STATUS; 0 none */
+    uint32_t last_command;        /* highest number taken */
     struct session_kept kept[SESSION_KEPT];
-    uint32_t job_sequence;          /* of a JOB_BEGIN or JOB_END not answered yet; 0 none */
-    uint32_t done;                  /* sequence of the latest message dealt with */
-    bool     ack;                   /* one waits for room */
-    uint16_t credit, missing;       /* its content */
+    uint32_t job_sequence;    /* of a JOB_BEGIN or JOB_END not answered yet; 0 none */
+    uint32_t done;            /* sequence of the latest message dealt with */
+    bool ack;                 /* one waits for room */
+    uint16_t credit, missing; /* its content */
     uint32_t acked;
-    uint32_t connections, losses, repeats, dropped;     /* dropped: STATUS without room */
-    uint8_t  fault;                 /* enum net_fault of the latest connection that had one */
+    uint32_t connections, losses, repeats, dropped; /* dropped: STATUS without room */
+    uint8_t fault; /* enum net_fault of the latest connection that had one */
 };
 
 /* A message for the card; valid until session_drop(). */
 struct session_message {
-    uint8_t  type;                  /* enum net_type */
+    uint8_t type; /* enum net_type */
     uint32_t sequence;
-    const uint8_t *payload;         /* of the length of its type */
-    size_t   length;
+    const uint8_t *payload; /* of the length of its type */
+    size_t length;
 };
 
 void session_start(struct session *s, const struct session_config *c, int64_t now);
@@ -105,7 +103,7 @@ void session_drop(struct session *s);
 /* Move bytes out; returns how many. */
 size_t session_out(struct session *s, uint8_t *bytes, size_t most);
 
-int64_t session_next_time(const struct session *s);     /* [ns] INT64_MAX: never */
+int64_t session_next_time(const struct session *s); /* [ns] INT64_MAX: never */
 void session_tick(struct session *s, int64_t now);
 
 /* Answers. While the link is down they go nowhere, but results are kept. A JOB_BEGIN or JOB_END is

@@ -22,7 +22,7 @@ static int32_t mark_sector(const struct job_store *s)
 static void finish(struct job_store *s, enum net_code result)
 {
     s->phase = STORE_REST;
-    s->next = (struct job_place){.slot = -1};
+    s->next = (struct job_place){ .slot = -1 };
     s->ended = true;
     s->result = result;
 }
@@ -97,7 +97,7 @@ static int64_t erase(struct job_store *s, struct flash_chip *f, int32_t sector, 
  * counts. */
 static int64_t erase_next(struct job_store *s, struct flash_chip *f, int64_t now)
 {
-    const int32_t first[] = {record_sector(s), mark_sector(s)};
+    const int32_t first[] = { record_sector(s), mark_sector(s) };
     for (int k = 0; k < 2; k++)
         if (store_bit(s->dirty, (uint32_t)first[k])) {
             store_set(s->dirty, (uint32_t)first[k], false);
@@ -182,8 +182,8 @@ static int64_t confirm(struct job_store *s, struct flash_chip *f, int64_t now)
     struct job_place read;
     uint8_t page[FLASH_PAGE];
     const int64_t took = flash_read(f, record_sector(s) * FLASH_SECTOR_PAGES, page, now);
-    const bool good = store_read_record(&read, s->slots, s->next.slot, page)
-                      && read.sequence == s->next.sequence;
+    const bool good =
+        store_read_record(&read, s->slots, s->next.slot, page) && read.sequence == s->next.sequence;
     if (good)
         s->job = s->next;
     finish(s, good ? NET_DONE : NET_FLASH);

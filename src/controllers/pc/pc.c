@@ -6,7 +6,7 @@
 #include "el_extremes.h"
 #include "reaction.h"
 
-static const double VOLTS_MAX = VOLTAGE_RANGE;  /* [V] */
+static const double VOLTS_MAX = VOLTAGE_RANGE; /* [V] */
 
 /* What the modules are doing now is what others see. */
 static void show(struct pc *pc)
@@ -21,13 +21,13 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;
-    cyclic_start(&pc->modules, &(struct cyclic_config){
-        .tasks = PC_MODULES,
-        .priority = { config->priority[0], config->priority[1], config->priority[2],
-                      config->priority[3] },
-        .cycle = { config->interpreter, config->ipo, 0, config->process },
-        .offset = { config->offset[0], config->offset[1], 0, config->offset[3] }
-    });
+    cyclic_start(&pc->modules,
+                 &(struct cyclic_config){
+                     .tasks = PC_MODULES,
+                     .priority = { config->priority[0], config->priority[1], config->priority[2],
+                                   config->priority[3] },
+                     .cycle = { config->interpreter, config->ipo, 0, config->process },
+                     .offset = { config->offset[0], config->offset[1], 0, config->offset[3] } });
     struct isr_config isr = config->isr;
     for (int i = 0; i < AXES; i++) {
         isr.mask[ISR_LOOP_PAGE] |= (m->axis[i].used && m->axis[i].track_limit > 0) << i;
@@ -37,8 +37,8 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
     const int code = MCC_init_motion(&pc->mcc, m);
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
-        if (config->home_order[i] > 0 &&
-            homing_set(&pc->mcc, i, &config->home[i], config->encoder_backward[i])) {
+        if (config->home_order[i] > 0
+            && homing_set(&pc->mcc, i, &config->home[i], config->encoder_backward[i])) {
             return MCC_PARAMETER;
         }
     }
@@ -97,7 +97,8 @@ static void look_at_card(struct pc *pc, const struct pcl_card *card, int64_t now
 {
     /* A number is drawn for each interrupt. */
     const int64_t latency = pcl_interrupt(&pc->pcl, card)
-                          ? pcl_latency(&pc->random, pc->config.latency, pc->config.jitter) : 0;
+                                ? pcl_latency(&pc->random, pc->config.latency, pc->config.jitter)
+                                : 0;
     const int32_t taken = pcl_acknowledged(&pc->pcl, card);
 
     if (taken >= 0) {
@@ -113,10 +114,11 @@ static void protect(struct pc *pc)
     const struct isr *isr = &pc->pcl.isr;
     bool *writing = &pc->run[PC_PCL].unit;
     const bool served = isr->served[ISR_LOOP_PAGE] != pc->loop_served;
-    const struct reaction_look look = {
-        .clocks = pc->config.bus, .flying = pc->pcl.open || *writing ? pc->pcl.part.points : 0,
-        .overflow = served ? (uint32_t)isr->sources[ISR_LOOP_PAGE] : 0
-    };
+    const struct reaction_look look = { .clocks = pc->config.bus,
+                                        .flying =
+                                            pc->pcl.open || *writing ? pc->pcl.part.points : 0,
+                                        .overflow =
+                                            served ? (uint32_t)isr->sources[ISR_LOOP_PAGE] : 0 };
 
     pc->loop_served = isr->served[ISR_LOOP_PAGE];
     pcl_halt(&pc->pcl, pc->mcc.signals.stop);
@@ -151,8 +153,9 @@ enum pc_cycle pc_ipo_cycle(const struct pc *pc)
 
     run += c->interpreter == 0 ? c->time[PC_INTERPRETER] : 0;
     run += c->process == 0 ? c->time[PC_PROCESS] : 0;
-    return c->ipo < run ? PC_CYCLE_SHORT :
-           c->ipo > machine_dda_clocks(&pc->mcc.machine) ? PC_CYCLE_LONG : PC_CYCLE_KEPT;
+    return c->ipo < run                                    ? PC_CYCLE_SHORT
+           : c->ipo > machine_dda_clocks(&pc->mcc.machine) ? PC_CYCLE_LONG
+                                                           : PC_CYCLE_KEPT;
 }
 
 void pc_publish(const struct pc *pc, struct link_host *link)

@@ -75,18 +75,10 @@ static void begin(struct pc *pc, int module, const struct pc_now *now)
 
     pc->run[module] = (struct pc_run){ 0 };
     switch (module) {
-    case PC_INTERPRETER:
-        time += next_command(pc);
-        break;
-    case PC_IPO:
-        time = ipo_begin(pc, now);
-        break;
-    case PC_PCL:
-        due = pcl_begin(pc, &time);
-        break;
-    default:
-        pc->panel = *now->panel;
-        break;
+    case PC_INTERPRETER: time += next_command(pc); break;
+    case PC_IPO:         time = ipo_begin(pc, now); break;
+    case PC_PCL:         due = pcl_begin(pc, &time); break;
+    default:             pc->panel = *now->panel; break;
     }
     cyclic_begin(&pc->modules, module, due, time);
 }
@@ -97,7 +89,7 @@ static void interpreter_end(struct pc *pc, const struct pc_now *now)
         cyclic_end(&pc->modules, PC_INTERPRETER);
         return;
     }
-    if (task_can_read(&pc->mcc)) {          /* an abort may have come meanwhile */
+    if (task_can_read(&pc->mcc)) { /* an abort may have come meanwhile */
         task_read(&pc->mcc, now->program);
     }
     cyclic_more(&pc->modules, PC_INTERPRETER, next_command(pc));
@@ -111,7 +103,7 @@ static void ipo_end(struct pc *pc, const struct pc_now *now)
         return;
     }
     int made = 0;
-    if (task_can_point(&pc->mcc)) {         /* likewise */
+    if (task_can_point(&pc->mcc)) { /* likewise */
         made = task_point(&pc->mcc, pc->config.interpreter > 0 ? NULL : now->program);
     }
     cyclic_more(&pc->modules, PC_IPO, made * pc->config.unit[PC_INTERPRETER] + next_point(pc));
@@ -147,15 +139,9 @@ static void pcl_end(struct pc *pc, const struct pc_now *now)
 static void end(struct pc *pc, int module, const struct pc_now *now)
 {
     switch (module) {
-    case PC_INTERPRETER:
-        interpreter_end(pc, now);
-        break;
-    case PC_IPO:
-        ipo_end(pc, now);
-        break;
-    case PC_PCL:
-        pcl_end(pc, now);
-        break;
+    case PC_INTERPRETER: interpreter_end(pc, now); break;
+    case PC_IPO:         ipo_end(pc, now); break;
+    case PC_PCL:         pcl_end(pc, now); break;
     default:
         pc_control_process(pc, &pc->panel, now->program);
         cyclic_end(&pc->modules, module);

@@ -6,7 +6,7 @@
 
 /* What a bus instant brings. */
 struct pc_now {
-    int64_t publish;                /* [clocks] what is decided now shows then: (k+1) T_b */
+    int64_t publish; /* [clocks] what is decided now shows then: (k+1) T_b */
     const struct pc_panel *panel;
     const struct source *program;
 };

@@ -38,8 +38,8 @@ static void by_hand(struct pc *pc, const struct pc_panel *panel)
 static bool may_start(const struct pc *pc)
 {
     const int homed = MCC_check_homef(&pc->mcc);
-    return pc_clock(pc) >= pc->config.start &&
-           (homed == 1 || (homed < 0 && !pc->config.home_first));
+    return pc_clock(pc) >= pc->config.start
+           && (homed == 1 || (homed < 0 && !pc->config.home_first));
 }
 
 /* The program once more from its first line, from where the axes stand. */
@@ -66,8 +66,8 @@ static void error_keys(struct pc *pc, const struct source *program)
         const bool error = m->error != 0;
         p->anew = (MCC_clear_error(m) == MCC_NO_ERR && error && p->started) || p->anew;
     }
-    if (key_take(&p->cycle_start) && task_continue(m) != MCC_NO_ERR && p->anew && pc->program &&
-        MCC_check_stop(m) && !m->error) {
+    if (key_take(&p->cycle_start) && task_continue(m) != MCC_NO_ERR && p->anew && pc->program
+        && MCC_check_stop(m) && !m->error) {
         run_anew(pc, program);
     }
 }
@@ -87,7 +87,7 @@ void pc_control_process(struct pc *pc, const struct pc_panel *panel, const struc
     }
     if (key_take(&p->abort)) {
         key_take(&p->go_home);
-        p->started = true;      /* a program that waits for its start is dropped too */
+        p->started = true; /* a program that waits for its start is dropped too */
         MCC_motion_abort(m);
     }
     error_keys(pc, program);

@@ -7,31 +7,31 @@
 #include "elementary.h"
 #include "jet.h"
 
-static const double MM = 1e-3;      /* [m] */
+static const double MM = 1e-3; /* [m] */
 
 /* The part of the path that is looked at. */
 struct part {
     const struct course_geometry *g;
     const struct course_move *move;
     const struct path *path;
-    double middle;                  /* [mm] */
-    const double *joint;            /* [rad] there */
-    double inner[OPW_JOINTS];       /* [rad] the same as opw counts them */
+    double middle;            /* [mm] */
+    const double *joint;      /* [rad] there */
+    double inner[OPW_JOINTS]; /* [rad] the same as opw counts them */
 };
 
 /* An arm of three joints [mm]: its lengths and where it ends may depend on the place. */
 struct limbs {
     struct jet a2, b, c3;
     double a1, c2;
-    struct jet end[3];              /* from axis 2's height */
-    const double *inner;            /* [rad] joints in the middle */
-    double shoulder, elbow;         /* side: +1 or -1 */
+    struct jet end[3];      /* from axis 2's height */
+    const double *inner;    /* [rad] joints in the middle */
+    double shoulder, elbow; /* side: +1 or -1 */
 };
 
 /* Where it stands. */
 struct stand {
-    struct jet base[2], fore[2];    /* cosine, sine of joint 1, of the forearm from upright */
-    struct jet rate[3];             /* of the joints */
+    struct jet base[2], fore[2]; /* cosine, sine of joint 1, of the forearm from upright */
+    struct jet rate[3];          /* of the joints */
 };
 
 static struct jet pair(const struct jet *a, const struct jet *b, const struct jet *c,
@@ -51,8 +51,9 @@ static void tip(const struct part *p, double half, struct jet at[3])
     if (p->path->arc) {
         const double per = p->path->sweep / p->path->length;
         for (int i = 0; i < 3; i++) {
-            turn[i] = per * (p->path->plane == PATH_TILTED ? p->path->normal[i]
-                                                           : i == (int)p->path->plane);
+            turn[i] =
+                per
+                * (p->path->plane == PATH_TILTED ? p->path->normal[i] : i == (int)p->path->plane);
         }
     }
     jet_turning(slope, turn, half, along);
@@ -145,15 +146,16 @@ static bool by_pose(const struct part *p, double half, struct jet rate[OPW_JOINT
     struct opw_pose flange;
     struct jet hand[3][3], reach[3], seen[3], across[2], side[2];
     double turn[3] = { 0.0, 0.0, 0.0 }, out[3];
-    struct limbs l = { .a2 = jet_constant(o->a2 / MM, half), .b = jet_constant(o->b / MM, half),
+    struct limbs l = { .a2 = jet_constant(o->a2 / MM, half),
+                       .b = jet_constant(o->b / MM, half),
                        .c3 = jet_constant(o->c3 / MM, half) };
     struct stand s;
 
     opw_forward(o, p->joint, &flange);
     for (int i = 0; i < 3; i++) {
         turn[i] = m->to > m->from ? m->by[i] / p->path->length : 0.0;
-        out[i] = flange.turn[i][0] * tool[0] + flange.turn[i][1] * tool[1] +
-                 flange.turn[i][2] * (tool[2] + o->c4 / MM);
+        out[i] = flange.turn[i][0] * tool[0] + flange.turn[i][1] * tool[1]
+                 + flange.turn[i][2] * (tool[2] + o->c4 / MM);
     }
     for (int k = 0; k < 3; k++) {
         const double axis[3] = { flange.turn[0][k], flange.turn[1][k], flange.turn[2][k] };
@@ -183,7 +185,7 @@ static bool by_pose(const struct part *p, double half, struct jet rate[OPW_JOINT
     seen[0] = pair(&s.fore[0], &seen[0], &s.fore[1], &hand[2][2], -1.0);
     bool good = true;
     rate[3] = jet_angle_rate(&seen[0], &seen[1], &good);
-    rate[5] = jet_angle_rate(&across[0], &across[1], &good);   /* but for its sign */
+    rate[5] = jet_angle_rate(&across[0], &across[1], &good); /* but for its sign */
     direction(p->inner[3], &rate[3], side);
     const struct jet sine = pair(&side[0], &seen[0], &side[1], &seen[1], 1.0);
     rate[4] = jet_angle_rate(&seen[2], &sine, &good);
@@ -201,7 +203,7 @@ static bool by_wrist(const struct part *p, double half, struct jet rate[OPW_JOIN
     struct limbs l;
     struct stand s;
 
-    for (int i = 5; i > 2; i--) {       /* Rz(th4) Ry(th5) Rz(th6) v */
+    for (int i = 5; i > 2; i--) { /* Rz(th4) Ry(th5) Rz(th6) v */
         const struct el_turn t = el_sincos(p->inner[i]);
         const double at[3] = { t.cosine, t.sine, 0.0 };
         const double per = p->move->step[i] / p->path->length;
@@ -236,8 +238,9 @@ bool bounds_of(const struct course_geometry *g, const struct path *path, double 
                const double joint[OPW_JOINTS], struct bounds *b)
 {
     const struct course *c = g->course;
-    struct part p = { g, &c->move[(c->count - 1) % COURSE_SIZE], path,
-                      0.5 * (from + to) * path->length, joint, { 0.0 } };
+    struct part p = { g,     &c->move[(c->count - 1) % COURSE_SIZE],
+                      path,  0.5 * (from + to) * path->length,
+                      joint, { 0.0 } };
     const double half = 0.5 * (to - from) * path->length;
     struct jet rate[OPW_JOINTS];
 

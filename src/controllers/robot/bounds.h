@@ -10,13 +10,13 @@
 
 /* Absolute values of the joints' derivatives by the way. */
 struct bounds_pair {
-    double slope[OPW_JOINTS];       /* [rad/mm] |dq/ds| */
-    double bend[OPW_JOINTS];        /* [rad/mm^2] |d2q/ds2| */
+    double slope[OPW_JOINTS]; /* [rad/mm] |dq/ds| */
+    double bend[OPW_JOINTS];  /* [rad/mm^2] |d2q/ds2| */
 };
 
 struct bounds {
-    struct bounds_pair most;        /* nowhere on the part more than this */
-    struct bounds_pair middle;      /* in its middle */
+    struct bounds_pair most;   /* nowhere on the part more than this */
+    struct bounds_pair middle; /* in its middle */
 };
 
 /* Bounds on a path of the latest move of the course from part `from` to `to`, 0 .. 1; joint[] holds

@@ -7,7 +7,7 @@ void course_start(struct course *c, const double turn[4])
 {
     memset(c, 0, sizeof *c);
     memcpy(c->move[0].turn, turn, 4 * sizeof *turn);
-    c->count = 1;       /* a move that is over */
+    c->count = 1; /* a move that is over */
 }
 
 static const struct course_move *move_of(const struct course *c, int32_t n)
@@ -75,8 +75,8 @@ static void attitude(const struct course *c, int32_t n, const double place[AXES]
 {
     const struct course_move *m = move_of(c, n);
     const int32_t oldest = c->count > COURSE_SIZE ? c->count - COURSE_SIZE : 0;
-    const bool corner = m->kind == COURSE_POSE && n > oldest &&
-                        move_of(c, n - 1)->kind == COURSE_POSE;
+    const bool corner =
+        m->kind == COURSE_POSE && n > oldest && move_of(c, n - 1)->kind == COURSE_POSE;
     const double before = corner ? part_of(c, n - 1, place) : 1.0;
 
     memcpy(turn, m->turn, 4 * sizeof *turn);

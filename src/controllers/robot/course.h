@@ -21,24 +21,24 @@ enum { COURSE_SIZE = 320 };
 #define COURSE_LEVER 100.0
 
 enum course_kind {
-    COURSE_POSE,        /* tip and attitude */
-    COURSE_WRIST,       /* tip, joints 4 to 6 linear in the way */
-    COURSE_JOINTS       /* all joints linear in the way */
+    COURSE_POSE,  /* tip and attitude */
+    COURSE_WRIST, /* tip, joints 4 to 6 linear in the way */
+    COURSE_JOINTS /* all joints linear in the way */
 };
 
 struct course_move {
     enum course_kind kind;
-    double from, to;            /* of its coordinate; equal: the tool does not turn */
-    double turn[4];             /* attitude at its start; of joints: at its end */
-    double by[3];               /* [rad] rotation vector, base frame */
-    double joint[OPW_JOINTS];   /* [rad] at its start */
-    double step[OPW_JOINTS];    /* [rad] to its end */
+    double from, to;          /* of its coordinate; equal: the tool does not turn */
+    double turn[4];           /* attitude at its start; of joints: at its end */
+    double by[3];             /* [rad] rotation vector, base frame */
+    double joint[OPW_JOINTS]; /* [rad] at its start */
+    double step[OPW_JOINTS];  /* [rad] to its end */
 };
 
 struct course {
     struct course_move move[COURSE_SIZE];
-    int32_t count;              /* moves in all; the latest COURSE_SIZE are known */
-    double at[3];               /* U V W at the end of the last */
+    int32_t count; /* moves in all; the latest COURSE_SIZE are known */
+    double at[3];  /* U V W at the end of the last */
 };
 
 /* What the kinematics of the motion core get. */

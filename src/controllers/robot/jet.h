@@ -19,9 +19,9 @@ struct jet_range {
 };
 
 struct jet {
-    double half;                            /* h */
-    double middle[JET_TERMS];               /* ck */
-    struct jet_range all[JET_TERMS];        /* f^(k) / k! all over the part */
+    double half;                     /* h */
+    double middle[JET_TERMS];        /* ck */
+    struct jet_range all[JET_TERMS]; /* f^(k) / k! all over the part */
 };
 
 struct jet jet_constant(double value, double half);

@@ -6,7 +6,7 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-static const double MM = 1e-3;              /* [m] */
+static const double MM = 1e-3; /* [m] */
 
 static const double TURN = 6.283185307179586;
 
@@ -33,7 +33,7 @@ static struct pose flange_pose(const struct manipulator *m, const double joint[O
     for (int i = 0; i < 3; i++) {
         p.at[i] = flange.at[i] / MM;
     }
-    quaternion_of_matrix((const double (*)[3])flange.turn, p.turn);
+    quaternion_of_matrix((const double(*)[3])flange.turn, p.turn);
     return p;
 }
 
@@ -72,8 +72,7 @@ bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
     double all[OPW_BRANCHES][OPW_JOINTS], found[OPW_JOINTS];
     const uint32_t there = branches(m, pose, joint, same_elbow(&m->opw, joint), all);
 
-    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH,
-                    found) < 0) {
+    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH, found) < 0) {
         return false;
     }
     memcpy(joint, found, sizeof found);
@@ -93,21 +92,20 @@ enum manipulator_status manipulator_solve(const struct manipulator *m, const str
         near[i] = told ? TURN * turn[i] : joint[i];
         low[i] = el_min(m->joint[i].low, joint[i]);
         high[i] = el_max(m->joint[i].high, joint[i]);
-        for (int n = 0; n < OPW_BRANCHES && told; n++) {    /* within half a turn of them */
+        for (int n = 0; n < OPW_BRANCHES && told; n++) { /* within half a turn of them */
             all[n][i] += TURN * round((near[i] - all[n][i]) / TURN);
-            there &= all[n][i] > high[i] + ROUNDING || all[n][i] < low[i] - ROUNDING
-                   ? ~(1u << n) : ~0u;
+            there &=
+                all[n][i] > high[i] + ROUNDING || all[n][i] < low[i] - ROUNDING ? ~(1u << n) : ~0u;
         }
         low[i] = told ? ANY_LOW[i] : low[i];
         high[i] = told ? ANY_HIGH[i] : high[i];
     }
-    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, near, low, high, found) >= 0) {
+    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, near, low, high, found) >= 0) {
         memcpy(joint, found, sizeof found);
         return MANIPULATOR_OK;
     }
     there = branches(m, pose, joint, wanted, all);
-    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, near, ANY_LOW, ANY_HIGH,
-                    found) < 0) {
+    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, near, ANY_LOW, ANY_HIGH, found) < 0) {
         return MANIPULATOR_FAR;
     }
     *which = manipulator_outside(m, joint, found);
@@ -148,8 +146,7 @@ bool manipulator_arm(const struct manipulator *m, const double at[3], double joi
     for (int n = 0; n < OPW_BRANCHES; n++) {
         memcpy(&all[n][3], &joint[3], 3 * sizeof joint[0]);
     }
-    if (opw_nearest(there, (const double (*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH,
-                    found) < 0) {
+    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH, found) < 0) {
         return false;
     }
     memcpy(joint, found, 3 * sizeof joint[0]);
@@ -189,8 +186,9 @@ void manipulator_jacobian(const struct manipulator *m, const double joint[OPW_JO
     for (int i = 0; i < OPW_JOINTS; i++) {
         for (int k = 0; k < 3; k++) {
             const int a = (k + 1) % 3, b = (k + 2) % 3;
-            column[i][k] = o->sign[i] * (axis[i][a] * (tip.at[b] - origin[i][b]) -
-                                         axis[i][b] * (tip.at[a] - origin[i][a]));
+            column[i][k] = o->sign[i]
+                           * (axis[i][a] * (tip.at[b] - origin[i][b])
+                              - axis[i][b] * (tip.at[a] - origin[i][a]));
             column[i][k + 3] = o->sign[i] * axis[i][k];
         }
     }
@@ -245,8 +243,8 @@ int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINT
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
         const struct manipulator_joint *j = &m->joint[i];
-        if (joint[i] > el_max(j->high, from[i]) + ROUNDING ||
-            joint[i] < el_min(j->low, from[i]) - ROUNDING) {
+        if (joint[i] > el_max(j->high, from[i]) + ROUNDING
+            || joint[i] < el_min(j->low, from[i]) - ROUNDING) {
             return i;
         }
     }

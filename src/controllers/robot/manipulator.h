@@ -10,15 +10,15 @@
 #include "pose.h"
 
 struct manipulator_joint {
-    double low, high;   /* [rad] */
-    double speed;       /* [rad/s] highest */
-    double acc;         /* [rad/s^2] highest */
+    double low, high; /* [rad] */
+    double speed;     /* [rad/s] highest */
+    double acc;       /* [rad/s^2] highest */
 };
 
 struct manipulator {
     struct opw opw;
     struct manipulator_joint joint[OPW_JOINTS];
-    struct pose tool;   /* its tip in the flange's frame */
+    struct pose tool; /* its tip in the flange's frame */
 };
 
 /* Tool tip by the joints. */
@@ -40,8 +40,8 @@ enum { MANIPULATOR_ANY_TURN = 1000 };
 /* Why there are no joints for a pose. */
 enum manipulator_status {
     MANIPULATOR_OK,
-    MANIPULATOR_FAR,        /* out of reach, or not in that branch */
-    MANIPULATOR_OUTSIDE     /* of the limits of a joint */
+    MANIPULATOR_FAR,    /* out of reach, or not in that branch */
+    MANIPULATOR_OUTSIDE /* of the limits of a joint */
 };
 
 /* Joints of a pose within their limits (where those in joint[] are beyond, within these): those of
@@ -64,7 +64,6 @@ int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINT
                         const double joint[OPW_JOINTS]);
 
 /* Which of the factors (opw.h) is nearest to 0, the shoulder's counted in lengths of the arm. */
-int manipulator_factor(const struct manipulator *m, const double joint[OPW_JOINTS],
-                       double *value);
+int manipulator_factor(const struct manipulator *m, const double joint[OPW_JOINTS], double *value);
 
 #endif

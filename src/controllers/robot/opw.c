@@ -26,7 +26,8 @@ static void forearm(double a, double p, double m[3][3])
 {
     const struct el_turn ta = el_sincos(a), tp = el_sincos(p);
     const double ca = ta.cosine, sa = ta.sine, cp = tp.cosine, sp = tp.sine;
-    const double turn[3][3] = { { ca * cp, -sa, ca * sp }, { sa * cp, ca, sa * sp },
+    const double turn[3][3] = { { ca * cp, -sa, ca * sp },
+                                { sa * cp, ca, sa * sp },
                                 { -sp, 0.0, cp } };
     memcpy(m, turn, sizeof turn);
 }
@@ -44,11 +45,12 @@ static void product(const double a[3][3], const double b[3][3], double c[3][3])
 static void wrist(const double th[OPW_JOINTS], double m[3][3])
 {
     const struct el_turn t = el_sincos(th[5]);
-    const double last[3][3] = { { t.cosine, -t.sine, 0.0 }, { t.sine, t.cosine, 0.0 },
+    const double last[3][3] = { { t.cosine, -t.sine, 0.0 },
+                                { t.sine, t.cosine, 0.0 },
                                 { 0.0, 0.0, 1.0 } };
     double first[3][3];
     forearm(th[3], th[4], first);
-    product((const double (*)[3])first, last, m);
+    product((const double(*)[3])first, last, m);
 }
 
 /* Wrist centre in the plane of the arm: from axis 1, from axis 2 up. */
@@ -67,7 +69,7 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
     inner(o, joint, th);
     forearm(th[0], th[1] + th[2], arm);
     wrist(th, hand);
-    product((const double (*)[3])arm, (const double (*)[3])hand, pose->turn);
+    product((const double(*)[3])arm, (const double(*)[3])hand, pose->turn);
     centre(o, th, &x, &z);
     const struct el_turn base = el_sincos(th[0]);
     const double c = base.cosine, s = base.sine;
@@ -91,8 +93,8 @@ static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOIN
 
     if (sine < IN_LINE) {
         first = near;
-        last = w[2][2] > 0.0 ? el_atan2(w[1][0], w[0][0]) - near
-                             : near - el_atan2(-w[0][1], -w[0][0]);
+        last =
+            w[2][2] > 0.0 ? el_atan2(w[1][0], w[0][0]) - near : near - el_atan2(-w[0][1], -w[0][0]);
     }
     th[0][3] = first;
     th[0][4] = el_atan2(sine, w[2][2]);
@@ -127,22 +129,22 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
     uint32_t there = 0;
 
     if (reach < 0.0) {
-        return 0;       /* within the lateral offset of axis 1 */
+        return 0; /* within the lateral offset of axis 1 */
     }
     inner(o, near, known);
     const double out = sqrt(reach), aside = el_atan2(o->b, out), way = el_atan2(y, x);
     for (int shoulder = 0; shoulder <= OPW_BACK; shoulder += OPW_BACK) {
-        const double n = (shoulder ? -out : out) - o->a1;   /* wrist centre from axis 2, along x */
+        const double n = (shoulder ? -out : out) - o->a1; /* wrist centre from axis 2, along x */
         const double s2 = n * n + z * z, s = sqrt(s2);
         double th[2][OPW_JOINTS], seen[3][3], at2, at3;
-        if (!angle((s2 + o->c2 * o->c2 - k2) / (2.0 * s * o->c2), &at2) ||
-            !angle((s2 - o->c2 * o->c2 - k2) / (2.0 * o->c2 * k), &at3)) {
+        if (!angle((s2 + o->c2 * o->c2 - k2) / (2.0 * s * o->c2), &at2)
+            || !angle((s2 - o->c2 * o->c2 - k2) / (2.0 * o->c2 * k), &at3)) {
             continue;
         }
         const double first = shoulder ? way + aside - 0.5 * TURN : way - aside;
         const struct el_turn base = el_sincos(first);
         const double c = base.cosine, d = base.sine, up = el_atan2(n, z);
-        for (int i = 0; i < 3; i++) {   /* the attitude seen from the arm's plane */
+        for (int i = 0; i < 3; i++) { /* the attitude seen from the arm's plane */
             seen[0][i] = c * pose->turn[0][i] + d * pose->turn[1][i];
             seen[1][i] = c * pose->turn[1][i] - d * pose->turn[0][i];
             seen[2][i] = pose->turn[2][i];
@@ -163,7 +165,7 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
                 w[1][i] = seen[1][i];
                 w[2][i] = sp * seen[0][i] + cp * seen[2][i];
             }
-            solve_wrist((const double (*)[3])w, known[3], th);
+            solve_wrist((const double(*)[3])w, known[3], th);
             outer(o, th[0], joint[branch]);
             outer(o, th[1], joint[branch + OPW_FLIP]);
             there |= 3u << branch;
@@ -226,6 +228,6 @@ int opw_branch(const struct opw *o, const double joint[OPW_JOINTS])
     double factor[3];
 
     opw_factors(o, joint, factor);
-    return (factor[0] < 0.0 ? OPW_BACK : 0) | (factor[1] < 0.0 ? OPW_ELBOW : 0) |
-           (factor[2] < 0.0 ? OPW_FLIP : 0);
+    return (factor[0] < 0.0 ? OPW_BACK : 0) | (factor[1] < 0.0 ? OPW_ELBOW : 0)
+           | (factor[2] < 0.0 ? OPW_FLIP : 0);
 }

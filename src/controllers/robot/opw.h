@@ -21,22 +21,22 @@
 enum { OPW_JOINTS = 6, OPW_BRANCHES = 8 };
 
 struct opw {
-    double a1, a2, b, c1, c2, c3, c4;       /* [m] */
-    double offset[OPW_JOINTS];              /* [rad] inner angle = sign * joint - offset */
-    double sign[OPW_JOINTS];                /* +1 or -1 */
+    double a1, a2, b, c1, c2, c3, c4; /* [m] */
+    double offset[OPW_JOINTS];        /* [rad] inner angle = sign * joint - offset */
+    double sign[OPW_JOINTS];          /* +1 or -1 */
 };
 
 /* The flange in the base frame; its z axis is that of joint 6. */
 struct opw_pose {
-    double at[3];           /* [m] */
-    double turn[3][3];      /* rotation matrix */
+    double at[3];      /* [m] */
+    double turn[3][3]; /* rotation matrix */
 };
 
 /* A branch is a sum of these. */
 enum opw_flag {
-    OPW_FLIP = 1,           /* wrist: joint 5 on its other side, 4 and 6 half a turn away */
-    OPW_ELBOW = 2,          /* the other elbow */
-    OPW_BACK = 4            /* shoulder: the wrist centre lies behind axis 1 */
+    OPW_FLIP = 1,  /* wrist: joint 5 on its other side, 4 and 6 half a turn away */
+    OPW_ELBOW = 2, /* the other elbow */
+    OPW_BACK = 4   /* shoulder: the wrist centre lies behind axis 1 */
 };
 
 /* Pose of the flange by the joints. [rad] */

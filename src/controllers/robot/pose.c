@@ -86,6 +86,6 @@ int pose_by_points(const double origin[3], const double x[3], const double xy[3]
         }
     }
     memcpy(frame->at, origin, sizeof frame->at);
-    quaternion_of_matrix((const double (*)[3])m, frame->turn);
+    quaternion_of_matrix((const double(*)[3])m, frame->turn);
     return 0;
 }

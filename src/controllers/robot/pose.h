@@ -5,8 +5,8 @@
 #include "quaternion.h"
 
 struct pose {
-    double at[3];       /* [mm] */
-    double turn[4];     /* quaternion */
+    double at[3];   /* [mm] */
+    double turn[4]; /* quaternion */
 };
 
 /* A frame that is the other one. */

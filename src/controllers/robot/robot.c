@@ -55,8 +55,8 @@ bool robot_rests(const struct robot *r)
 
 bool robot_ready(const struct robot *r)
 {
-    return r->way.next >= r->way.count && !r->mover.abort && (!r->jogging || robot_idle(r)) &&
-           r->ring.count < RING_SIZE - ROBOT_ROOM;
+    return r->way.next >= r->way.count && !r->mover.abort && (!r->jogging || robot_idle(r))
+           && r->ring.count < RING_SIZE - ROBOT_ROOM;
 }
 
 uint32_t robot_branches(const struct robot_target *t)
@@ -96,8 +96,8 @@ void robot_feed(struct robot *r)
         c.feed = c.cap = p->cap;
         if (c.tolerance > 0.0) {
             c.ramp = (struct ramp_limits){ p->acc, p->acc, 0.0, 0.0 };
-            c.tolerance = w->next + 1 == w->count && r->move.zone > 0.0 ? r->move.zone
-                                                                       : c.tolerance;
+            c.tolerance =
+                w->next + 1 == w->count && r->move.zone > 0.0 ? r->move.zone : c.tolerance;
         }
         ring_push(&r->ring, &c);
         w->next++;
@@ -126,8 +126,8 @@ static void show(struct robot *r, const struct robot_config *c, const double joi
 }
 
 /* Joints near those of a place: they go on evenly with the way, as joint 4 does where it is free */
-static void predict(const struct robot *r, const struct robot_config *c,
-                    const double place[AXES], double joint[OPW_JOINTS])
+static void predict(const struct robot *r, const struct robot_config *c, const double place[AXES],
+                    double joint[OPW_JOINTS])
 {
     const double before = r->speed * c->cycle, now = apart(place, r->pose.at);
     const double ratio = before > 0.0 ? el_min(1.0, now / before) : 0.0;
@@ -154,14 +154,14 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         return;
     }
     robot_feed(r);
-    for (double left = c->cycle; left > 0.0 && !mover_resting(&r->mover, &r->ring); ) {
+    for (double left = c->cycle; left > 0.0 && !mover_resting(&r->mover, &r->ring);) {
         left = mover_advance(&r->mover, &beside, left);
         robot_feed(r);
     }
     mover_point(&r->mover, &beside, &PLACES, c->cycle, &point);
     predict(r, c, point.place, joint);
-    if (!mechanism_joints(&m, point.place, joint) ||
-        manipulator_outside(&arm, r->joint, joint) >= 0) {
+    if (!mechanism_joints(&m, point.place, joint)
+        || manipulator_outside(&arm, r->joint, joint) >= 0) {
         memcpy(joint, r->joint, sizeof joint);
         r->lost = true;
         show(r, c, joint, &pose);
@@ -203,8 +203,7 @@ void robot_end(const struct robot *r, double joint[OPW_JOINTS])
     memcpy(joint, robot_idle(r) ? r->joint : r->rear_joint, sizeof r->joint);
 }
 
-enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
-                             const struct pose *tool)
+enum robot_status robot_tool(struct robot *r, const struct robot_config *c, const struct pose *tool)
 {
     if (!robot_idle(r)) {
         return ROBOT_BUSY;

@@ -20,54 +20,54 @@ enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
 #define ROBOT_MOST 1e9
 
 struct robot_config {
-    struct manipulator arm;     /* with the tool it starts with */
-    double scale[OPW_JOINTS];   /* [pulses/rad] */
-    double feed;                /* [mm/s] highest of the tool's tip */
-    double acc;                 /* [mm/s^2] of it, along and across */
-    double spin;                /* [rad/s] highest of the tool's turning */
-    double smooth;              /* [s] in which an acceleration comes up; 0 at once */
-    double cycle;               /* [s] */
-    double slot;                /* [s] of the pulses */
-    double slot_pulses;         /* highest number of pulses in a slot */
+    struct manipulator arm;   /* with the tool it starts with */
+    double scale[OPW_JOINTS]; /* [pulses/rad] */
+    double feed;              /* [mm/s] highest of the tool's tip */
+    double acc;               /* [mm/s^2] of it, along and across */
+    double spin;              /* [rad/s] highest of the tool's turning */
+    double smooth;            /* [s] in which an acceleration comes up; 0 at once */
+    double cycle;             /* [s] */
+    double slot;              /* [s] of the pulses */
+    double slot_pulses;       /* highest number of pulses in a slot */
 };
 
 /* Where a move leads. */
 struct robot_target {
-    bool   by_joints;           /* joint[] holds, else pose */
-    double joint[OPW_JOINTS];   /* [rad] */
+    bool by_joints;           /* joint[] holds, else pose */
+    double joint[OPW_JOINTS]; /* [rad] */
     struct pose pose;
-    int    branch;              /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
-    int    open;                /* flags that branch says nothing of */
-    bool   turned;              /* of a pose: turn[] holds, but for ROBOT_ANY_TURN */
-    int    turn[OPW_JOINTS];    /* whole turns: joint n is within half a turn of so many */
+    int branch;           /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
+    int open;             /* flags that branch says nothing of */
+    bool turned;          /* of a pose: turn[] holds, but for ROBOT_ANY_TURN */
+    int turn[OPW_JOINTS]; /* whole turns: joint n is within half a turn of so many */
 };
 
 enum robot_kind {
-    ROBOT_JOINTS,       /* all joints start and end together, the slowest decides */
+    ROBOT_JOINTS, /* all joints start and end together, the slowest decides */
     ROBOT_LINE,
-    ROBOT_CIRCLE,       /* through via.at to the target */
-    ROBOT_ARC           /* about a centre; target.pose gives the attitude at its end only */
+    ROBOT_CIRCLE, /* through via.at to the target */
+    ROBOT_ARC     /* about a centre; target.pose gives the attitude at its end only */
 };
 
 enum robot_singular {
-    ROBOT_SLOW,         /* the tool slows so that the joints keep their limits */
-    ROBOT_REFUSE,       /* the move is refused if it had to */
-    ROBOT_WRIST         /* joints 4 to 6 go straight, the tip keeps its path, not the attitude */
+    ROBOT_SLOW,   /* the tool slows so that the joints keep their limits */
+    ROBOT_REFUSE, /* the move is refused if it had to */
+    ROBOT_WRIST   /* joints 4 to 6 go straight, the tip keeps its path, not the attitude */
 };
 
 struct robot_move {
     enum robot_kind kind;
     struct robot_target target;
-    double via[3];              /* [mm] of a circle */
-    double centre[3], normal[3];    /* [mm], unit vector of an arc */
-    double rise;                /* [mm] of an arc along its normal, then an axis of the base */
-    double sweep;               /* [rad] of an arc, counter-clockwise about the normal */
-    double feed;                /* [mm/s] of the tip; 0 the highest */
-    double spin;                /* [rad/s] of the tool's turning; 0 the highest */
-    double share;               /* > 0..1 of the joints' speeds; of a move of joints */
-    double zone;                /* [mm] tolerance of the corner with the next move; 0 exact stop */
+    double via[3];               /* [mm] of a circle */
+    double centre[3], normal[3]; /* [mm], unit vector of an arc */
+    double rise;                 /* [mm] of an arc along its normal, then an axis of the base */
+    double sweep;                /* [rad] of an arc, counter-clockwise about the normal */
+    double feed;                 /* [mm/s] of the tip; 0 the highest */
+    double spin;                 /* [rad/s] of the tool's turning; 0 the highest */
+    double share;                /* > 0..1 of the joints' speeds; of a move of joints */
+    double zone;                 /* [mm] tolerance of the corner with the next move; 0 exact stop */
     enum robot_singular singular;
-    int32_t line;               /* of the program */
+    int32_t line; /* of the program */
 };
 
 enum robot_status {
@@ -86,11 +86,11 @@ enum robot_status {
 
 /* Why a move is refused. */
 struct robot_refusal {
-    double part;        /* 0..1 of the path */
-    double place[3];    /* [mm] of the tip there */
-    int    which;       /* joint, 0 .. 5; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
-    double value;       /* joint [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
-    double limit;       /* [rad] [mm]; of OTHER_TURN: what it should be within half a turn of */
+    double part;     /* 0..1 of the path */
+    double place[3]; /* [mm] of the tip there */
+    int which;       /* joint, 0 .. 5; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
+    double value;    /* joint [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
+    double limit;    /* [rad] [mm]; of OTHER_TURN: what it should be within half a turn of */
 };
 
 enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
@@ -100,28 +100,28 @@ struct robot {
     struct ring ring;
     struct track_mean mean;
     struct course course;
-    struct pose tool;           /* in force */
-    struct way way;             /* of the latest move, on its way into the ring */
-    struct robot_move move;     /* that move */
-    struct command command;     /* what its pieces have in common */
-    bool   stop;                /* an exact stop before its first piece */
-    double rear[AXES];          /* place at the end of the latest move */
-    double rear_joint[OPW_JOINTS];  /* [rad] there */
+    struct pose tool;              /* in force */
+    struct way way;                /* of the latest move, on its way into the ring */
+    struct robot_move move;        /* that move */
+    struct command command;        /* what its pieces have in common */
+    bool stop;                     /* an exact stop before its first piece */
+    double rear[AXES];             /* place at the end of the latest move */
+    double rear_joint[OPW_JOINTS]; /* [rad] there */
     enum course_kind rear_kind;
     double rear_zone;
-    int32_t index;              /* of the latest command */
-    bool   jogging, jog_held;   /* the latest move is a jog; its key is still down */
+    int32_t index;          /* of the latest command */
+    bool jogging, jog_held; /* the latest move is a jog; its key is still down */
     enum robot_frame jog_frame;
-    double jog_way[6];          /* its direction */
+    double jog_way[6]; /* its direction */
 
-    double joint[OPW_JOINTS];   /* [rad] ideal, at the end of the latest cycle */
-    double rate[OPW_JOINTS];    /* [rad/s] mean of that cycle */
-    struct pose pose;           /* of the tip there */
-    double speed;               /* [mm/s] of the tip along its path */
-    double length;              /* [mm] of its path so far, */
-    double solved;              /* and of what of it took inverse kinematics, no move of joints */
-    int32_t line;               /* of the program */
-    bool   lost;                /* the path led out of reach: stopped on the spot; until the next */
+    double joint[OPW_JOINTS]; /* [rad] ideal, at the end of the latest cycle */
+    double rate[OPW_JOINTS];  /* [rad/s] mean of that cycle */
+    struct pose pose;         /* of the tip there */
+    double speed;             /* [mm/s] of the tip along its path */
+    double length;            /* [mm] of its path so far, */
+    double solved;            /* and of what of it took inverse kinematics, no move of joints */
+    int32_t line;             /* of the program */
+    bool lost;                /* the path led out of reach: stopped on the spot; until the next */
 };
 
 /* At rest at joints [rad]. Any joints: out of its limits the arm moves back only. */

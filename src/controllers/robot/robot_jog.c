@@ -60,8 +60,9 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
                                  struct robot_move *move, struct robot_refusal *why)
 {
     const struct opw *o = &c->arm.opw;
-    const double reach = 1e3 * (fabs(o->a1) + fabs(o->a2) + fabs(o->b) + o->c1 + o->c2 + o->c3 +
-                                o->c4) + norm3(r->tool.at);
+    const double reach =
+        1e3 * (fabs(o->a1) + fabs(o->a2) + fabs(o->b) + o->c1 + o->c2 + o->c3 + o->c4)
+        + norm3(r->tool.at);
     const double v = norm3(velocity), w = norm3(turn);
     double length = way > 0.0 ? way : v > 0.0 ? 2.0 * reach : TURNS;
     enum robot_status status = ROBOT_FAR;
@@ -87,15 +88,17 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
 /* The same jog as that under way goes on. */
 static bool same(const struct robot *r, enum robot_frame frame, const double direction[6])
 {
-    return r->jogging && r->jog_held && r->jog_frame == frame &&
-           memcmp(r->jog_way, direction, sizeof r->jog_way) == 0;
+    return r->jogging && r->jog_held && r->jog_frame == frame
+           && memcmp(r->jog_way, direction, sizeof r->jog_way) == 0;
 }
 
 enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
                             const double direction[6], double share, double way,
                             struct robot_refusal *why)
 {
-    struct robot_move move = { .kind = ROBOT_LINE, .share = share, .feed = share * c->feed,
+    struct robot_move move = { .kind = ROBOT_LINE,
+                               .share = share,
+                               .feed = share * c->feed,
                                .spin = share * c->spin,
                                .target.branch = ROBOT_ANY_BRANCH };
     double velocity[3], turn[3], most = 0.0;
@@ -104,8 +107,8 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
     for (int i = 0; i < 6; i++) {
         most = el_max(most, fabs(direction[i]));
     }
-    if (!(most > 0.0 && most <= ROBOT_MOST && share > 0.0 && share <= 1.0 && way >= 0.0 &&
-          way <= ROBOT_MOST)) {
+    if (!(most > 0.0 && most <= ROBOT_MOST && share > 0.0 && share <= 1.0 && way >= 0.0
+          && way <= ROBOT_MOST)) {
         return ROBOT_PARAMETER;
     }
     if (same(r, frame, direction)) {
@@ -115,16 +118,16 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
         return ROBOT_BUSY;
     }
     robot_settle(r, c);
-    r->jogging = true;      /* its end need not be a target's */
+    r->jogging = true; /* its end need not be a target's */
     memcpy(velocity, direction, sizeof velocity);
     memcpy(turn, direction + 3, sizeof turn);
     if (frame == ROBOT_IN_TOOL) {
         quaternion_turn(r->pose.turn, velocity, velocity);
         quaternion_turn(r->pose.turn, turn, turn);
     }
-    const enum robot_status status =
-        frame == ROBOT_IN_JOINTS ? jog_joints(r, c, direction, way, &move, why)
-                                 : jog_tip(r, c, velocity, turn, way, &move, why);
+    const enum robot_status status = frame == ROBOT_IN_JOINTS
+                                         ? jog_joints(r, c, direction, way, &move, why)
+                                         : jog_tip(r, c, velocity, turn, way, &move, why);
     r->jogging = r->jog_held = status == ROBOT_OK;
     r->jog_frame = frame;
     memcpy(r->jog_way, direction, sizeof r->jog_way);

@@ -53,13 +53,13 @@ static int axis_of(const double v[3])
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
-    return all_sound(t->joint, OPW_JOINTS) && all_sound(t->pose.at, 3) &&
-           all_sound(t->pose.turn, 4) && all_sound(m->via, 3) && all_sound(m->centre, 3) &&
-           all_sound(m->normal, 3) && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1) &&
-           (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed) &&
-           m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone) &&
-           (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0)) &&
-           t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
+    return all_sound(t->joint, OPW_JOINTS) && all_sound(t->pose.at, 3) && all_sound(t->pose.turn, 4)
+           && all_sound(m->via, 3) && all_sound(m->centre, 3) && all_sound(m->normal, 3)
+           && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1)
+           && (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed)
+           && m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone)
+           && (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0))
+           && t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
 }
 
 /* An arc about an axis becomes a helix. */
@@ -93,8 +93,8 @@ static enum robot_status draw(struct robot *r, const struct robot_move *move,
     }
     memcpy(middle, move->centre, sizeof middle);
     memcpy(normal, move->normal, sizeof normal);
-    if (move->kind == ROBOT_CIRCLE &&
-        path_tilted_by_point(r->rear, move->via, end, middle, normal, &sweep) != PATH_OK) {
+    if (move->kind == ROBOT_CIRCLE
+        && path_tilted_by_point(r->rear, move->via, end, middle, normal, &sweep) != PATH_OK) {
         return ROBOT_NO_CIRCLE;
     }
     if (path_tilted(p, r->rear, end, middle, normal, sweep) != PATH_OK) {
@@ -134,7 +134,7 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
         }
         m.kind = COURSE_WRIST;
         memcpy(m.turn, pose->turn, sizeof m.turn);
-        way = 1.0;      /* its coordinate moves in any case */
+        way = 1.0; /* its coordinate moves in any case */
         for (int i = 0; i < OPW_JOINTS; i++) {
             m.joint[i] = r->rear_joint[i];
             m.step[i] = end[i] - r->rear_joint[i];
@@ -218,8 +218,7 @@ static enum robot_status told(const struct manipulator *arm, enum way_status sta
     why->part = fault->part;
     why->which = fault->which;
     switch (status) {
-    case WAY_OK:
-        return ROBOT_OK;
+    case WAY_OK: return ROBOT_OK;
     case WAY_OUTSIDE:
         why->value = fault->joint[fault->which];
         why->limit = why->value > j->high ? j->high : j->low;
@@ -243,16 +242,17 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
         return feed;
     }
     const double turning = spin * length / angle;
-    return length == COURSE_LEVER * angle ? turning : el_min(feed, turning);  /* it turns only */
+    return length == COURSE_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
 }
 
 static enum robot_status along(struct robot *r, const struct robot_config *c,
-                              const struct robot_move *move, const struct pose *pose,
-                              const double by[3], struct robot_refusal *why)
+                               const struct robot_move *move, const struct pose *pose,
+                               const double by[3], struct robot_refusal *why)
 {
     struct manipulator arm = c->arm;
     const struct course_geometry g = robot_geometry(r, &arm);
-    struct way_limits l = { .acc = c->acc, .smooth = c->smooth,
+    struct way_limits l = { .acc = c->acc,
+                            .smooth = c->smooth,
                             .refuse = move->singular == ROBOT_REFUSE };
     struct command first = { .index = 0 };
     double joint[OPW_JOINTS];
@@ -261,11 +261,11 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
 
     memcpy(rear.at, r->rear, sizeof rear.at);
     rear_turn(r, &arm, rear.turn);
-    bool chained = r->rear_kind == COURSE_POSE && r->rear_zone > 0.0 &&
-                   move->singular != ROBOT_WRIST;
+    bool chained =
+        r->rear_kind == COURSE_POSE && r->rear_zone > 0.0 && move->singular != ROBOT_WRIST;
     enum robot_status status = enter(r, &arm, move, pose, by);
-    if (status == ROBOT_OK && r->way.path.length >= NOWHERE && move->singular != ROBOT_WRIST &&
-        turns_first(r, &arm, &rear, joint)) {
+    if (status == ROBOT_OK && r->way.path.length >= NOWHERE && move->singular != ROBOT_WRIST
+        && turns_first(r, &arm, &rear, joint)) {
         course_drop(&r->course);
         robot_plan_joints(r, c, joint, 1.0);
         first = r->command;
@@ -347,8 +347,7 @@ static enum robot_status aim(const struct robot *r, const struct manipulator *ar
 {
     struct path p;
 
-    *pose = move->target.by_joints ? manipulator_pose(arm, move->target.joint)
-                                   : move->target.pose;
+    *pose = move->target.by_joints ? manipulator_pose(arm, move->target.joint) : move->target.pose;
     quaternion_normalise(pose->turn);
     if (move->kind == ROBOT_ARC) {
         const enum robot_status status = round_arc(r, move, why);
@@ -357,8 +356,7 @@ static enum robot_status aim(const struct robot *r, const struct manipulator *ar
             return status;
         }
         memset(why, 0, sizeof *why);
-        if (path_tilted(&p, r->rear, r->rear, move->centre, move->normal, move->sweep) !=
-            PATH_OK) {
+        if (path_tilted(&p, r->rear, r->rear, move->centre, move->normal, move->sweep) != PATH_OK) {
             return ROBOT_NO_CIRCLE;
         }
         for (int i = 0; i < 3; i++) {
@@ -420,8 +418,8 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
 {
     const struct rear before = keep(r);
     const enum robot_status status = move->kind == ROBOT_JOINTS ? robot_to_joints(r, c, move, why)
-                                   : pose ? along(r, c, move, pose, by, why)
-                                   : along_path(r, c, move, why);
+                                     : pose                     ? along(r, c, move, pose, by, why)
+                                                                : along_path(r, c, move, why);
 
     if (status != ROBOT_OK) {
         put_back(r, &before);

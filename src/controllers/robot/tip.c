@@ -38,7 +38,7 @@ int tip_solve(const struct pose *flange, int count, double tip[3], double *rms)
             }
         }
     }
-    for (int n = 0; n < 3; n++) {       /* symmetric and positive: pivots in order */
+    for (int n = 0; n < 3; n++) { /* symmetric and positive: pivots in order */
         if (!(a[n][n] > PIVOT)) {
             return 1;
         }

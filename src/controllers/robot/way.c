@@ -7,7 +7,7 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-enum { STEPS = 8 };     /* of a piece that is looked at */
+enum { STEPS = 8 }; /* of a piece that is looked at */
 
 /* Share of a joint's acceleration that the bend of its way may take where it limits the speed; the
  * rest changes the speed. */
@@ -57,17 +57,17 @@ struct survey {
     const struct course_geometry *g;
     const struct way_limits *l;
     const struct path *path;
-    double wide;                    /* uneven limits that are allowed, as a power */
+    double wide; /* uneven limits that are allowed, as a power */
     struct way_fault *fault;
-    double origin[OPW_JOINTS];      /* [rad] at the start of the path */
+    double origin[OPW_JOINTS]; /* [rad] at the start of the path */
 };
 
 /* A piece looked at. */
 struct look {
     double q[STEPS + 1][OPW_JOINTS];
     double cap, acc;
-    bool   even;
-    bool   met;                     /* a singular place is met: no bounds hold beside it */
+    bool even;
+    bool met; /* a singular place is met: no bounds hold beside it */
 };
 
 static bool joints_at(const struct survey *s, double part, double joint[OPW_JOINTS])
@@ -137,7 +137,7 @@ static enum way_status walk(const struct survey *s, double from, double size, st
     for (int n = 1; n <= STEPS; n++) {
         const double part = from + size * n / STEPS, before = from + size * (n - 1) / STEPS;
         double *q = k->q[n];
-        for (int i = 0; i < OPW_JOINTS; i++) {      /* where a joint is free it goes on evenly */
+        for (int i = 0; i < OPW_JOINTS; i++) { /* where a joint is free it goes on evenly */
             q[i] = n > 1 ? 2.0 * k->q[n - 1][i] - k->q[n - 2][i] : k->q[0][i];
         }
         if (!joints_at(s, part, q)) {
@@ -184,8 +184,8 @@ static void allow(const struct survey *s, double from, double size, struct look 
             cap = el_min(cap, sqrt(BENT * MARGIN * s->l->turn[i] / fabs(bend[i])));
         }
         for (int i = 0; i < OPW_JOINTS; i++) {
-            acc = el_min(acc,
-                         (MARGIN * s->l->turn[i] - fabs(bend[i]) * cap * cap) / fabs(slope[i]));
+            acc =
+                el_min(acc, (MARGIN * s->l->turn[i] - fabs(bend[i]) * cap * cap) / fabs(slope[i]));
         }
         if (cap < k->cap) {
             k->cap = cap;
@@ -195,8 +195,8 @@ static void allow(const struct survey *s, double from, double size, struct look 
         most = el_max(most, cap);
         most_acc = el_max(most_acc, acc);
     }
-    k->even = most <= el_pow(UNEVEN_SPEED, s->wide) * k->cap &&
-              most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
+    k->even = most <= el_pow(UNEVEN_SPEED, s->wide) * k->cap
+              && most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
 }
 
 /* Whether the limits of a piece hold for such derivatives; asked to, they are lowered to that. */
@@ -218,8 +218,8 @@ static bool keeps(const struct survey *s, const struct bounds_pair *d, bool lowe
 }
 
 /* Whether all places within a reach of joints are within their limits. */
-static bool within(const struct survey *s, const double joint[OPW_JOINTS],
-                   const struct bounds *b, double half)
+static bool within(const struct survey *s, const double joint[OPW_JOINTS], const struct bounds *b,
+                   double half)
 {
     double up[OPW_JOINTS], down[OPW_JOINTS];
 
@@ -227,8 +227,8 @@ static bool within(const struct survey *s, const double joint[OPW_JOINTS],
         up[i] = joint[i] + b->most.slope[i] * half;
         down[i] = joint[i] - b->most.slope[i] * half;
     }
-    return manipulator_outside(s->g->arm, s->origin, up) < 0 &&
-           manipulator_outside(s->g->arm, s->origin, down) < 0;
+    return manipulator_outside(s->g->arm, s->origin, up) < 0
+           && manipulator_outside(s->g->arm, s->origin, down) < 0;
 }
 
 /* Whether bounds tell the joints all over a part, half [mm] long to either side, by those in its
@@ -312,8 +312,8 @@ static bool proved(const struct survey *s, double from, double to, int depth,
             return met;
         }
     }
-    return depth < DEEP && proved(s, from, mid, depth + 1, joint, k) &&
-           proved(s, mid, to, depth + 1, joint, k);
+    return depth < DEEP && proved(s, from, mid, depth + 1, joint, k)
+           && proved(s, mid, to, depth + 1, joint, k);
 }
 
 /* Whether the limits of a piece that was looked at hold all over it, lowered if need be. */
@@ -328,7 +328,7 @@ static bool certain(const struct survey *s, double from, double size, struct loo
         k->met = k->met || singular(s, k->q[n]) || flips(s, k->q[n - 1], k->q[n]);
     }
     bool good = proved(s, from, from + size, 0, joint, k);
-    for (int i = 0; i < OPW_JOINTS; i++) {      /* the steps have not missed a turn */
+    for (int i = 0; i < OPW_JOINTS; i++) { /* the steps have not missed a turn */
         good = good && fabs(joint[i] - k->q[STEPS][i]) <= STEP;
     }
     if (good && k->cap < cap) {
@@ -343,8 +343,8 @@ static bool torn(const struct survey *s, double from, double size, const struct 
     const double half = 0.5 * size * s->path->length, *middle = k->q[STEPS / 2];
     struct bounds b;
 
-    return bounds_of(s->g, s->path, from, from + size, middle, &b) &&
-           (leaps(middle, k->q[0], &b, half) || leaps(middle, k->q[STEPS], &b, half));
+    return bounds_of(s->g, s->path, from, from + size, middle, &b)
+           && (leaps(middle, k->q[0], &b, half) || leaps(middle, k->q[STEPS], &b, half));
 }
 
 /* Pieces from start to end, each as long as its place among the halves of halves and its evenness
@@ -434,17 +434,19 @@ static double any_direction(const struct survey *s, const double joint[OPW_JOINT
     return acc;
 }
 
-enum way_status way_plan(struct way *w, const struct course_geometry *g,
-                         const struct way_limits *l, double joint[OPW_JOINTS],
-                         struct way_fault *fault_)
+enum way_status way_plan(struct way *w, const struct course_geometry *g, const struct way_limits *l,
+                         double joint[OPW_JOINTS], struct way_fault *fault_)
 {
     const struct kinematics kinematics = course_kinematics();
-    struct survey s = { .arm = { .kinematics = &kinematics, .geometry = g }, .g = g,
-                        .l = l, .path = &w->path, .fault = fault_ };
+    struct survey s = { .arm = { .kinematics = &kinematics, .geometry = g },
+                        .g = g,
+                        .l = l,
+                        .path = &w->path,
+                        .fault = fault_ };
     double q[OPW_JOINTS];
 
     memcpy(s.origin, joint, sizeof s.origin);
-    for (s.wide = 1.0; ; s.wide *= 2.0) {
+    for (s.wide = 1.0;; s.wide *= 2.0) {
         memcpy(q, joint, sizeof q);
         const enum way_status status = cut(w, &s, q);
         if (status != WAY_OK) {

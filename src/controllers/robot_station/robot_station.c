@@ -24,15 +24,17 @@ bool robot_station_start(struct robot_station *s, const struct robot_station_con
     card.slot_clocks = config->soft.slot_clocks;
     card.format = (enum fpga_format)config->soft.pulse_format;
     if (card.irq_every < 1 || card.irq_every > INT32_MAX || card.irq_every % card.slot_clocks) {
-        const double slot = (double)card.slot_clocks / FPGA_CLOCK_HZ;   /* [s], as it is given */
-        *wrong = (struct soft_wrong){ .name = "irq_every", .why = "not a whole number of slots",
+        const double slot = (double)card.slot_clocks / FPGA_CLOCK_HZ; /* [s], as it is given */
+        *wrong = (struct soft_wrong){ .name = "irq_every",
+                                      .why = "not a whole number of slots",
                                       .value = (double)card.irq_every / FPGA_CLOCK_HZ,
-                                      .low = slot, .high = slot };
+                                      .low = slot,
+                                      .high = slot };
         return false;
     }
     memset(s, 0, sizeof *s);
     soft_configure(&config->soft, &s->config);
-    s->config.start = INT64_MAX;    /* by its key only */
+    s->config.start = INT64_MAX; /* by its key only */
     s->panel = (struct soft_panel){ .override = 1.0, .jog_speed = 0.1 };
     s->tool = s->config.robot.arm.tool;
     soft_start(&s->soft, &s->config);
@@ -129,9 +131,9 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     r->status = soft_status(soft, &s->panel);
     r->line = soft->robot.line > 0 ? soft->move_line[soft->robot.line % SOFT_MOVES] : 0;
     r->done = soft_done(soft);
-    r->rests = soft->stopped || (!soft_running(soft) && soft->replaying < 0 && !soft->jogs &&
-                                 !soft->output_count && !soft->start.pressed &&
-                                 robot_idle(&soft->robot) && due == 0);
+    r->rests = soft->stopped
+               || (!soft_running(soft) && soft->replaying < 0 && !soft->jogs && !soft->output_count
+                   && !soft->start.pressed && robot_idle(&soft->robot) && due == 0);
 }
 
 void robot_station_rehearse(const struct robot_station *s, const struct orders_text *program,

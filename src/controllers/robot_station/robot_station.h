@@ -21,41 +21,41 @@
 
 struct robot_station_config {
     struct soft_settings soft;
-    struct fpga_config card;        /* slot_clocks and format are those of soft */
+    struct fpga_config card; /* slot_clocks and format are those of soft */
 };
 
 struct robot_station {
     struct soft soft;
     struct soft_config config;
-    struct soft_panel panel;        /* hold, override and single as you like; a key is pressed by
-                                     * soft.start.pressed, .abort, .reset, .teach, .replay */
+    struct soft_panel panel; /* hold, override and single as you like; a key is pressed by
+                              * soft.start.pressed, .abort, .reset, .teach, .replay */
     struct fpga card;
-    struct fpga_host host;          /* as published last */
+    struct fpga_host host; /* as published last */
     struct fpga_taken taken;
-    struct pose tool;               /* of the user's moves */
-    double   ai[FPGA_ANALOG];       /* [V] pins, set them as you like; */
-    uint32_t inputs;                /* a bit each, */
-    uint32_t alarm;                 /* of the drives, a bit an axis, */
-    bool     emergency;             /* and the emergency stop */
-    double   ai_seen[FPGA_ANALOG];  /* [V] by the card */
-    int64_t  clock;                 /* [25 ns] everything up to here has happened */
-    int64_t  instant;               /* [clock] next instant of the bus grid */
+    struct pose tool;            /* of the user's moves */
+    double ai[FPGA_ANALOG];      /* [V] pins, set them as you like; */
+    uint32_t inputs;             /* a bit each, */
+    uint32_t alarm;              /* of the drives, a bit an axis, */
+    bool emergency;              /* and the emergency stop */
+    double ai_seen[FPGA_ANALOG]; /* [V] by the card */
+    int64_t clock;               /* [25 ns] everything up to here has happened */
+    int64_t instant;             /* [clock] next instant of the bus grid */
 };
 
 /* What there is to see at the station's clock beside the state itself. Lengths in mm, angles in
  * deg. */
 struct robot_station_reading {
-    int64_t pulses[OPW_JOINTS];     /* put out */
-    double  joint[OPW_JOINTS];      /* where the arm is, */
-    double  pose[6];                /* X Y Z A B C of its tip; */
-    double  joint_command[OPW_JOINTS];  /* at the end of the pulses written, */
-    double  pose_command[6];
-    int32_t configuration;          /* sum of enum opw_flag */
-    double  factors[3];             /* from singular: [mm], 1, 1 */
-    int32_t status;                 /* enum soft_status */
-    int32_t line;                   /* of the program, that moves; 0 none */
-    bool    done;                   /* the program has ended and the arm rests */
-    bool    rests;                  /* nothing is left to do and every pulse is out */
+    int64_t pulses[OPW_JOINTS];       /* put out */
+    double joint[OPW_JOINTS];         /* where the arm is, */
+    double pose[6];                   /* X Y Z A B C of its tip; */
+    double joint_command[OPW_JOINTS]; /* at the end of the pulses written, */
+    double pose_command[6];
+    int32_t configuration; /* sum of enum opw_flag */
+    double factors[3];     /* from singular: [mm], 1, 1 */
+    int32_t status;        /* enum soft_status */
+    int32_t line;          /* of the program, that moves; 0 none */
+    bool done;             /* the program has ended and the arm rests */
+    bool rests;            /* nothing is left to do and every pulse is out */
 };
 
 /* Settings of the soft controller; the card interrupts every 100 us at rest, an alarm of a drive

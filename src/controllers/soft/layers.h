@@ -19,27 +19,27 @@
 enum layer { LAYER_INTERRUPT, LAYER_DRIVER, LAYER_TIMER, LAYER_USER, LAYERS };
 
 struct layers_config {
-    struct latency interrupt;   /* wait of the card's interrupts */
-    int64_t  access;            /* [clocks] a register of the card read, another written */
-    int64_t  tick;              /* [clocks] of the system clock */
-    int64_t  poll;              /* [clocks] between two polls of the user program, */
-    int64_t  quantum;           /* [clocks] more if another thread has the processor then, */
-    double   crowded;           /* with this probability */
-    uint32_t follow[LAYERS];    /* outputs that follow their inputs */
+    struct latency interrupt; /* wait of the card's interrupts */
+    int64_t access;           /* [clocks] a register of the card read, another written */
+    int64_t tick;             /* [clocks] of the system clock */
+    int64_t poll;             /* [clocks] between two polls of the user program, */
+    int64_t quantum;          /* [clocks] more if another thread has the processor then, */
+    double crowded;           /* with this probability */
+    uint32_t follow[LAYERS];  /* outputs that follow their inputs */
 };
 
 /* Inputs as a copy of the driver had them. */
 struct layers_copy {
-    int64_t  clock;             /* at which the copy was complete */
+    int64_t clock; /* at which the copy was complete */
     uint32_t inputs;
 };
 
 struct layers {
     uint64_t random;
     uint32_t shown[LAYERS];     /* outputs that follow, as put out last */
-    int64_t  tick, poll;        /* [clock] the next ones */
-    int32_t  polls;             /* so far */
-    int32_t  changes;           /* input_irq_seq served */
+    int64_t tick, poll;         /* [clock] the next ones */
+    int32_t polls;              /* so far */
+    int32_t changes;            /* input_irq_seq served */
     struct layers_copy copy[2]; /* the latest first */
     uint32_t mask, value;       /* outputs the user program has asked for; mask 0: none */
 };

@@ -22,45 +22,51 @@ struct orders_text {
 };
 
 struct orders_config {
-    struct inform_start start;      /* of the robot language */
-    double zone[INFORM_LEVELS + 1]; /* [mm] of PL=0 .. 8; the last one of G64, too */
-    double rapid;                   /* share of the joints' speeds of G0 */
-    double feed, feed_most;         /* [mm/s] of a part program until F; highest */
-    double origin[INTERPRETER_SYSTEMS][AXES];   /* [mm], [deg] of G54 .. G59.3 */
-    bool   block_delete, optional_stop, tool_stop;
+    struct inform_start start;                /* of the robot language */
+    double zone[INFORM_LEVELS + 1];           /* [mm] of PL=0 .. 8; the last one of G64, too */
+    double rapid;                             /* share of the joints' speeds of G0 */
+    double feed, feed_most;                   /* [mm/s] of a part program until F; highest */
+    double origin[INTERPRETER_SYSTEMS][AXES]; /* [mm], [deg] of G54 .. G59.3 */
+    bool block_delete, optional_stop, tool_stop;
     enum robot_singular singular;
-    int32_t lines;                  /* instructions of a call */
+    int32_t lines; /* instructions of a call */
 };
 
 enum order_kind {
-    ORDER_NONE,         /* nothing now: the program waits for inputs, time or motion */
-    ORDER_MOVE, ORDER_OUT, ORDER_ANALOG, ORDER_DELAY, ORDER_PAUSE, ORDER_END, ORDER_FAULT
+    ORDER_NONE, /* nothing now: the program waits for inputs, time or motion */
+    ORDER_MOVE,
+    ORDER_OUT,
+    ORDER_ANALOG,
+    ORDER_DELAY,
+    ORDER_PAUSE,
+    ORDER_END,
+    ORDER_FAULT
 };
 
 struct order {
     enum order_kind kind;
-    int32_t  line;
-    int64_t  after;             /* number of the move, or of the one before */
-    int64_t  known;             /* [clock] at which the driver could have it */
+    int32_t line;
+    int64_t after; /* number of the move, or of the one before */
+    int64_t known; /* [clock] at which the driver could have it */
     struct robot_move move;
-    struct robot_target via;    /* of a circle */
-    struct pose tool;           /* of the move */
-    bool     plain;             /* the tool is that of the arm's parameters */
-    uint32_t mask, value;       /* digital outputs */
-    int32_t  index;             /* analog output, from 0 */
-    double   amount;            /* [V]; [s] of a delay */
+    struct robot_target via; /* of a circle */
+    struct pose tool;        /* of the move */
+    bool plain;              /* the tool is that of the arm's parameters */
+    uint32_t mask, value;    /* digital outputs */
+    int32_t index;           /* analog output, from 0 */
+    double amount;           /* [V]; [s] of a delay */
 };
 
 struct orders {
-    bool    on;                 /* a program runs */
-    bool    waits;              /* for an input or a time */
-    int64_t moves;              /* ordered so far */
+    bool on;       /* a program runs */
+    bool waits;    /* for an input or a time */
+    int64_t moves; /* ordered so far */
     struct interpreter gcode;
-    struct command kept;        /* of a part program, behind outputs of its line */
-    bool    keeps;
-    bool    passes;             /* waits of a part program are answered as in a check */
-    int64_t since;              /* [ns] that one waits */
-    double  was;                /* its input at the look before */
+    struct command kept; /* of a part program, behind outputs of its line */
+    bool keeps;
+    bool passes;   /* waits of a part program are answered as in a check */
+    int64_t since; /* [ns] that one waits */
+    double was;    /* its input at the look before */
     struct inform_run inform;
 };
 
@@ -73,7 +79,7 @@ void orders_next(struct orders *o, const struct orders_config *c, const struct o
                  const struct inform_inputs *in, struct order *order);
 
 /* A part program from its start to its end, nothing moves: all its faults and notes. */
-void orders_check(const struct orders_config *c, const struct orders_text *t,
-                  const struct pose *at, struct fault_list *all);
+void orders_check(const struct orders_config *c, const struct orders_text *t, const struct pose *at,
+                  struct fault_list *all);
 
 #endif

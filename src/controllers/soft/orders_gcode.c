@@ -4,18 +4,23 @@
 #include "waiting.h"
 
 static const double DEGREE = 0.017453292519943295;
-static const double FREE_SPEED = 1e9;       /* [mm/s] the arm decides how fast, not the reader */
+static const double FREE_SPEED = 1e9; /* [mm/s] the arm decides how fast, not the reader */
 
 /* What a part program is read against: six coordinates without joints, inputs, no probe. */
 static struct program program_of(const struct orders_config *c, const struct orders_text *t)
 {
-    struct program p = {
-        .source = t->gcode, .angles = true, .plain = true, .bare = true,
-        .block_delete = c->block_delete,
-        .optional_stop = c->optional_stop, .change_stops = c->tool_stop, .has_inputs = true,
-        .limits = { .feed = c->feed_most, .rapid = 1.0, .up = { .acc = 1.0 },
-                    .down = { .acc = 1.0 } }
-    };
+    struct program p = { .source = t->gcode,
+                         .angles = true,
+                         .plain = true,
+                         .bare = true,
+                         .block_delete = c->block_delete,
+                         .optional_stop = c->optional_stop,
+                         .change_stops = c->tool_stop,
+                         .has_inputs = true,
+                         .limits = { .feed = c->feed_most,
+                                     .rapid = 1.0,
+                                     .up = { .acc = 1.0 },
+                                     .down = { .acc = 1.0 } } };
     for (int i = 0; i < AXES; i++) {
         p.machine.axis[i] = true;
         p.machine.joint[i] = (struct joint){ .used = true, .scale = 1.0, .speed = FREE_SPEED };
@@ -36,8 +41,8 @@ void orders_gcode_start(struct interpreter *in, const struct orders_config *c,
     interpreter_start(in, point, c->feed, c->origin);
 }
 
-void orders_check(const struct orders_config *c, const struct orders_text *t,
-                  const struct pose *at, struct fault_list *all)
+void orders_check(const struct orders_config *c, const struct orders_text *t, const struct pose *at,
+                  struct fault_list *all)
 {
     const struct program p = program_of(c, t);
     struct interpreter in;
@@ -53,7 +58,9 @@ static void arm_move(struct robot_move *m, const struct orders_config *c, const 
 {
     const struct path *p = &k->path;
 
-    *m = (struct robot_move){ .line = k->line, .share = c->rapid, .singular = c->singular,
+    *m = (struct robot_move){ .line = k->line,
+                              .share = c->rapid,
+                              .singular = c->singular,
                               .target = { .branch = ROBOT_ANY_BRANCH } };
     m->target.pose = pose_of(p->end, p->end + 3);
     m->kind = k->type == COMMAND_PTP ? ROBOT_JOINTS : p->arc ? ROBOT_ARC : ROBOT_LINE;
@@ -66,8 +73,8 @@ static void arm_move(struct robot_move *m, const struct orders_config *c, const 
         m->rise = p->end[p->plane] - p->start[p->plane];
         m->sweep = p->sweep;
     }
-    const bool turns = p->start[0] == p->end[0] && p->start[1] == p->end[1] &&
-                       p->start[2] == p->end[2] && !p->arc;
+    const bool turns =
+        p->start[0] == p->end[0] && p->start[1] == p->end[1] && p->start[2] == p->end[2] && !p->arc;
     m->feed = turns ? 0.0 : k->feed;
     m->spin = turns ? k->feed / scale * DEGREE : 0.0;
     m->zone = !k->blend ? 0.0 : k->tolerance > 0.0 ? k->tolerance : c->zone[INFORM_LEVELS];
@@ -120,14 +127,9 @@ static bool next_command(struct orders *o, const struct program *p, const struct
 
     for (;;) {
         switch (interpreter_next(&o->gcode, p, &o->kept, &fault)) {
-        case INTERPRETER_COMMAND:
-            return true;
-        case INTERPRETER_END:
-            order->kind = ORDER_END;
-            return false;
-        case INTERPRETER_FAULT:
-            order->kind = ORDER_FAULT;
-            return false;
+        case INTERPRETER_COMMAND: return true;
+        case INTERPRETER_END:     order->kind = ORDER_END; return false;
+        case INTERPRETER_FAULT:   order->kind = ORDER_FAULT; return false;
         default:
             if (!answered(o, in)) {
                 return false;
@@ -141,7 +143,7 @@ static bool switch_before(struct orders *o, struct order *order)
 {
     struct command *k = &o->kept;
 
-    if (k->type != COMMAND_OUTPUTS && command_switches(k)) {    /* M62 */
+    if (k->type != COMMAND_OUTPUTS && command_switches(k)) { /* M62 */
         switch_outputs(o, order, k);
         k->set = k->clear = 0;
         return true;
@@ -159,9 +161,8 @@ static bool switch_before(struct orders *o, struct order *order)
     return false;
 }
 
-void orders_gcode_next(struct orders *o, const struct orders_config *c,
-                       const struct orders_text *t, const struct inform_inputs *in,
-                       struct order *order)
+void orders_gcode_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                       const struct inform_inputs *in, struct order *order)
 {
     const struct program p = program_of(c, t);
 
@@ -180,12 +181,8 @@ void orders_gcode_next(struct orders *o, const struct orders_config *c,
         order->kind = ORDER_DELAY;
         order->amount = k.dwell;
         break;
-    case COMMAND_OUTPUTS:
-        switch_outputs(o, order, &k);
-        break;
-    case COMMAND_STOP:
-        order->kind = ORDER_PAUSE;
-        break;
+    case COMMAND_OUTPUTS: switch_outputs(o, order, &k); break;
+    case COMMAND_STOP:    order->kind = ORDER_PAUSE; break;
     default:
         order->kind = ORDER_MOVE;
         order->plain = true;

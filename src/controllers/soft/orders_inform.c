@@ -40,8 +40,9 @@ static void inform_move(struct order *order, const struct orders_config *c,
     struct robot_move *m = &order->move;
 
     *m = (struct robot_move){ .line = r->line, .singular = c->singular, .share = 1.0 };
-    m->kind = r->path == INFORM_JOINT ? ROBOT_JOINTS
-            : r->path == INFORM_LINE ? ROBOT_LINE : ROBOT_CIRCLE;
+    m->kind = r->path == INFORM_JOINT  ? ROBOT_JOINTS
+              : r->path == INFORM_LINE ? ROBOT_LINE
+                                       : ROBOT_CIRCLE;
     m->share = r->tag == INFORM_VJ ? r->speed / 100.0 : 1.0;
     m->feed = r->tag == INFORM_V ? r->speed : 0.0;
     m->spin = r->tag == INFORM_VR ? r->speed * DEGREE : 0.0;
@@ -81,16 +82,9 @@ void orders_inform_next(struct orders *o, const struct orders_config *c,
         order->amount = r.volt;
         order->after = r.after;
         break;
-    case INFORM_PAUSE:
-        order->kind = ORDER_PAUSE;
-        break;
-    case INFORM_END:
-        order->kind = ORDER_END;
-        break;
-    case INFORM_FAULT:
-        order->kind = ORDER_FAULT;
-        break;
-    default:
-        order->kind = ORDER_NONE;
+    case INFORM_PAUSE: order->kind = ORDER_PAUSE; break;
+    case INFORM_END:   order->kind = ORDER_END; break;
+    case INFORM_FAULT: order->kind = ORDER_FAULT; break;
+    default:           order->kind = ORDER_NONE;
     }
 }

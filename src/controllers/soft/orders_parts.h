@@ -7,9 +7,8 @@
 /* A part program: it begins at a pose of the tip; its next order. */
 void orders_gcode_start(struct interpreter *in, const struct orders_config *c,
                         const struct pose *at);
-void orders_gcode_next(struct orders *o, const struct orders_config *c,
-                       const struct orders_text *t, const struct inform_inputs *in,
-                       struct order *order);
+void orders_gcode_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                       const struct inform_inputs *in, struct order *order);
 
 /* A program in the robot language: its next order. */
 void orders_inform_next(struct orders *o, const struct orders_config *c,

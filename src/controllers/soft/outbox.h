@@ -7,14 +7,14 @@
 enum { OUTBOX_SIZE = 64 };
 
 struct outbox_entry {
-    int64_t  clock;             /* at which it is at the card */
+    int64_t clock; /* at which it is at the card */
     uint32_t mask, value;
 };
 
 struct outbox {
     int32_t count;
     struct outbox_entry entry[OUTBOX_SIZE];
-    int32_t seq;                /* of the latest mailbox */
+    int32_t seq; /* of the latest mailbox */
 };
 
 /* Outputs of the mask become those of the value. In a full box that joins the last entry. */

@@ -66,9 +66,9 @@ static void see_lines(struct soft *s, const struct fpga_shown *card, int64_t clo
 static struct inform_inputs inputs_of(const struct soft *s, const struct fpga_shown *card,
                                       uint32_t di, int64_t clock)
 {
-    struct inform_inputs in = {
-        .now = clock * FPGA_CLOCK_NS, .reached = s->reached - s->first, .di = di
-    };
+    struct inform_inputs in = { .now = clock * FPGA_CLOCK_NS,
+                                .reached = s->reached - s->first,
+                                .di = di };
     memcpy(in.ai, card->irq_ai, sizeof in.ai);
     return in;
 }
@@ -111,8 +111,7 @@ static void poll(struct soft *s, const struct soft_config *c, const struct order
 
 /* Keys and what the program wants; lines that are done. */
 static int32_t decide(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                      const struct fpga_shown *card, const struct soft_panel *panel,
-                      int64_t clock)
+                      const struct fpga_shown *card, const struct soft_panel *panel, int64_t clock)
 {
     soft_panel_run(s, c, t, panel, clock);
     look_at_moves(s);
@@ -162,8 +161,7 @@ static void run(struct soft *s, const struct soft_config *c, const struct orders
 }
 
 /* The card has stopped: its counters say where the arm is once it is let go. */
-static void look_at_stop(struct soft *s, const struct soft_config *c,
-                         const struct fpga_shown *card)
+static void look_at_stop(struct soft *s, const struct soft_config *c, const struct fpga_shown *card)
 {
     if (card->stopped && !s->stopped) {
         soft_program_drop(s);
@@ -252,11 +250,12 @@ enum soft_status soft_status(const struct soft *s, const struct soft_panel *pane
 {
     const bool idle = !soft_running(s) && s->replaying < 0 && robot_idle(&s->robot);
 
-    return s->stopped ? SOFT_STOPPED
-         : s->trouble.error != SOFT_OK ? SOFT_ERROR
-         : s->jogs ? SOFT_JOG
-         : idle ? SOFT_IDLE
-         : panel->hold ? SOFT_HOLD : program_status(s, panel);
+    return s->stopped                    ? SOFT_STOPPED
+           : s->trouble.error != SOFT_OK ? SOFT_ERROR
+           : s->jogs                     ? SOFT_JOG
+           : idle                        ? SOFT_IDLE
+           : panel->hold                 ? SOFT_HOLD
+                                         : program_status(s, panel);
 }
 
 bool soft_done(const struct soft *s)

@@ -18,20 +18,20 @@
 enum { SOFT_QUEUE = 64, SOFT_OUTPUTS = 32, SOFT_TAUGHT = 64, SOFT_MOVES = 1024 };
 
 struct soft_config {
-    int64_t bus;                /* [clocks] T_b */
-    int64_t slot;               /* [clocks] of the card */
-    int32_t slots;              /* of a memory, 1 .. FPGA_SLOTS */
+    int64_t bus;   /* [clocks] T_b */
+    int64_t slot;  /* [clocks] of the card */
+    int32_t slots; /* of a memory, 1 .. FPGA_SLOTS */
     enum fpga_format format;
     struct layers_config layers;
-    int64_t copy_in, copy_out;  /* [clocks] of a run */
-    int64_t line, point;        /* [clocks] of a line of the program, of a point's kinematics */
-    double  pitch;              /* [mm] between two points whose kinematics are computed */
-    int32_t lines;              /* most of a run */
-    bool    user;               /* the user program reads the lines at its polls, into a queue */
-    int32_t depth;              /* lines of that queue, up to SOFT_QUEUE */
-    int64_t start;              /* [clock] the program starts at the first run from here on */
-    double  zero[OPW_JOINTS];   /* [rad] joints at clock 0 */
-    uint32_t servo;             /* axes whose servo is on */
+    int64_t copy_in, copy_out; /* [clocks] of a run */
+    int64_t line, point;       /* [clocks] of a line of the program, of a point's kinematics */
+    double pitch;              /* [mm] between two points whose kinematics are computed */
+    int32_t lines;             /* most of a run */
+    bool user;                 /* the user program reads the lines at its polls, into a queue */
+    int32_t depth;             /* lines of that queue, up to SOFT_QUEUE */
+    int64_t start;             /* [clock] the program starts at the first run from here on */
+    double zero[OPW_JOINTS];   /* [rad] joints at clock 0 */
+    uint32_t servo;            /* axes whose servo is on */
     int32_t seed;
     struct robot_config robot;
     struct orders_config orders;
@@ -40,35 +40,42 @@ struct soft_config {
 /* The teach pendant, read on the bus grid; keys count when they go down, in the run that follows:
  * one that has no meaning then is forgotten. */
 struct soft_panel {
-    bool   hold, abort, start, single, reset, teach, replay;
-    double override;            /* 0 .. 1 */
-    double jog[6];              /* -1 .. 1 of each direction; all 0: none */
+    bool hold, abort, start, single, reset, teach, replay;
+    double override; /* 0 .. 1 */
+    double jog[6];   /* -1 .. 1 of each direction; all 0: none */
     enum robot_frame frame;
-    double jog_speed, jog_way;  /* share of the highest; [mm], [deg], 0 no end */
+    double jog_speed, jog_way; /* share of the highest; [mm], [deg], 0 no end */
 };
 
 enum soft_status {
-    SOFT_IDLE, SOFT_RUNNING, SOFT_HOLD, SOFT_WAITING, SOFT_DELAY, SOFT_PAUSED, SOFT_JOG,
-    SOFT_ERROR, SOFT_STOPPED
+    SOFT_IDLE,
+    SOFT_RUNNING,
+    SOFT_HOLD,
+    SOFT_WAITING,
+    SOFT_DELAY,
+    SOFT_PAUSED,
+    SOFT_JOG,
+    SOFT_ERROR,
+    SOFT_STOPPED
 };
 
 /* The program; from PROGRAM_RUNS on it is not over. */
 enum soft_program {
-    PROGRAM_NEW,        /* not started yet */
-    PROGRAM_ENDED,      /* its last order is done */
-    PROGRAM_DROPPED,    /* it was given up */
+    PROGRAM_NEW,     /* not started yet */
+    PROGRAM_ENDED,   /* its last order is done */
+    PROGRAM_DROPPED, /* it was given up */
     PROGRAM_RUNS,
-    PROGRAM_DELAYS,     /* until its time is over */
-    PROGRAM_WAITS,      /* for an input, or a time of the job */
-    PROGRAM_PAUSED      /* until the operator goes on */
+    PROGRAM_DELAYS, /* until its time is over */
+    PROGRAM_WAITS,  /* for an input, or a time of the job */
+    PROGRAM_PAUSED  /* until the operator goes on */
 };
 
 /* Why the program was ended. */
 enum soft_error {
     SOFT_OK,
-    SOFT_MOVE,          /* a move is refused: status and refusal say why */
-    SOFT_PROGRAM,       /* the program has stopped by a fault of its own: fault */
-    SOFT_LOST           /* out of reach on a path that was planned */
+    SOFT_MOVE,    /* a move is refused: status and refusal say why */
+    SOFT_PROGRAM, /* the program has stopped by a fault of its own: fault */
+    SOFT_LOST     /* out of reach on a path that was planned */
 };
 
 struct soft_trouble {
@@ -81,26 +88,28 @@ struct soft_trouble {
 
 /* What the layers have taken so far; the driver's times in clocks. */
 struct soft_report {
-    int32_t runs, late;         /* of the driver; not done when their pulses were due */
-    int64_t wait, wait_most;    /* from interrupt to begin */
-    int64_t run, run_most;      /* from interrupt to mark */
-    int64_t spare;              /* from the mark to where its pulses are due */
-    int64_t busy;               /* all runs */
+    int32_t runs, late;      /* of the driver; not done when their pulses were due */
+    int64_t wait, wait_most; /* from interrupt to begin */
+    int64_t run, run_most;   /* from interrupt to mark */
+    int64_t spare;           /* from the mark to where its pulses are due */
+    int64_t busy;            /* all runs */
     int32_t polls;
-    int32_t lines, points;      /* in all */
-    int32_t starved;            /* runs in which the queue was empty and the arm at rest */
-    int64_t line, line_most;    /* from the interrupt that executes moves to their first slot */
-    int64_t told_most;          /* and from where the driver could have known the first */
+    int32_t lines, points;   /* in all */
+    int32_t starved;         /* runs in which the queue was empty and the arm at rest */
+    int64_t line, line_most; /* from the interrupt that executes moves to their first slot */
+    int64_t told_most;       /* and from where the driver could have known the first */
 };
 
-struct soft_key { bool down, pressed; };
+struct soft_key {
+    bool down, pressed;
+};
 
 struct soft_output {
     int64_t after;
-    bool    analog;
+    bool analog;
     uint32_t mask, value;
     int32_t index;
-    double  volt;
+    double volt;
 };
 
 struct soft {
@@ -113,37 +122,37 @@ struct soft {
 
     /* the card */
     int32_t irq_seq, write_seq, memory; /* seen, written last */
-    int64_t free;               /* [clock] the driver has done its latest run */
-    int64_t asked;              /* [clock] interrupt of the moves whose memory waits; -1 none */
-    int64_t known;              /* [clock] the first of those; -1 none in the latest run */
-    int32_t words[FPGA_WORDS];  /* of the latest write, */
-    int64_t mark;               /* [clock] and when it is complete */
-    double  volt[FPGA_ANALOG];
+    int64_t free;                       /* [clock] the driver has done its latest run */
+    int64_t asked;             /* [clock] interrupt of the moves whose memory waits; -1 none */
+    int64_t known;             /* [clock] the first of those; -1 none in the latest run */
+    int32_t words[FPGA_WORDS]; /* of the latest write, */
+    int64_t mark;              /* [clock] and when it is complete */
+    double volt[FPGA_ANALOG];
     int32_t ao_seq;
     int32_t reset_seq;
-    bool    posts, posts_ao;    /* a new write, new analog outputs */
-    bool    stopped;            /* as the card was seen last */
-    double  joint[OPW_JOINTS];  /* [rad] at the end of all slots written */
-    double  origin[OPW_JOINTS]; /* [pulses] of the joints where the card's counters are 0 */
+    bool posts, posts_ao;      /* a new write, new analog outputs */
+    bool stopped;              /* as the card was seen last */
+    double joint[OPW_JOINTS];  /* [rad] at the end of all slots written */
+    double origin[OPW_JOINTS]; /* [pulses] of the joints where the card's counters are 0 */
 
     /* the program */
     enum soft_program program;
-    int32_t heads, count;       /* queue of the user program */
+    int32_t heads, count; /* queue of the user program */
     struct order queue[SOFT_QUEUE];
-    struct order next;          /* taken, not yet done; ORDER_NONE: none */
-    int64_t delay;              /* [clocks] left */
-    int64_t given, reached;     /* moves of the arm */
-    int64_t first;              /* of them before the program */
-    int32_t move_line[SOFT_MOVES];  /* line of move n at n mod SOFT_MOVES */
+    struct order next;             /* taken, not yet done; ORDER_NONE: none */
+    int64_t delay;                 /* [clocks] left */
+    int64_t given, reached;        /* moves of the arm */
+    int64_t first;                 /* of them before the program */
+    int32_t move_line[SOFT_MOVES]; /* line of move n at n mod SOFT_MOVES */
     int32_t output_count;
     struct soft_output output[SOFT_OUTPUTS];
-    uint32_t out;               /* digital outputs as programs have set them */
+    uint32_t out; /* digital outputs as programs have set them */
 
     /* the pendant */
     struct soft_key start, abort, reset, teach, replay;
-    bool    leave;              /* single step: one move may begin */
-    bool    jogs;
-    int32_t taught_count, replaying;    /* points; the next one, -1 none */
+    bool leave; /* single step: one move may begin */
+    bool jogs;
+    int32_t taught_count, replaying; /* points; the next one, -1 none */
     struct robot_target taught[SOFT_TAUGHT];
 };
 

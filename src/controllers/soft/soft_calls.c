@@ -44,11 +44,13 @@ enum robot_status soft_output(struct soft *s, struct order *order)
 
 int soft_taught(const struct soft *s, int32_t n, char line[INFORM_POINT_TEXT])
 {
-    struct inform_point p = {
-        .kind = INFORM_JOINTS, .shoulder = INFORM_ANY, .elbow = INFORM_ANY, .wrist = INFORM_ANY,
-        .turn = { INFORM_ANY_TURN, INFORM_ANY_TURN, INFORM_ANY_TURN }, .tool = INFORM_ANY,
-        .user = INFORM_ANY
-    };
+    struct inform_point p = { .kind = INFORM_JOINTS,
+                              .shoulder = INFORM_ANY,
+                              .elbow = INFORM_ANY,
+                              .wrist = INFORM_ANY,
+                              .turn = { INFORM_ANY_TURN, INFORM_ANY_TURN, INFORM_ANY_TURN },
+                              .tool = INFORM_ANY,
+                              .user = INFORM_ANY };
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         p.value[i] = s->taught[n].joint[i] / DEGREE;

@@ -16,13 +16,13 @@ enum robot_status soft_panel_jog(struct soft *s, const struct soft_config *c,
                                  const struct soft_panel *panel, struct robot_refusal *why)
 {
     const double *d = panel->jog;
-    const bool turns = panel->frame == ROBOT_IN_JOINTS ||
-                       (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0);
+    const bool turns =
+        panel->frame == ROBOT_IN_JOINTS || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0);
     const double way = panel->jog_way * (turns ? DEGREE : 1.0);
-    const enum robot_status status = robot_jog(&s->robot, &c->robot, panel->frame, d,
-                                               panel->jog_speed, way, why);
+    const enum robot_status status =
+        robot_jog(&s->robot, &c->robot, panel->frame, d, panel->jog_speed, way, why);
 
-    if (status == ROBOT_BUSY && s->jogs) {      /* another direction: the one before ends first */
+    if (status == ROBOT_BUSY && s->jogs) { /* another direction: the one before ends first */
         robot_release(&s->robot);
     }
     s->jogs = s->jogs || status == ROBOT_OK;
@@ -83,13 +83,12 @@ static void start(struct soft *s, const struct soft_config *c, const struct orde
     const bool program = t->gcode || t->inform,
                due = s->program == PROGRAM_NEW && clock >= c->start;
 
-    if (program && free_to_start(s) && robot_idle(&s->robot) &&
-        (soft_key_take(&s->start) || due)) {
+    if (program && free_to_start(s) && robot_idle(&s->robot) && (soft_key_take(&s->start) || due)) {
         soft_program_start(s, c, t);
         s->leave = true;
     }
-    if (soft_running(s) && panel->single && s->program != PROGRAM_PAUSED &&
-        soft_key_take(&s->start)) {
+    if (soft_running(s) && panel->single && s->program != PROGRAM_PAUSED
+        && soft_key_take(&s->start)) {
         s->leave = true;
     }
 }

@@ -39,8 +39,9 @@ static bool other_tool(const struct pose *a, const struct pose *b)
 
 bool soft_program_ready(struct soft *s, const struct soft_config *c, const struct pose *tool)
 {
-    return robot_ready(&s->robot) && (!other_tool(tool, &s->robot.tool) ||
-                                      robot_tool(&s->robot, &c->robot, tool) == ROBOT_OK);
+    return robot_ready(&s->robot)
+           && (!other_tool(tool, &s->robot.tool)
+               || robot_tool(&s->robot, &c->robot, tool) == ROBOT_OK);
 }
 
 enum robot_status soft_program_give(struct soft *s, const struct soft_config *c,
@@ -67,8 +68,8 @@ bool soft_program_move(struct soft *s, const struct soft_config *c, struct order
     if (m->kind == ROBOT_CIRCLE) {
         struct manipulator arm = c->robot.arm;
         arm.tool = *tool;
-        const struct pose via = order->via.by_joints ? manipulator_pose(&arm, order->via.joint)
-                                                     : order->via.pose;
+        const struct pose via =
+            order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
         memcpy(m->via, via.at, sizeof m->via);
     }
     const enum robot_status status = soft_program_give(s, c, m, order->line, &s->trouble.refusal);
@@ -84,10 +85,12 @@ bool soft_program_put(struct soft *s, const struct order *o)
     if (s->output_count == SOFT_OUTPUTS) {
         return false;
     }
-    s->output[s->output_count++] = (struct soft_output){
-        .after = s->first + o->after, .analog = o->kind == ORDER_ANALOG, .mask = o->mask,
-        .value = o->value, .index = o->index, .volt = o->amount
-    };
+    s->output[s->output_count++] = (struct soft_output){ .after = s->first + o->after,
+                                                         .analog = o->kind == ORDER_ANALOG,
+                                                         .mask = o->mask,
+                                                         .value = o->value,
+                                                         .index = o->index,
+                                                         .volt = o->amount };
     return true;
 }
 
@@ -122,21 +125,15 @@ static bool carry_out(struct soft *s, const struct soft_config *c, const struct 
     const bool idle = robot_idle(&s->robot);
 
     switch (o->kind) {
-    case ORDER_MOVE:
-        return carry_out_move(s, c, panel, o);
+    case ORDER_MOVE:   return carry_out_move(s, c, panel, o);
     case ORDER_OUT:
-    case ORDER_ANALOG:
-        return soft_program_put(s, o);
-    case ORDER_DELAY:
-        s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0;
-        return idle;
+    case ORDER_ANALOG: return soft_program_put(s, o);
+    case ORDER_DELAY:  s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0; return idle;
     case ORDER_PAUSE:
         s->program = idle && !soft_key_take(&s->start) ? PROGRAM_PAUSED : PROGRAM_RUNS;
         return idle && s->program == PROGRAM_RUNS;
-    case ORDER_END:
-        return end(s);
-    default:
-        return fail(s, SOFT_PROGRAM, o);
+    case ORDER_END: return end(s);
+    default:        return fail(s, SOFT_PROGRAM, o);
     }
 }
 
@@ -186,8 +183,9 @@ static bool fetch(struct soft *s, const struct soft_config *c, const struct orde
 static void look_what_is_next(struct soft *s)
 {
     if (soft_running(s) && s->program != PROGRAM_PAUSED) {
-        s->program = s->delay > 0 ? PROGRAM_DELAYS
-                   : s->orders.on && s->orders.waits ? PROGRAM_WAITS : PROGRAM_RUNS;
+        s->program = s->delay > 0                      ? PROGRAM_DELAYS
+                     : s->orders.on && s->orders.waits ? PROGRAM_WAITS
+                                                       : PROGRAM_RUNS;
     }
 }
 

@@ -17,8 +17,9 @@ static void fill(double to[OPW_JOINTS], const double from[OPW_JOINTS])
 
 struct soft_settings soft_defaults(void)
 {
-    static const double ZONE[INFORM_LEVELS + 1] = { 0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0,
-                                                    64.0 };
+    static const double ZONE[INFORM_LEVELS + 1] = {
+        0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0
+    };
     struct soft_settings s;
 
 #define START(type, name, elements, unit, start, low, high) \
@@ -37,8 +38,8 @@ struct soft_settings soft_defaults(void)
     return s;
 }
 
-static bool within(struct soft_wrong *w, const char *name, int32_t index, double value,
-                   double low, double high)
+static bool within(struct soft_wrong *w, const char *name, int32_t index, double value, double low,
+                   double high)
 {
     *w = (struct soft_wrong){ name, NULL, index, value, low, high };
     return value >= low && value <= high;
@@ -73,8 +74,8 @@ bool soft_settings_good(const struct soft_settings *s, struct soft_wrong *wrong)
             return refuse(wrong, "joint_low", i, s->joint_low[i], "not below joint_high");
         }
     }
-    return fpga_slot_most((enum fpga_format)s->pulse_format, s->slot_clocks) >= 1 ||
-           refuse(wrong, "slot_clocks", 0, s->slot_clocks, "too short for a pulse");
+    return fpga_slot_most((enum fpga_format)s->pulse_format, s->slot_clocks) >= 1
+           || refuse(wrong, "slot_clocks", 0, s->slot_clocks, "too short for a pulse");
 }
 
 static int64_t clocks_of(double seconds)
@@ -84,22 +85,28 @@ static int64_t clocks_of(double seconds)
 
 static void set_robot(const struct soft_settings *s, struct robot_config *r)
 {
-    *r = (struct robot_config){
-        .arm = { .opw = { .a1 = s->a1, .a2 = s->a2, .b = s->b, .c1 = s->c1, .c2 = s->c2,
-                          .c3 = s->c3, .c4 = s->c4 },
-                 .tool = pose_of(s->tool, s->tool + 3) },
-        .feed = s->max_feed / 60.0, .acc = s->acceleration, .spin = s->max_spin * DEGREE,
-        .smooth = s->smooth_time, .cycle = (double)s->slots * s->slot_clocks / FPGA_CLOCK_HZ,
-        .slot = (double)s->slot_clocks / FPGA_CLOCK_HZ,
-        .slot_pulses = fpga_slot_most((enum fpga_format)s->pulse_format, s->slot_clocks)
-    };
+    *r = (struct robot_config){ .arm = { .opw = { .a1 = s->a1,
+                                                  .a2 = s->a2,
+                                                  .b = s->b,
+                                                  .c1 = s->c1,
+                                                  .c2 = s->c2,
+                                                  .c3 = s->c3,
+                                                  .c4 = s->c4 },
+                                         .tool = pose_of(s->tool, s->tool + 3) },
+                                .feed = s->max_feed / 60.0,
+                                .acc = s->acceleration,
+                                .spin = s->max_spin * DEGREE,
+                                .smooth = s->smooth_time,
+                                .cycle = (double)s->slots * s->slot_clocks / FPGA_CLOCK_HZ,
+                                .slot = (double)s->slot_clocks / FPGA_CLOCK_HZ,
+                                .slot_pulses = fpga_slot_most((enum fpga_format)s->pulse_format,
+                                                              s->slot_clocks) };
     for (int i = 0; i < OPW_JOINTS; i++) {
         r->arm.opw.offset[i] = s->joint_offset[i] * DEGREE;
         r->arm.opw.sign[i] = s->joint_sign[i];
-        r->arm.joint[i] = (struct manipulator_joint){
-            s->joint_low[i] * DEGREE, s->joint_high[i] * DEGREE, s->joint_speed[i] * DEGREE,
-            s->joint_acc[i] * DEGREE
-        };
+        r->arm.joint[i] =
+            (struct manipulator_joint){ s->joint_low[i] * DEGREE, s->joint_high[i] * DEGREE,
+                                        s->joint_speed[i] * DEGREE, s->joint_acc[i] * DEGREE };
         r->scale[i] = s->gear_ratio[i] * s->pulses_per_turn[i] / (360.0 * DEGREE);
     }
 }
@@ -108,10 +115,14 @@ static void set_orders(const struct soft_settings *s, struct orders_config *o)
 {
     *o = (struct orders_config){
         .start = { .vj = 100.0 * s->rapid, .v = s->feed / 60.0, .vr = s->max_spin },
-        .rapid = s->rapid, .feed = s->feed / 60.0, .feed_most = s->max_feed / 60.0,
-        .block_delete = s->block_delete, .optional_stop = s->optional_stop,
+        .rapid = s->rapid,
+        .feed = s->feed / 60.0,
+        .feed_most = s->max_feed / 60.0,
+        .block_delete = s->block_delete,
+        .optional_stop = s->optional_stop,
         .tool_stop = s->tool_stop,
-        .singular = (enum robot_singular)s->singular, .lines = 1000
+        .singular = (enum robot_singular)s->singular,
+        .lines = 1000
     };
     memcpy(o->zone, s->zone, sizeof o->zone);
     memcpy(o->origin[0], s->origin, sizeof o->origin[0]);
@@ -119,10 +130,9 @@ static void set_orders(const struct soft_settings *s, struct orders_config *o)
 
 static void set_layers(const struct soft_settings *s, struct layers_config *l)
 {
-    l->interrupt = (struct latency){
-        s->irq_latency * FPGA_CLOCK_HZ, s->irq_mean * FPGA_CLOCK_HZ,
-        el_max(s->irq_longest, s->irq_latency) * FPGA_CLOCK_HZ, s->irq_rare
-    };
+    l->interrupt =
+        (struct latency){ s->irq_latency * FPGA_CLOCK_HZ, s->irq_mean * FPGA_CLOCK_HZ,
+                          el_max(s->irq_longest, s->irq_latency) * FPGA_CLOCK_HZ, s->irq_rare };
     l->access = clocks_of(s->access_time);
     l->tick = clocks_of(s->timer_period);
     l->poll = clocks_of(s->poll_period);

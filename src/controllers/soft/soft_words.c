@@ -52,9 +52,7 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
 
     inform_text_add(&t, name_of(status));
     switch (status) {
-    case ROBOT_FAR:
-        add_place(&t, r);
-        break;
+    case ROBOT_FAR: add_place(&t, r); break;
     case ROBOT_OUTSIDE:
         add(&t, ": joint ", r->which + 1);
         add(&t, " to ", r->value / DEGREE);
@@ -68,8 +66,9 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
         add_place(&t, r);
         break;
     case ROBOT_OTHER_BRANCH:
-        inform_text_add(&t, flag == OPW_FLIP ? ": wrist" : flag == OPW_ELBOW ? ": elbow"
-                                                                             : ": shoulder");
+        inform_text_add(&t, flag == OPW_FLIP    ? ": wrist"
+                            : flag == OPW_ELBOW ? ": elbow"
+                                                : ": shoulder");
         break;
     case ROBOT_OTHER_TURN:
         add(&t, ": joint ", r->which + 1);
@@ -82,11 +81,8 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
         add(&t, " mm off it, limit ", r->limit);
         inform_text_add(&t, " mm");
         break;
-    case ROBOT_NO_UNIT:
-        add(&t, ": its length is ", r->value);
-        break;
-    default:
-        break;
+    case ROBOT_NO_UNIT: add(&t, ": its length is ", r->value); break;
+    default:            break;
     }
 }
 
@@ -98,6 +94,7 @@ void soft_words(const struct soft_trouble *t, char text[SOFT_WORDS])
         soft_refusal_words(t->status, &t->refusal, text);
     } else {
         inform_text_add(&words, t->error == SOFT_PROGRAM ? inform_fault_text(t->fault)
-                                : t->error == SOFT_LOST ? "out of reach on the path" : "");
+                                : t->error == SOFT_LOST  ? "out of reach on the path"
+                                                         : "");
     }
 }

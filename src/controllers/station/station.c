@@ -8,25 +8,40 @@
 
 struct station_config station_defaults(void)
 {
-    struct station_config c = {
-        .machine = {
-            .dda_time = 1e-3, .dda_length = 12, .queue_depth = 64, .feed = 10.0,
-            .max_feed = 1000.0, .acc_time = 0.1, .dec_time = 0.1, .acc_type = 'T',
-            .dec_type = 'T', .jerk_share = 0.5, .ptp_ratio = 1.0
-        },
-        .pc = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3,
-                .batch = 4, .isr = { .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 } },
-                .home_settle = 0.05, .priority = { 4, 3, 1, 2 } }
-    };
+    struct station_config c = { .machine = { .dda_time = 1e-3,
+                                             .dda_length = 12,
+                                             .queue_depth = 64,
+                                             .feed = 10.0,
+                                             .max_feed = 1000.0,
+                                             .acc_time = 0.1,
+                                             .dec_time = 0.1,
+                                             .acc_type = 'T',
+                                             .dec_type = 'T',
+                                             .jerk_share = 0.5,
+                                             .ptp_ratio = 1.0 },
+                                .pc = { .bus = 4000,
+                                        .ipo = 40000,
+                                        .latency = 8000.0,
+                                        .seed = 1,
+                                        .min_stock = 3,
+                                        .batch = 4,
+                                        .isr = { .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 } },
+                                        .home_settle = 0.05,
+                                        .priority = { 4, 3, 1, 2 } } };
     for (int i = 0; i < AXES; i++) {
-        c.machine.axis[i] = (struct machine_axis){
-            .used = i < 3, .pitch = 10.0, .gear_ratio = 1.0, .ppr = 10000, .rpm = 3000.0,
-            .p_gain = 60
-        };
-        c.pc.home[i] = (struct home_config){
-            .mode = HOME_SENSOR_INDEX, .direction = 1, .sensor_on = true, .high_speed = 20.0,
-            .low_speed = 2.0, .search = 1000.0, .index_way = 15.0
-        };
+        c.machine.axis[i] = (struct machine_axis){ .used = i < 3,
+                                                   .pitch = 10.0,
+                                                   .gear_ratio = 1.0,
+                                                   .ppr = 10000,
+                                                   .rpm = 3000.0,
+                                                   .p_gain = 60 };
+        c.pc.home[i] = (struct home_config){ .mode = HOME_SENSOR_INDEX,
+                                             .direction = 1,
+                                             .sensor_on = true,
+                                             .high_speed = 20.0,
+                                             .low_speed = 2.0,
+                                             .search = 1000.0,
+                                             .index_way = 15.0 };
         c.software_gain[i] = 0.01;
     }
     return c;
@@ -47,11 +62,11 @@ static bool clocks(int64_t x, int64_t least)
 /* Times of the modules on the processor; interrupts wake the position control. */
 static bool modules_valid(const struct pc_config *p)
 {
-    bool valid = clocks(p->bus, 1) && clocks(p->ipo, 1) && clocks(p->interpreter, 0) &&
-                 clocks(p->process, 0) && clocks(p->isr.service, 0) && p->offset[PC_PCL] == 0;
+    bool valid = clocks(p->bus, 1) && clocks(p->ipo, 1) && clocks(p->interpreter, 0)
+                 && clocks(p->process, 0) && clocks(p->isr.service, 0) && p->offset[PC_PCL] == 0;
     for (int i = 0; i < PC_MODULES; i++) {
-        valid = valid && clocks(p->offset[i], 0) && clocks(p->time[i], 0) &&
-                clocks(p->unit[i], 0) && p->most[i] >= 0;
+        valid = valid && clocks(p->offset[i], 0) && clocks(p->time[i], 0) && clocks(p->unit[i], 0)
+                && p->most[i] >= 0;
     }
     return valid;
 }
@@ -63,19 +78,18 @@ static enum station_status check(const struct station_config *c)
     if (!machine_valid(&c->machine) || c->machine.queue_depth > QUEUE_SIZE) {
         return STATION_BAD_MACHINE;
     }
-    if (!modules_valid(p) || p->min_stock < 0 || p->batch < 1 ||
-        p->batch > PCL_FRAMES || p->min_stock + p->batch > PCL_FIFO ||
-        !(p->latency >= 0.0 && p->latency < 1e15) ||
-        !(p->jitter >= 0.0 && p->jitter < 1e15) ||
-        !(p->home_settle >= 0.0 && p->home_settle < 1e6)) {
+    if (!modules_valid(p) || p->min_stock < 0 || p->batch < 1 || p->batch > PCL_FRAMES
+        || p->min_stock + p->batch > PCL_FIFO || !(p->latency >= 0.0 && p->latency < 1e15)
+        || !(p->jitter >= 0.0 && p->jitter < 1e15)
+        || !(p->home_settle >= 0.0 && p->home_settle < 1e6)) {
         return STATION_BAD_PC;
     }
     for (int i = 0; i < AXES; i++) {
         if (p->home_order[i] > 0 && !can_home(&c->machine.axis[i], &p->home[i])) {
             return STATION_BAD_HOME;
         }
-        if (p->output_mode[i] < STATION_PULSES || p->output_mode[i] > STATION_SOFTWARE ||
-            !isfinite(c->software_gain[i])) {
+        if (p->output_mode[i] < STATION_PULSES || p->output_mode[i] > STATION_SOFTWARE
+            || !isfinite(c->software_gain[i])) {
             return STATION_BAD_MODE;
         }
     }
@@ -92,8 +106,8 @@ static void power_on(struct epcio *card, const struct machine *m)
         c.encoder[i].index_lines = m->axis[i].ppr < 4 ? 1 : m->axis[i].ppr / 4;
     }
     epcio_reset(card, &c);
-    epcio_set_local_io(card, &(struct local_io_control){ .stop_enable = true, .gate = true,
-                                                         .servo_on = 0x3f });
+    epcio_set_local_io(card, &(struct local_io_control){
+                                 .stop_enable = true, .gate = true, .servo_on = 0x3f });
 }
 
 enum station_status station_start(struct station *s, const struct station_config *config)
@@ -177,7 +191,7 @@ static enum station_status instant(struct station *s, const struct source *progr
     pc_instant(&s->pc, s->instant, &seen, &panel, program);
     s->instant += s->pc.config.bus;
     if (epcio_off(&s->card)) {
-        s->pc.pcl.refusals = 0;     /* the emergency stop explains them */
+        s->pc.pcl.refusals = 0; /* the emergency stop explains them */
     }
     return s->pc.pcl.refusals < PCL_REFUSALS ? STATION_OK : STATION_FRAMES_REFUSED;
 }
@@ -228,8 +242,8 @@ static void read_axes(const struct station *s, struct station_reading *r)
         r->errors[i] = card->loop[i].error;
         r->volts[i] = epcio_volts(card, i);
         r->motor[i] = s->pc.config.output_mode[i] == STATION_PULSES
-                    ? (double)r->pulses[i]
-                    : s->motor[i] + speed(a, s->volts[i]) * (double)since / CLOCK_HZ;
+                          ? (double)r->pulses[i]
+                          : s->motor[i] + speed(a, s->volts[i]) * (double)since / CLOCK_HZ;
         r->table[i] = (a->inverted ? -1.0 : 1.0) * r->motor[i] / machine_pulses_per_mm(a);
         r->stock[i] = card->fifo[i].stock;
         r->underflows[i] = card->underflows[i];
@@ -241,18 +255,25 @@ void station_read(const struct station *s, struct station_reading *r)
     const struct mcc *m = &s->pc.mcc;
     const struct pcl *p = &s->pc.pcl;
 
-    *r = (struct station_reading){
-        .clock = s->clock, .path_feed = m->written.feed,
-        .frames_taken = s->card.frames_taken, .frames_refused = s->card.frames_refused,
-        .interrupts = link_wrap(s->card.irq.seq), .irq_clock = s->card.irq.clock,
-        .services = p->services, .latency = p->latency,
-        .missed = s->pc.shown.all.missed,
-        .ipo_cycle = pc_ipo_cycle(&s->pc), .queue = m->queue.count, .starved = p->starved,
-        .status = task_status(m), .error = MCC_get_errcode(m),
-        .line = m->written.line, .command = m->written.command,
-        .digital_out = (int32_t)m->written.outputs.digital, .coolant = m->written.outputs.coolant,
-        .spindle_speed = m->written.outputs.spindle,
-        .stopped = MCC_check_stop(m) && card_rests(&s->card)
-    };
+    *r = (struct station_reading){ .clock = s->clock,
+                                   .path_feed = m->written.feed,
+                                   .frames_taken = s->card.frames_taken,
+                                   .frames_refused = s->card.frames_refused,
+                                   .interrupts = link_wrap(s->card.irq.seq),
+                                   .irq_clock = s->card.irq.clock,
+                                   .services = p->services,
+                                   .latency = p->latency,
+                                   .missed = s->pc.shown.all.missed,
+                                   .ipo_cycle = pc_ipo_cycle(&s->pc),
+                                   .queue = m->queue.count,
+                                   .starved = p->starved,
+                                   .status = task_status(m),
+                                   .error = MCC_get_errcode(m),
+                                   .line = m->written.line,
+                                   .command = m->written.command,
+                                   .digital_out = (int32_t)m->written.outputs.digital,
+                                   .coolant = m->written.outputs.coolant,
+                                   .spindle_speed = m->written.outputs.spindle,
+                                   .stopped = MCC_check_stop(m) && card_rests(&s->card) };
     read_axes(s, r);
 }

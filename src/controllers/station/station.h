@@ -18,73 +18,73 @@
 #include "host.h"
 #include "pc.h"
 
-enum { STATION_HZ = CLOCK_HZ };     /* clocks of a second */
+enum { STATION_HZ = CLOCK_HZ }; /* clocks of a second */
 
 /* What the motor of an axis follows. */
 enum station_mode {
-    STATION_PULSES,         /* the pulse train: it stands where the pulses are */
-    STATION_LOOP,           /* the voltage of the card's position loop */
-    STATION_SOFTWARE        /* the voltage of the library's control law: software_gain * error */
+    STATION_PULSES,  /* the pulse train: it stands where the pulses are */
+    STATION_LOOP,    /* the voltage of the card's position loop */
+    STATION_SOFTWARE /* the voltage of the library's control law: software_gain * error */
 };
 
 struct station_config {
     struct machine machine;
-    struct pc_config pc;            /* output_mode as in station_mode; program and panel unused */
-    double software_gain[AXES];     /* [V/count] of STATION_SOFTWARE */
+    struct pc_config pc;        /* output_mode as in station_mode; program and panel unused */
+    double software_gain[AXES]; /* [V/count] of STATION_SOFTWARE */
 };
 
 enum station_status {
     STATION_OK,
-    STATION_BAD_MACHINE,            /* the library refuses a value of machine */
-    STATION_BAD_PC,                 /* a time below 0 or of 1e15 clocks, no period, n + N > FIFO */
-    STATION_BAD_MODE,               /* no station_mode */
-    STATION_BAD_HOME,               /* an axis with a home_order cannot be homed so */
-    STATION_FRAMES_REFUSED,         /* the card takes no frame any more */
-    STATION_MOTOR_LOST              /* a motor is beyond what the encoder input can follow */
+    STATION_BAD_MACHINE,    /* the library refuses a value of machine */
+    STATION_BAD_PC,         /* a time below 0 or of 1e15 clocks, no period, n + N > FIFO */
+    STATION_BAD_MODE,       /* no station_mode */
+    STATION_BAD_HOME,       /* an axis with a home_order cannot be homed so */
+    STATION_FRAMES_REFUSED, /* the card takes no frame any more */
+    STATION_MOTOR_LOST      /* a motor is beyond what the encoder input can follow */
 };
 
 struct station {
-    struct pc pc;                   /* pc.mcc is the library */
+    struct pc pc; /* pc.mcc is the library */
     struct epcio card;
-    struct epcio_lines lines;       /* pins: set lines.local (home, up, down, stop) and the phase
-                                     * of the spare encoders 6 .. 8 as you like */
-    double  software_gain[AXES];
-    double  motor[AXES];            /* [counts] at the latest instant */
-    double  volts[AXES];            /* [V] since then */
-    int64_t clock;                  /* [25 ns] everything up to here has happened */
-    int64_t instant;                /* [clock] next instant of the bus grid */
-    struct mailbox taken;             /* what the card has taken of the PC */
+    struct epcio_lines lines; /* pins: set lines.local (home, up, down, stop) and the phase
+                               * of the spare encoders 6 .. 8 as you like */
+    double software_gain[AXES];
+    double motor[AXES];   /* [counts] at the latest instant */
+    double volts[AXES];   /* [V] since then */
+    int64_t clock;        /* [25 ns] everything up to here has happened */
+    int64_t instant;      /* [clock] next instant of the bus grid */
+    struct mailbox taken; /* what the card has taken of the PC */
 };
 
 /* What there is to see at the station's clock. */
 struct station_reading {
-    int64_t clock;                  /* [25 ns] */
-    int64_t pulses[AXES];           /* [pulses] put out */
-    int64_t counts[AXES];           /* [counts] encoder counters, as of the latest instant */
-    int32_t errors[AXES];           /* [counts] error counters, likewise */
-    double  volts[AXES];            /* [V] of the DAC */
-    double  motor[AXES];            /* [counts] where the motors are */
-    double  table[AXES];            /* [mm] the same behind gear and screw, as the axis goes */
-    double  position[AXES];         /* [mm] the library's, of the points in the card */
-    double  path_feed;              /* [mm/s] */
-    int32_t stock[AXES];            /* [commands] in the FIFOs */
-    int32_t underflows[AXES];       /* DDA times begun empty after motion */
-    int32_t frames_taken, frames_refused;   /* by the card */
-    int32_t interrupts;             /* pulls of the interrupt line */
-    int64_t irq_clock;              /* [25 ns] of the latest */
-    int32_t services;               /* refills of the FIFO behind an interrupt */
-    int64_t latency;                /* [25 ns] of the latest */
-    int32_t missed;                 /* deadlines of the modules on the PC */
-    int32_t ipo_cycle;              /* enum pc_cycle: 0 the document's rule is kept */
-    int32_t queue;                  /* interpolation points waiting */
-    int32_t starved;                /* frames of standstill sent in the middle of a motion */
-    int32_t status;                 /* enum task_status */
-    int32_t error;                  /* run-time error, 0 none */
-    int32_t line, command;          /* that moves */
-    int32_t digital_out;            /* digital outputs of the program, a bit each */
-    int32_t coolant;                /* bits: 0 mist, 1 flood */
-    double  spindle_speed;          /* [rpm] negative: counter-clockwise */
-    bool    stopped;                /* MCC_check_stop, and the card has put out every pulse */
+    int64_t clock;            /* [25 ns] */
+    int64_t pulses[AXES];     /* [pulses] put out */
+    int64_t counts[AXES];     /* [counts] encoder counters, as of the latest instant */
+    int32_t errors[AXES];     /* [counts] error counters, likewise */
+    double volts[AXES];       /* [V] of the DAC */
+    double motor[AXES];       /* [counts] where the motors are */
+    double table[AXES];       /* [mm] the same behind gear and screw, as the axis goes */
+    double position[AXES];    /* [mm] the library's, of the points in the card */
+    double path_feed;         /* [mm/s] */
+    int32_t stock[AXES];      /* [commands] in the FIFOs */
+    int32_t underflows[AXES]; /* DDA times begun empty after motion */
+    int32_t frames_taken, frames_refused; /* by the card */
+    int32_t interrupts;                   /* pulls of the interrupt line */
+    int64_t irq_clock;                    /* [25 ns] of the latest */
+    int32_t services;                     /* refills of the FIFO behind an interrupt */
+    int64_t latency;                      /* [25 ns] of the latest */
+    int32_t missed;                       /* deadlines of the modules on the PC */
+    int32_t ipo_cycle;                    /* enum pc_cycle: 0 the document's rule is kept */
+    int32_t queue;                        /* interpolation points waiting */
+    int32_t starved;                      /* frames of standstill sent in the middle of a motion */
+    int32_t status;                       /* enum task_status */
+    int32_t error;                        /* run-time error, 0 none */
+    int32_t line, command;                /* that moves */
+    int32_t digital_out;                  /* digital outputs of the program, a bit each */
+    int32_t coolant;                      /* bits: 0 mist, 1 flood */
+    double spindle_speed;                 /* [rpm] negative: counter-clockwise */
+    bool stopped;                         /* MCC_check_stop, and the card has put out every pulse */
 };
 
 /* Three axes X Y Z of 10 mm and 10,000 pulses a turn, 3000 rpm, that follow their pulses; DDA time

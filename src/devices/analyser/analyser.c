@@ -48,7 +48,7 @@ static bool done(struct analyser *a, int i, int64_t instant, bool response, doub
     const bool answered = response == c->level && clock >= (double)c->edge;
     if (!answered && instant - c->edge <= a->config.timeout[i])
         return false;
-    *event = (struct analyser_event){i, c->edge, answered ? (int64_t)clock : -1};
+    *event = (struct analyser_event){ i, c->edge, answered ? (int64_t)clock : -1 };
     if (answered)
         measure(c, (int64_t)clock - c->edge);
     else

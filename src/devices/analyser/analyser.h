@@ -17,38 +17,38 @@
 enum { ANALYSER_CHANNELS = 32 };
 
 struct analyser_config {
-    uint32_t enabled;                       /* channels, a bit each */
-    int32_t  seed;
-    int64_t  period;                        /* [clocks] of the wires */
-    int64_t  least[ANALYSER_CHANNELS];      /* [clocks] pause, uniform: least */
-    int64_t  most[ANALYSER_CHANNELS];       /* and most */
-    int64_t  timeout[ANALYSER_CHANNELS];    /* [clocks] after which an edge counts as unanswered */
+    uint32_t enabled; /* channels, a bit each */
+    int32_t seed;
+    int64_t period;                     /* [clocks] of the wires */
+    int64_t least[ANALYSER_CHANNELS];   /* [clocks] pause, uniform: least */
+    int64_t most[ANALYSER_CHANNELS];    /* and most */
+    int64_t timeout[ANALYSER_CHANNELS]; /* [clocks] after which an edge counts as unanswered */
 };
 
 struct analyser_channel {
     uint64_t random;
-    int64_t  edge;          /* [clock] that is to come, or waits for its answer */
-    bool     waits;         /* it has been made known */
-    bool     level;
-    int64_t  shown;         /* [clock] of the latest edge made known */
-    int32_t  edges, responses, timeouts;
-    int32_t  strays;        /* changes of the response that answer no edge */
-    int64_t  latest, least, most;   /* [clocks] reactions */
-    int64_t  sum;                   /* [clocks] of all of them */
+    int64_t edge; /* [clock] that is to come, or waits for its answer */
+    bool waits;   /* it has been made known */
+    bool level;
+    int64_t shown; /* [clock] of the latest edge made known */
+    int32_t edges, responses, timeouts;
+    int32_t strays;              /* changes of the response that answer no edge */
+    int64_t latest, least, most; /* [clocks] reactions */
+    int64_t sum;                 /* [clocks] of all of them */
 };
 
 struct analyser {
-    struct analyser_config  config;
+    struct analyser_config config;
     struct analyser_channel channel[ANALYSER_CHANNELS];
-    uint32_t levels;        /* of all channels, as made known */
-    uint32_t response;      /* as read last */
+    uint32_t levels;   /* of all channels, as made known */
+    uint32_t response; /* as read last */
 };
 
 /* An edge that has been answered or not. */
 struct analyser_event {
     int32_t channel;
-    int64_t edge;           /* [clock] */
-    int64_t response;       /* [clock], -1 none */
+    int64_t edge;     /* [clock] */
+    int64_t response; /* [clock], -1 none */
 };
 
 /* All levels low; first edges one pause behind the first instant on which they can be known. Each

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#define RAD_PER_S_PER_RPM 0.10471975511965977 /* 2 pi / 60 */
+#define RAD_PER_S_PER_RPM  0.10471975511965977 /* 2 pi / 60 */
 #define RPM_PER_TURN_PER_S 60.0
 
 static double clamp(double value, double limit)
@@ -21,7 +21,7 @@ static void velocity_loop(const struct drive_config *c, struct drive_state *s, d
     if (c->velocity_time <= 0.0)
         s->integral = 0.0;
     else if (first)
-        s->integral = -p;   /* bumpless: the torque starts from the zero it had */
+        s->integral = -p; /* bumpless: the torque starts from the zero it had */
     else
         step = p * c->period / c->velocity_time;
     double wanted = p + s->integral + step;
@@ -43,8 +43,8 @@ static double speed_command(const struct drive_config *c, struct drive_state *s,
     out->following_error =
         (double)s->command / ppt - (double)(s->counts - s->zero) / c->encoder_counts;
     if (c->feed_forward_time > 0.0)
-        s->forward += (pulses / (ppt * c->period) - s->forward) *
-                      (c->period / (c->feed_forward_time + c->period));
+        s->forward += (pulses / (ppt * c->period) - s->forward)
+                      * (c->period / (c->feed_forward_time + c->period));
     double forward = c->feed_forward_time > 0.0 ? c->feed_forward * s->forward
                                                 : c->feed_forward * pulses / (ppt * c->period);
     double turns_per_s = c->position_gain * out->following_error + forward;
@@ -73,7 +73,7 @@ static void stand(const struct drive_config *c, struct drive_state *s, struct dr
         s->integral = clamp(s->integral, c->brake_torque);
         velocity_loop(&brake, s, -out->speed * RAD_PER_S_PER_RPM, false, out);
     }
-    out->saturated = false;     /* of the drive, which gives no torque */
+    out->saturated = false; /* of the drive, which gives no torque */
 }
 
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
@@ -91,7 +91,7 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
         s->alarm = DRIVE_NO_ALARM;
     s->reset = in->alarm_reset;
 
-    *out = (struct drive_output){0};
+    *out = (struct drive_output){ 0 };
     out->speed = (double)moved * RPM_PER_TURN_PER_S / (c->encoder_counts * c->period);
     bool run = in->enable && s->alarm == DRIVE_NO_ALARM;
     bool first = run && !s->on;

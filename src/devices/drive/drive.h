@@ -8,7 +8,10 @@
 
 enum drive_mode { DRIVE_VELOCITY = 0, DRIVE_POSITION = 1 };
 enum drive_alarm {
-    DRIVE_NO_ALARM = 0, DRIVE_FOLLOWING_ERROR = 1, DRIVE_OVERSPEED = 2, DRIVE_OVERLOAD = 3
+    DRIVE_NO_ALARM = 0,
+    DRIVE_FOLLOWING_ERROR = 1,
+    DRIVE_OVERSPEED = 2,
+    DRIVE_OVERLOAD = 3
 };
 enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
 
@@ -20,55 +23,55 @@ enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
 #define DRIVE_COUNTS_MAX 9007199254740992.0
 
 struct drive_config {
-    int32_t mode;               /* enum drive_mode */
-    double  period;             /* [s] sampling period */
-    double  speed_per_volt;     /* [rpm/V] velocity mode */
-    double  volt_offset;        /* [V] added to the command voltage */
-    int32_t encoder_lines;          /* [line periods/turn] */
-    int32_t encoder_counts;         /* [counts/turn] the drive resolves */
-    int32_t pulses_per_turn;    /* [pulses/turn] position mode */
-    double  velocity_gain;      /* [N.m.s/rad] */
-    double  velocity_time;      /* [s] integral time; 0: no integral */
-    double  position_gain;      /* [1/s] */
-    double  feed_forward;       /* share of the command speed, 0 .. 1 */
-    double  feed_forward_time;  /* [s] its filter; 0: none */
-    double  torque_limit;       /* [N.m] */
-    double  speed_limit;        /* [rpm] */
-    double  error_limit;        /* [turns] following error that raises the alarm */
-    double  overload_time;      /* [s] torque at its limit that raises the alarm; 0: none */
-    double  brake_torque;       /* [N.m] of the motor's holding brake; 0: none */
+    int32_t mode;             /* enum drive_mode */
+    double period;            /* [s] sampling period */
+    double speed_per_volt;    /* [rpm/V] velocity mode */
+    double volt_offset;       /* [V] added to the command voltage */
+    int32_t encoder_lines;    /* [line periods/turn] */
+    int32_t encoder_counts;   /* [counts/turn] the drive resolves */
+    int32_t pulses_per_turn;  /* [pulses/turn] position mode */
+    double velocity_gain;     /* [N.m.s/rad] */
+    double velocity_time;     /* [s] integral time; 0: no integral */
+    double position_gain;     /* [1/s] */
+    double feed_forward;      /* share of the command speed, 0 .. 1 */
+    double feed_forward_time; /* [s] its filter; 0: none */
+    double torque_limit;      /* [N.m] */
+    double speed_limit;       /* [rpm] */
+    double error_limit;       /* [turns] following error that raises the alarm */
+    double overload_time;     /* [s] torque at its limit that raises the alarm; 0: none */
+    double brake_torque;      /* [N.m] of the motor's holding brake; 0: none */
 };
 
 struct drive_input {
-    bool    enable;
-    bool    alarm_reset;        /* a rising edge clears the alarm */
-    double  volts;              /* [V] velocity command */
-    int32_t pulses;             /* [pulses] command, cumulative, may wrap */
-    double  phase;              /* [line periods] motor encoder */
+    bool enable;
+    bool alarm_reset; /* a rising edge clears the alarm */
+    double volts;     /* [V] velocity command */
+    int32_t pulses;   /* [pulses] command, cumulative, may wrap */
+    double phase;     /* [line periods] motor encoder */
 };
 
 struct drive_state {
-    bool    primed;             /* there was a first sample */
-    bool    on;                 /* the loops ran at the latest sample */
-    bool    reset;              /* alarm_reset at the latest sample */
-    int32_t alarm;              /* enum drive_alarm */
-    int64_t counts;             /* [counts] position at the latest sample */
-    int64_t zero;               /* [counts] position at which the loops were switched on */
-    int32_t pulses;             /* [pulses] input at the latest sample */
-    int64_t command;            /* [pulses] received since the loops were switched on */
-    double  integral;           /* [N.m] of the velocity loop */
-    double  forward;            /* [turns/s] command speed behind its filter */
-    int64_t load;               /* samples with the torque at its limit less those without, >= 0 */
+    bool primed;     /* there was a first sample */
+    bool on;         /* the loops ran at the latest sample */
+    bool reset;      /* alarm_reset at the latest sample */
+    int32_t alarm;   /* enum drive_alarm */
+    int64_t counts;  /* [counts] position at the latest sample */
+    int64_t zero;    /* [counts] position at which the loops were switched on */
+    int32_t pulses;  /* [pulses] input at the latest sample */
+    int64_t command; /* [pulses] received since the loops were switched on */
+    double integral; /* [N.m] of the velocity loop */
+    double forward;  /* [turns/s] command speed behind its filter */
+    int64_t load;    /* samples with the torque at its limit less those without, >= 0 */
 };
 
 struct drive_output {
-    double  torque;             /* [N.m] */
-    double  speed;              /* [rpm] measured */
-    double  speed_command;      /* [rpm] */
-    double  following_error;    /* [turns] position mode */
-    bool    ready;              /* enabled and without alarm */
-    bool    saturated;          /* torque at its limit */
-    int32_t alarm;              /* enum drive_alarm */
+    double torque;          /* [N.m] */
+    double speed;           /* [rpm] measured */
+    double speed_command;   /* [rpm] */
+    double following_error; /* [turns] position mode */
+    bool ready;             /* enabled and without alarm */
+    bool saturated;         /* torque at its limit */
+    int32_t alarm;          /* enum drive_alarm */
 };
 
 /* One sampling instant. A phase that is no number or too large changes nothing. */

@@ -26,12 +26,12 @@ enum adc_status adc_check_control(const struct adc_control *set)
         if (set->range[i] != ADC_BIPOLAR && set->range[i] != ADC_UNIPOLAR)
             return ADC_BAD_RANGE;
     for (int i = 0; i < ADC_CHANNELS; i++)
-        if (set->compare[i] != ADC_RISING && set->compare[i] != ADC_FALLING &&
-            set->compare[i] != ADC_BOTH)
+        if (set->compare[i] != ADC_RISING && set->compare[i] != ADC_FALLING
+            && set->compare[i] != ADC_BOTH)
             return ADC_BAD_COMPARE;
     for (int i = 0; i < ADC_CHANNELS; i++)
-        if (!(set->compare_volts[i] >= volts_min(set->range[i]) &&
-              set->compare_volts[i] <= ADC_VOLTS_MAX))
+        if (!(set->compare_volts[i] >= volts_min(set->range[i])
+              && set->compare_volts[i] <= ADC_VOLTS_MAX))
             return ADC_BAD_VOLTS;
     if (set->ignored_bits < 0 || set->ignored_bits > ADC_IGNORED_MAX)
         return ADC_BAD_IGNORED;
@@ -50,7 +50,7 @@ int32_t adc_code(const struct adc_config *c, enum adc_range range, double volts)
         return exact > low ? high : low;
     int32_t code = (int32_t)exact;
     double rest = exact - code;
-    return code + (rest >= 0.5) - (rest <= -0.5);   /* round(), but no library call */
+    return code + (rest >= 0.5) - (rest <= -0.5); /* round(), but no library call */
 }
 
 double adc_volts(const struct adc_config *c, enum adc_range range, int32_t code)
@@ -107,8 +107,8 @@ static bool crossed(const struct adc_config *c, const struct adc_control *set, i
     before &= keep;
     now &= keep;
     enum adc_compare way = set->compare[channel];
-    return (way != ADC_FALLING && before < preset && now >= preset) ||
-           (way != ADC_RISING && before > preset && now <= preset);
+    return (way != ADC_FALLING && before < preset && now >= preset)
+           || (way != ADC_RISING && before > preset && now <= preset);
 }
 
 static uint32_t store(const struct adc_config *c, const struct adc_control *set, struct adc *a)

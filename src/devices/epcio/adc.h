@@ -11,70 +11,70 @@ enum { ADC_CHANNELS = 8, ADC_IGNORED_MAX = 3 };
 #define ADC_VOLTS_MAX 10.0
 
 enum adc_range {
-    ADC_BIPOLAR,        /* -10 V .. +10 V, two's complement: -2^(bits-1) .. 2^(bits-1) - 1 */
-    ADC_UNIPOLAR,       /* 0 V .. +10 V: 0 .. 2^bits - 1 */
+    ADC_BIPOLAR,  /* -10 V .. +10 V, two's complement: -2^(bits-1) .. 2^(bits-1) - 1 */
+    ADC_UNIPOLAR, /* 0 V .. +10 V: 0 .. 2^bits - 1 */
 };
 enum adc_mode {
-    ADC_SINGLE,         /* a start converts one channel once */
-    ADC_FREE_RUN,       /* the enabled channels in ascending order, over and over */
+    ADC_SINGLE,   /* a start converts one channel once */
+    ADC_FREE_RUN, /* the enabled channels in ascending order, over and over */
 };
 enum adc_compare {
-    ADC_RISING,         /* from below to at or above the preset */
-    ADC_FALLING,        /* from above to at or below the preset */
+    ADC_RISING,  /* from below to at or above the preset */
+    ADC_FALLING, /* from above to at or below the preset */
     ADC_BOTH,
 };
 
 /* Bits of adc_finish(), in the order of the interrupt latch. */
 enum adc_event {
-    ADC_EVENT_COMPARE = 0,  /* 8: compare condition of channel 0 .. 7 */
-    ADC_EVENT_DONE = 8,     /* a conversion is done */
-    ADC_EVENT_TAG = 9,      /* the tagged channels have all been converted */
+    ADC_EVENT_COMPARE = 0, /* 8: compare condition of channel 0 .. 7 */
+    ADC_EVENT_DONE = 8,    /* a conversion is done */
+    ADC_EVENT_TAG = 9,     /* the tagged channels have all been converted */
 };
 
 /* Fixed at power on. */
 struct adc_config {
-    int32_t bits;                               /* 12, 14 or 16 */
-    int32_t time;                               /* [clocks] of one conversion, >= 1 */
+    int32_t bits; /* 12, 14 or 16 */
+    int32_t time; /* [clocks] of one conversion, >= 1 */
 };
 
 /* Registers of the host. They may change at any clock; all are looked at when a conversion ends,
  * `mode`, `channel` and `enabled` at a start too. */
 struct adc_control {
-    enum adc_mode    mode;
-    int32_t          channel;                       /* 0 .. 7, single mode */
-    uint32_t         enabled;                       /* channels of free run */
-    enum adc_range   range[ADC_CHANNELS];
-    uint32_t         compare_on;                    /* channels with comparison */
+    enum adc_mode mode;
+    int32_t channel;  /* 0 .. 7, single mode */
+    uint32_t enabled; /* channels of free run */
+    enum adc_range range[ADC_CHANNELS];
+    uint32_t compare_on; /* channels with comparison */
     enum adc_compare compare[ADC_CHANNELS];
-    double           compare_volts[ADC_CHANNELS];   /* [V] preset, within the range */
-    int32_t          ignored_bits;                  /* 0 .. 3 low bits left out of comparisons */
-    uint32_t         tagged;                        /* channels of the group */
+    double compare_volts[ADC_CHANNELS]; /* [V] preset, within the range */
+    int32_t ignored_bits;               /* 0 .. 3 low bits left out of comparisons */
+    uint32_t tagged;                    /* channels of the group */
 };
 
 /* All zero is the state after power on. */
 struct adc {
-    int32_t        code[ADC_CHANNELS];      /* latest conversion of each channel */
-    enum adc_range range[ADC_CHANNELS];     /* that it was made in */
-    uint32_t       seen;                    /* channels with a predecessor to compare */
-    uint32_t       grouped;                 /* tagged channels converted since the group fired */
-    int32_t        channel;                 /* of the conversion under way, or of the latest */
-    double         held;                    /* [V] sampled when it began */
-    int64_t        due;                     /* [clock] of its end, if busy */
-    int32_t        conversions;             /* ended since power on; 0 after 2^31 - 1 */
-    bool           busy;                    /* a conversion is under way */
+    int32_t code[ADC_CHANNELS];         /* latest conversion of each channel */
+    enum adc_range range[ADC_CHANNELS]; /* that it was made in */
+    uint32_t seen;                      /* channels with a predecessor to compare */
+    uint32_t grouped;                   /* tagged channels converted since the group fired */
+    int32_t channel;                    /* of the conversion under way, or of the latest */
+    double held;                        /* [V] sampled when it began */
+    int64_t due;                        /* [clock] of its end, if busy */
+    int32_t conversions;                /* ended since power on; 0 after 2^31 - 1 */
+    bool busy;                          /* a conversion is under way */
 };
 
 enum adc_status {
     ADC_OK,
-    ADC_BAD_BITS,       /* not 12, 14 or 16 */
-    ADC_BAD_TIME,       /* below 1 clock */
-    ADC_BAD_MODE,       /* no adc_mode */
-    ADC_BAD_CHANNEL,    /* not 0 .. 7 */
-    ADC_BAD_MASK,       /* enabled, compare_on or tagged has a bit above 7 */
-    ADC_BAD_RANGE,      /* no adc_range */
-    ADC_BAD_COMPARE,    /* no adc_compare */
-    ADC_BAD_VOLTS,      /* a preset is no number or outside its channel's range, ends included */
-    ADC_BAD_IGNORED,    /* not 0 .. 3 */
+    ADC_BAD_BITS,    /* not 12, 14 or 16 */
+    ADC_BAD_TIME,    /* below 1 clock */
+    ADC_BAD_MODE,    /* no adc_mode */
+    ADC_BAD_CHANNEL, /* not 0 .. 7 */
+    ADC_BAD_MASK,    /* enabled, compare_on or tagged has a bit above 7 */
+    ADC_BAD_RANGE,   /* no adc_range */
+    ADC_BAD_COMPARE, /* no adc_compare */
+    ADC_BAD_VOLTS,   /* a preset is no number or outside its channel's range, ends included */
+    ADC_BAD_IGNORED, /* not 0 .. 3 */
 };
 
 /* Say what is wrong, the first in the order of adc_status. Every member must be right, also those

@@ -15,31 +15,31 @@ enum { ANALOG_DACS = 8 };
 
 /* Trim of a channel: volts = code volts * gain + offset, within +-10 V. */
 struct analog_trim {
-    double gain;                /* 0.5 .. 1.5 */
-    double offset;              /* [V] -1 .. 1 */
+    double gain;   /* 0.5 .. 1.5 */
+    double offset; /* [V] -1 .. 1 */
 };
 
 /* Sources that can trigger an output, as bits of `source`. */
 enum {
-    ANALOG_BY_ENC = 0,          /* 8: compare of encoder 1 to 8 */
-    ANALOG_BY_ADC = 8,          /* 8: compare of ADC channel 1 to 8 */
-    ANALOG_BY_LDI = 16,         /* 4: local inputs LDI0-3 */
-    ANALOG_BY_DFI = 20,         /* 4: dual-function inputs DFI0-3 */
-    ANALOG_BY_R0DI = 24,        /* 4: remote inputs DI0-3 of the first slave of set 0 */
-    ANALOG_BY_R1DI = 28,        /* 4: of set 1 */
+    ANALOG_BY_ENC = 0,   /* 8: compare of encoder 1 to 8 */
+    ANALOG_BY_ADC = 8,   /* 8: compare of ADC channel 1 to 8 */
+    ANALOG_BY_LDI = 16,  /* 4: local inputs LDI0-3 */
+    ANALOG_BY_DFI = 20,  /* 4: dual-function inputs DFI0-3 */
+    ANALOG_BY_R0DI = 24, /* 4: remote inputs DI0-3 of the first slave of set 0 */
+    ANALOG_BY_R1DI = 28, /* 4: of set 1 */
 };
 
 struct analog_trigger {
-    uint32_t source;            /* 0: no trigger */
-    double   volts;             /* [V] put out from the trigger on */
+    uint32_t source; /* 0: no trigger */
+    double volts;    /* [V] put out from the trigger on */
 };
 
 struct analog {
     struct analog_trigger trigger[ANALOG_DACS];
-    uint32_t armed;             /* channels that wait for their trigger */
-    uint32_t fired;             /* channels that put out their trigger voltage */
-    int32_t  next[ANALOG_DACS]; /* codes loaded at the latest instant */
-    int32_t  code[ANALOG_DACS]; /* codes at the outputs */
+    uint32_t armed;            /* channels that wait for their trigger */
+    uint32_t fired;            /* channels that put out their trigger voltage */
+    int32_t next[ANALOG_DACS]; /* codes loaded at the latest instant */
+    int32_t code[ANALOG_DACS]; /* codes at the outputs */
 };
 
 /* The trim is within its range. */

@@ -9,20 +9,20 @@
 #include "link.h"
 
 enum {
-    BUS_FRAMES = LINK_FRAMES,   /* in one transaction */
-    BUS_DEPTH = 8,      /* transactions on their way; the host sends one per bus period and at most
+    BUS_FRAMES = LINK_FRAMES, /* in one transaction */
+    BUS_DEPTH = 8, /* transactions on their way; the host sends one per bus period and at most
                            two periods ahead, so two would do */
 };
 
 struct bus_write {
-    int32_t seq;                            /* number the host gave it */
-    int64_t clock;                          /* [clock] of its arrival */
-    int32_t count;                          /* frames used */
-    int32_t frame[BUS_FRAMES][EPCIO_AXES];  /* [pulses] per DDA time */
+    int32_t seq;                           /* number the host gave it */
+    int64_t clock;                         /* [clock] of its arrival */
+    int32_t count;                         /* frames used */
+    int32_t frame[BUS_FRAMES][EPCIO_AXES]; /* [pulses] per DDA time */
 };
 
 struct bus {
-    struct bus_write slot[BUS_DEPTH];       /* ring */
+    struct bus_write slot[BUS_DEPTH]; /* ring */
     int32_t head;
     int32_t used;
 };

@@ -12,9 +12,9 @@ enum {
 
 /* One DDA time is 2^length * divider clocks; after reset 2^12 * 10 clocks = 1.024 ms. */
 enum {
-    EPCIO_LENGTH_MIN = 10,          /* [bit] */
-    EPCIO_LENGTH_MAX = 15,          /* [bit] */
-    EPCIO_DIVIDER_MAX = 65535,      /* 16-bit register */
+    EPCIO_LENGTH_MIN = 10,     /* [bit] */
+    EPCIO_LENGTH_MAX = 15,     /* [bit] */
+    EPCIO_DIVIDER_MAX = 65535, /* 16-bit register */
     EPCIO_RESET_LENGTH = 12,
     EPCIO_RESET_DIVIDER = 10,
 };

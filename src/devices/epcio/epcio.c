@@ -3,30 +3,31 @@
 #include <math.h>
 #include <stdlib.h>
 
-_Static_assert((int)ADC_EVENT_COMPARE == (int)IRQ_ADC_COMP &&
-               (int)ADC_EVENT_DONE == (int)IRQ_ADC_CONV && (int)ADC_EVENT_TAG == (int)IRQ_ADC_TAG,
+_Static_assert((int)ADC_EVENT_COMPARE == (int)IRQ_ADC_COMP
+                   && (int)ADC_EVENT_DONE == (int)IRQ_ADC_CONV
+                   && (int)ADC_EVENT_TAG == (int)IRQ_ADC_TAG,
                "events of the ADC are the bits of its page");
-_Static_assert((int)LOCAL_IO_EVENT_LDI == (int)IRQ_LIO_LDI &&
-               (int)LOCAL_IO_EVENT_DFI == (int)IRQ_LIO_DFI,
+_Static_assert((int)LOCAL_IO_EVENT_LDI == (int)IRQ_LIO_LDI
+                   && (int)LOCAL_IO_EVENT_DFI == (int)IRQ_LIO_DFI,
                "events of local I/O are the bits of its page");
-_Static_assert((int)REMOTE_IO_EVENT_DI == (int)IRQ_RIO_DI &&
-               (int)REMOTE_IO_EVENT_FAIL == (int)IRQ_RIO_FAIL &&
-               (int)REMOTE_IO_EVENT_NOT_READY == (int)IRQ_RIO_NOT_READY,
+_Static_assert((int)REMOTE_IO_EVENT_DI == (int)IRQ_RIO_DI
+                   && (int)REMOTE_IO_EVENT_FAIL == (int)IRQ_RIO_FAIL
+                   && (int)REMOTE_IO_EVENT_NOT_READY == (int)IRQ_RIO_NOT_READY,
                "events of remote I/O are the bits of its page");
 
 struct epcio_config epcio_default_config(void)
 {
     struct epcio_config c = {
-        .loop = {.limit = PLOOP_LIMIT_MAX, .scale = 6},
-        .adc = {.bits = 14, .time = 400},
-        .remote = {.time = 5760},
+        .loop = { .limit = PLOOP_LIMIT_MAX, .scale = 6 },
+        .adc = { .bits = 14, .time = 400 },
+        .remote = { .time = 5760 },
     };
     for (int i = 0; i < EPCIO_AXES; i++) {
         c.active[i] = true;
         c.pulse[i].width = 40;
     }
     for (int i = 0; i < EPCIO_ENCODERS; i++)
-        c.encoder[i] = (struct encoder_config){.rate = 4, .index_lines = 2500};
+        c.encoder[i] = (struct encoder_config){ .rate = 4, .index_lines = 2500 };
     for (int i = 0; i < ANALOG_DACS; i++)
         c.trim[i].gain = 1.0;
     return c;
@@ -60,7 +61,7 @@ enum epcio_status epcio_reset(struct epcio *card, const struct epcio_config *con
     enum epcio_status status = check(config);
     if (status != EPCIO_OK)
         return status;
-    *card = (struct epcio){.config = *config, .run = true, .local_control.gate = true};
+    *card = (struct epcio){ .config = *config, .run = true, .local_control.gate = true };
     dda_reset(&card->dda, EPCIO_AXES, 1 << EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER);
     for (int i = 0; i < EPCIO_AXES; i++) {
         fifo_reset(&card->fifo[i], EPCIO_FIFO_DEPTH);
@@ -74,8 +75,8 @@ enum epcio_status epcio_reset(struct epcio *card, const struct epcio_config *con
 
 bool epcio_off(const struct epcio *card)
 {
-    return card->watchdog.expired || !card->local_control.gate ||
-           local_io_stopped(&card->local_control, &card->local);
+    return card->watchdog.expired || !card->local_control.gate
+           || local_io_stopped(&card->local_control, &card->local);
 }
 
 static int64_t earlier(int64_t a, int64_t b)
@@ -101,7 +102,7 @@ void epcio_watch_stock(struct epcio *card, int axis)
 
 static void boundary(struct epcio *card)
 {
-    int32_t next[EPCIO_AXES] = {0};
+    int32_t next[EPCIO_AXES] = { 0 };
     for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->config.active[i])
             continue;
@@ -118,7 +119,7 @@ static void boundary(struct epcio *card)
 static void arrive(struct epcio *card)
 {
     struct bus_write w = bus_take(&card->bus);
-    bool refused = false;   /* what follows a refused frame is refused: nothing overtakes */
+    bool refused = false; /* what follows a refused frame is refused: nothing overtakes */
     for (int k = 0; k < w.count; k++) {
         refused = refused || epcio_write_frame(card, w.frame[k]) != EPCIO_OK;
         if (refused)
@@ -147,8 +148,8 @@ static void note_pair(struct epcio *card, int source, uint32_t bits)
 
 static void convert_voltage(struct epcio *card)
 {
-    uint32_t events = adc_finish(&card->config.adc, &card->adc_control, &card->adc,
-                                 card->lines.volts);
+    uint32_t events =
+        adc_finish(&card->config.adc, &card->adc_control, &card->adc, card->lines.volts);
     irq_raise(&card->irq, IRQ_ADC, events, card->clock);
     note_pair(card, LATCH_ADC, events);
     analog_fire(&card->analog, (events & 0xFF) << ANALOG_BY_ADC);
@@ -205,8 +206,7 @@ void epcio_encoder_events(struct epcio *card, int encoder, int events)
     if (events & ENCODER_INDEX)
         irq_raise(&card->irq, page, (uint32_t)1 << (IRQ_ENC_INDEX + encoder % 3), e->index_first);
     if (events & ENCODER_COMPARE) {
-        irq_raise(&card->irq, page, (uint32_t)1 << (IRQ_ENC_COMP + encoder % 3),
-                  e->compare_clock);
+        irq_raise(&card->irq, page, (uint32_t)1 << (IRQ_ENC_COMP + encoder % 3), e->compare_clock);
         if (encoder < 8)
             analog_fire(&card->analog, (uint32_t)1 << (ANALOG_BY_ENC + encoder));
     }
@@ -262,8 +262,8 @@ static void sample_local(struct epcio *card, const struct local_io_lines *lines)
     if (events != 0) {
         irq_raise(&card->irq, IRQ_LIO, events, card->clock);
         note_pair(card, LATCH_LDI, events >> LOCAL_IO_EVENT_LDI);
-        analog_fire(&card->analog, (events & 0xF) << ANALOG_BY_LDI |
-                                   (events >> LOCAL_IO_EVENT_DFI & 0xF) << ANALOG_BY_DFI);
+        analog_fire(&card->analog, (events & 0xF) << ANALOG_BY_LDI
+                                       | (events >> LOCAL_IO_EVENT_DFI & 0xF) << ANALOG_BY_DFI);
     }
     if (local_io_stopped(&card->local_control, &card->local))
         epcio_clear(card);
@@ -312,8 +312,8 @@ void epcio_control(struct epcio *card)
         struct ploop *p = &card->loop[i];
         if (ploop_tick(&c->loop, p, h->loop_on[i], pulses[i], card->encoder[i].count))
             irq_raise(&card->irq, IRQ_PCL, (uint32_t)1 << (IRQ_PCL_OV + i), card->clock);
-        card->analog.next[i] = h->dac_loop[i] ? ploop_code(&c->loop, p->error, h->gain[i])
-                                              : analog_code(h->volts[i]);
+        card->analog.next[i] =
+            h->dac_loop[i] ? ploop_code(&c->loop, p->error, h->gain[i]) : analog_code(h->volts[i]);
     }
     for (int i = EPCIO_AXES; i < ANALOG_DACS; i++)
         card->analog.next[i] = analog_code(h->volts[i]);

@@ -37,78 +37,78 @@
 
 enum {
     EPCIO_ENCODERS = 9,
-    EPCIO_LOOPS = 7,            /* error counters: one of each axis, and one for a command that
-                                 * comes from the host */
-    EPCIO_SETS = 2,             /* of remote I/O slaves */
+    EPCIO_LOOPS = 7, /* error counters: one of each axis, and one for a command that
+                      * comes from the host */
+    EPCIO_SETS = 2,  /* of remote I/O slaves */
     EPCIO_FIFO_DEPTH = 63,
-    EPCIO_WIDTH_MAX = 65535,    /* [clocks] of a pulse: 16-bit register */
+    EPCIO_WIDTH_MAX = 65535, /* [clocks] of a pulse: 16-bit register */
 };
 static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis");
 
 /* What is wired and set before power on. */
 struct epcio_config {
-    bool active[EPCIO_AXES];                        /* an unused axis costs nothing */
-    struct pulse_config   pulse[EPCIO_AXES];
+    bool active[EPCIO_AXES]; /* an unused axis costs nothing */
+    struct pulse_config pulse[EPCIO_AXES];
     struct encoder_config encoder[EPCIO_ENCODERS];
-    struct ploop_config   loop;
-    struct analog_trim    trim[ANALOG_DACS];
-    struct adc_config     adc;
+    struct ploop_config loop;
+    struct analog_trim trim[ANALOG_DACS];
+    struct adc_config adc;
     struct remote_io_config remote;
 };
 
 /* Level registers of the host: read at each epcio_control(). */
 struct epcio_host {
-    int32_t gain[EPCIO_AXES];       /* P gain, 0 .. 65535 */
-    bool    loop_on[EPCIO_LOOPS];
-    int32_t command;                /* [pulses] of the seventh error counter; may wrap */
-    bool    dac_loop[EPCIO_AXES];   /* DAC source: position loop, else software */
-    double  volts[ANALOG_DACS];     /* [V] software voltage; beyond +-10 V it saturates */
-    bool    index_low[EPCIO_AXES];  /* index ON at the low level, behind the wiring's inversion */
+    int32_t gain[EPCIO_AXES]; /* P gain, 0 .. 65535 */
+    bool loop_on[EPCIO_LOOPS];
+    int32_t command;            /* [pulses] of the seventh error counter; may wrap */
+    bool dac_loop[EPCIO_AXES];  /* DAC source: position loop, else software */
+    double volts[ANALOG_DACS];  /* [V] software voltage; beyond +-10 V it saturates */
+    bool index_low[EPCIO_AXES]; /* index ON at the low level, behind the wiring's inversion */
 };
 
 /* The pins: what the machine shows the card at an instant. */
 struct epcio_lines {
-    double phase[EPCIO_ENCODERS];   /* [line periods] */
-    double volts[ADC_CHANNELS];     /* [V] held until the next instant */
-    struct local_io_lines  local;
-    struct remote_io_lines remote[EPCIO_SETS];  /* held likewise */
+    double phase[EPCIO_ENCODERS]; /* [line periods] */
+    double volts[ADC_CHANNELS];   /* [V] held until the next instant */
+    struct local_io_lines local;
+    struct remote_io_lines remote[EPCIO_SETS]; /* held likewise */
 };
 
 struct epcio {
     struct epcio_config config;
-    struct epcio_host   host;
-    struct epcio_lines  lines;                      /* as sampled last */
-    int64_t             clock;                      /* [25 ns] everything up to here has happened */
-    struct dda          dda;
-    struct pulse        pulse[EPCIO_AXES];
-    struct fifo         fifo[EPCIO_AXES];
-    int32_t             entry[EPCIO_AXES][EPCIO_FIFO_DEPTH];    /* [pulses] commands in them */
-    int32_t             minimum;                    /* minimum stock */
-    int32_t             underflows[EPCIO_AXES];     /* DDA times begun empty after motion */
-    int32_t             overflows;                  /* frames refused because a FIFO was full */
-    struct bus          bus;
-    int32_t             cmd_ack;                    /* latest transaction that arrived */
-    int32_t             frames_taken;
-    int32_t             frames_refused;
+    struct epcio_host host;
+    struct epcio_lines lines; /* as sampled last */
+    int64_t clock;            /* [25 ns] everything up to here has happened */
+    struct dda dda;
+    struct pulse pulse[EPCIO_AXES];
+    struct fifo fifo[EPCIO_AXES];
+    int32_t entry[EPCIO_AXES][EPCIO_FIFO_DEPTH]; /* [pulses] commands in them */
+    int32_t minimum;                             /* minimum stock */
+    int32_t underflows[EPCIO_AXES];              /* DDA times begun empty after motion */
+    int32_t overflows;                           /* frames refused because a FIFO was full */
+    struct bus bus;
+    int32_t cmd_ack; /* latest transaction that arrived */
+    int32_t frames_taken;
+    int32_t frames_refused;
     struct epcio_refusal refusal;
-    struct encoder      encoder[EPCIO_ENCODERS];
-    struct latch        latch[EPCIO_ENCODERS];
-    struct latch_moments moments;                   /* triggers since the latest instant */
-    struct ploop        loop[EPCIO_LOOPS];
-    int64_t             command;                    /* [pulses] of the seventh, unwrapped */
-    struct analog       analog;
-    struct adc_control  adc_control;
-    struct adc          adc;
+    struct encoder encoder[EPCIO_ENCODERS];
+    struct latch latch[EPCIO_ENCODERS];
+    struct latch_moments moments; /* triggers since the latest instant */
+    struct ploop loop[EPCIO_LOOPS];
+    int64_t command; /* [pulses] of the seventh, unwrapped */
+    struct analog analog;
+    struct adc_control adc_control;
+    struct adc adc;
     struct local_io_control local_control;
-    struct local_io     local;
+    struct local_io local;
     struct remote_io_control remote_control[EPCIO_SETS];
-    struct remote_io    remote[EPCIO_SETS];
-    bool                remote_used;                /* a set has been on since power on */
-    struct timer        timer;
-    struct watchdog     watchdog;
-    int64_t             slow_due;                   /* [clock] next event of the four above */
-    bool                run;                        /* the host lets the DDA run */
-    struct irq          irq;
+    struct remote_io remote[EPCIO_SETS];
+    bool remote_used; /* a set has been on since power on */
+    struct timer timer;
+    struct watchdog watchdog;
+    int64_t slow_due; /* [clock] next event of the four above */
+    bool run;         /* the host lets the DDA run */
+    struct irq irq;
 };
 
 /* Six active axes, A/B encoders x4 with 2500 lines, pulse and direction of 1 us, P loop scale 6,

@@ -4,7 +4,7 @@
 static enum epcio_status refuse(struct epcio *card, enum epcio_status status, int axis,
                                 int32_t command)
 {
-    card->refusal = (struct epcio_refusal){status, axis, command};
+    card->refusal = (struct epcio_refusal){ status, axis, command };
     return status;
 }
 

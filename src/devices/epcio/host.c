@@ -4,8 +4,7 @@
 
 #include "registers.h"
 
-static void take_interrupts(struct mailbox *taken, struct epcio *card,
-                            const struct link_host *link)
+static void take_interrupts(struct mailbox *taken, struct epcio *card, const struct link_host *link)
 {
     const uint32_t *mask = mailbox_pages(link->irq_mask);
 
@@ -81,15 +80,16 @@ void host_show(const struct epcio *card, struct link_card *link)
     const struct local_io_lines *local = &card->local.seen;
     int64_t pulses[EPCIO_AXES];
 
-    *link = (struct link_card){
-        .irq_seq = link_wrap(card->irq.seq), .irq_clock = (double)card->irq.clock,
-        .cmd_ack = card->cmd_ack, .frames_refused = card->frames_refused,
-        .enc_count_7 = link_wrap(card->encoder[6].count),
-        .enc_count_8 = link_wrap(card->encoder[7].count),
-        .enc_count_9 = link_wrap(card->encoder[8].count), .home = (int32_t)local->home,
-        .over_travel = (int32_t)(local->up | local->down << 8),
-        .stopped = local_io_stopped(&card->local_control, &card->local)
-    };
+    *link = (struct link_card){ .irq_seq = link_wrap(card->irq.seq),
+                                .irq_clock = (double)card->irq.clock,
+                                .cmd_ack = card->cmd_ack,
+                                .frames_refused = card->frames_refused,
+                                .enc_count_7 = link_wrap(card->encoder[6].count),
+                                .enc_count_8 = link_wrap(card->encoder[7].count),
+                                .enc_count_9 = link_wrap(card->encoder[8].count),
+                                .home = (int32_t)local->home,
+                                .over_travel = (int32_t)(local->up | local->down << 8),
+                                .stopped = local_io_stopped(&card->local_control, &card->local) };
     memcpy(link->irq_flags, card->irq.flags, sizeof link->irq_flags);
     epcio_pulses(card, pulses);
     for (int i = 0; i < EPCIO_AXES; i++)

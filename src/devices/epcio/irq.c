@@ -24,7 +24,7 @@ void irq_raise(struct irq *q, enum irq_page page, uint32_t bits, int64_t clock)
     if (!q->line)
         drive_line(q, clock);
     else if (clock < q->clock)
-        q->clock = clock;   /* told later, but it was first */
+        q->clock = clock; /* told later, but it was first */
 }
 
 void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock)
@@ -35,8 +35,8 @@ void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock)
     drive_line(q, clock);
 }
 
-void irq_acknowledge(struct irq *q, const uint32_t flags[IRQ_PAGES],
-                     const uint32_t mask[IRQ_PAGES], int64_t clock)
+void irq_acknowledge(struct irq *q, const uint32_t flags[IRQ_PAGES], const uint32_t mask[IRQ_PAGES],
+                     int64_t clock)
 {
     for (int i = 0; i < IRQ_PAGES; i++) {
         q->flags[i] = (q->flags[i] & ~flags[i]) | q->again[i];

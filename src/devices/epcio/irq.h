@@ -8,14 +8,14 @@
 /* Pages of the interrupt source register, in the order the card's driver reads them. */
 enum irq_page {
     IRQ_DDA,
-    IRQ_ENC0,           /* encoders 1 to 3 */
-    IRQ_ENC3,           /* encoders 4 to 6 */
-    IRQ_ENC6,           /* encoders 7 to 9 */
-    IRQ_RIO0,           /* remote I/O, first set of slaves */
-    IRQ_RIO1,           /* second set */
+    IRQ_ENC0, /* encoders 1 to 3 */
+    IRQ_ENC3, /* encoders 4 to 6 */
+    IRQ_ENC6, /* encoders 7 to 9 */
+    IRQ_RIO0, /* remote I/O, first set of slaves */
+    IRQ_RIO1, /* second set */
     IRQ_ADC,
-    IRQ_LIO,            /* local I/O and timer */
-    IRQ_PCL,            /* position loops */
+    IRQ_LIO, /* local I/O and timer */
+    IRQ_PCL, /* position loops */
     IRQ_PAGES,
 };
 
@@ -34,16 +34,16 @@ enum {
     IRQ_LIO_LDI = 0,        /* 8: local inputs */
     IRQ_LIO_DFI = 8,        /* 7: dual-function inputs */
     IRQ_LIO_TIMER = 15,
-    IRQ_PCL_OV = 0,         /* 7: error counter overflow */
+    IRQ_PCL_OV = 0, /* 7: error counter overflow */
 };
 
 struct irq {
-    uint32_t flags[IRQ_PAGES];  /* sources that fired and were not acknowledged */
-    uint32_t again[IRQ_PAGES];  /* of these, the ones that fired once more since */
-    uint32_t mask[IRQ_PAGES];   /* sources that pull the line */
-    bool     line;              /* flags & mask is not 0 in some page */
-    uint32_t seq;               /* rising edges of the line */
-    int64_t  clock;             /* [clock] of the latest rising edge */
+    uint32_t flags[IRQ_PAGES]; /* sources that fired and were not acknowledged */
+    uint32_t again[IRQ_PAGES]; /* of these, the ones that fired once more since */
+    uint32_t mask[IRQ_PAGES];  /* sources that pull the line */
+    bool line;                 /* flags & mask is not 0 in some page */
+    uint32_t seq;              /* rising edges of the line */
+    int64_t clock;             /* [clock] of the latest rising edge */
 };
 
 /* Sources of a page fire, each of the bits. A second firing before the acknowledge is kept beside
@@ -57,7 +57,7 @@ void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock);
 /* The host acknowledges what it saw, and sets the mask in the same write. A flag whose source fired
  * again meanwhile stays up, so no firing that the host has not seen is lost. The line is released;
  * if a flag still pulls it, it rises anew at this clock. */
-void irq_acknowledge(struct irq *q, const uint32_t flags[IRQ_PAGES],
-                     const uint32_t mask[IRQ_PAGES], int64_t clock);
+void irq_acknowledge(struct irq *q, const uint32_t flags[IRQ_PAGES], const uint32_t mask[IRQ_PAGES],
+                     int64_t clock);
 
 #endif

@@ -7,27 +7,27 @@
 
 /* Bits of the source mask. */
 enum {
-    LATCH_INDEX = 0,    /* 9: index of encoder 1 to 9 */
-    LATCH_LDI = 9,      /* 2: local inputs LDI0, LDI1, at the edges chosen for them */
-    LATCH_RDI = 11,     /* 2: remote inputs DI0, DI1 of the first slave, at the edges chosen */
-    LATCH_ADC = 13,     /* 2: compare events of ADC channels 1, 2 */
+    LATCH_INDEX = 0, /* 9: index of encoder 1 to 9 */
+    LATCH_LDI = 9,   /* 2: local inputs LDI0, LDI1, at the edges chosen for them */
+    LATCH_RDI = 11,  /* 2: remote inputs DI0, DI1 of the first slave, at the edges chosen */
+    LATCH_ADC = 13,  /* 2: compare events of ADC channels 1, 2 */
     LATCH_SOURCES = 15,
 };
 
 /* Clocks of the triggers since the latest sample: the first and the latest of each source. */
 struct latch_moments {
-    uint32_t came;                      /* sources that fired */
-    int64_t  first[LATCH_SOURCES];
-    int64_t  last[LATCH_SOURCES];
+    uint32_t came; /* sources that fired */
+    int64_t first[LATCH_SOURCES];
+    int64_t last[LATCH_SOURCES];
 };
 
 struct latch {
-    uint32_t source;    /* sources that latch; 0 switches the latch off */
-    bool     keep_last; /* every trigger latches; else only the first after arming */
-    bool     armed;     /* waits for its first trigger, or keeps the last */
-    int32_t  seen;      /* sampling periods in which it has latched */
-    int64_t  value;     /* [counts] of the counter at `clock` */
-    int64_t  clock;
+    uint32_t source; /* sources that latch; 0 switches the latch off */
+    bool keep_last;  /* every trigger latches; else only the first after arming */
+    bool armed;      /* waits for its first trigger, or keeps the last */
+    int32_t seen;    /* sampling periods in which it has latched */
+    int64_t value;   /* [counts] of the counter at `clock` */
+    int64_t clock;
 };
 
 /* A source fires. */

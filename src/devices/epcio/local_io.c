@@ -78,7 +78,7 @@ bool local_io_stopped(const struct local_io_control *set, const struct local_io 
 struct local_io_outputs local_io_outputs(const struct local_io_control *set,
                                          const struct local_io *io, bool off)
 {
-    struct local_io_outputs out = {0};
+    struct local_io_outputs out = { 0 };
     if (off || !set->gate || !io->seen.power || local_io_stopped(set, io))
         return out;
     out.ldo = set->ldo;

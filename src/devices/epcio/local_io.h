@@ -7,10 +7,10 @@
 
 enum {
     LOCAL_IO_AXES = 6,
-    LOCAL_IO_LDIS = 8,      /* local inputs LDI0 .. LDI7 */
-    LOCAL_IO_DFIS = 7,      /* dual-function inputs DFI0 .. DFI6 */
-    LOCAL_IO_LDOS = 8,      /* local outputs LDO0 .. LDO7 */
-    LOCAL_IO_DFI_STOP = 6,  /* the dual-function input of the emergency stop */
+    LOCAL_IO_LDIS = 8,     /* local inputs LDI0 .. LDI7 */
+    LOCAL_IO_DFIS = 7,     /* dual-function inputs DFI0 .. DFI6 */
+    LOCAL_IO_LDOS = 8,     /* local outputs LDO0 .. LDO7 */
+    LOCAL_IO_DFI_STOP = 6, /* the dual-function input of the emergency stop */
 };
 
 /* Bits of the events and of `inputs`, in the order of the interrupt latch. */
@@ -28,13 +28,13 @@ enum local_io_edge {
 
 /* Levels at the terminals; 1 is active, whatever the wiring. Bits beyond the last are ignored. */
 struct local_io_lines {
-    uint32_t ldi;           /* bits 0 .. 7 */
-    uint32_t dfi;           /* bits 0 .. 6 */
-    uint32_t home;          /* bits 0 .. 5: home switch of axis 1 .. 6 */
-    uint32_t up;            /* bits 0 .. 5: over-travel switch at the positive end */
-    uint32_t down;          /* bits 0 .. 5: over-travel switch at the negative end */
-    bool     stop;          /* emergency stop is pressed */
-    bool     power;         /* 24 V field power is present */
+    uint32_t ldi;  /* bits 0 .. 7 */
+    uint32_t dfi;  /* bits 0 .. 6 */
+    uint32_t home; /* bits 0 .. 5: home switch of axis 1 .. 6 */
+    uint32_t up;   /* bits 0 .. 5: over-travel switch at the positive end */
+    uint32_t down; /* bits 0 .. 5: over-travel switch at the negative end */
+    bool stop;     /* emergency stop is pressed */
+    bool power;    /* 24 V field power is present */
 };
 
 /* Registers of the host. They may change at any clock; edges and `dedicated` are looked at when a
@@ -42,26 +42,26 @@ struct local_io_lines {
 struct local_io_control {
     enum local_io_edge ldi_edge[LOCAL_IO_LDIS];
     enum local_io_edge dfi_edge[LOCAL_IO_DFIS];
-    uint32_t dedicated;     /* bits 0 .. 6: DFI i is its dedicated signal, else its terminal */
-    uint32_t ldo;           /* bits 0 .. 7 */
-    uint32_t servo_on;      /* bits 0 .. 5 */
-    bool     position_ready;
-    bool     stop_enable;   /* the emergency stop acts on the card, whatever `dedicated` says */
-    bool     gate;          /* the outputs are let through */
+    uint32_t dedicated; /* bits 0 .. 6: DFI i is its dedicated signal, else its terminal */
+    uint32_t ldo;       /* bits 0 .. 7 */
+    uint32_t servo_on;  /* bits 0 .. 5 */
+    bool position_ready;
+    bool stop_enable; /* the emergency stop acts on the card, whatever `dedicated` says */
+    bool gate;        /* the outputs are let through */
 };
 
 /* All zero is the state after power on: nothing sampled, so no field power yet. */
 struct local_io {
-    struct local_io_lines seen;     /* latest sample */
-    uint32_t              inputs;   /* latest LDI and DFI in the bits of local_io_event */
-    bool                  primed;   /* there is a sample */
+    struct local_io_lines seen; /* latest sample */
+    uint32_t inputs;            /* latest LDI and DFI in the bits of local_io_event */
+    bool primed;                /* there is a sample */
 };
 
 /* Levels at the output terminals. */
 struct local_io_outputs {
-    uint32_t ldo;           /* bits 0 .. 7 */
-    uint32_t servo_on;      /* bits 0 .. 5 */
-    bool     position_ready;
+    uint32_t ldo;      /* bits 0 .. 7 */
+    uint32_t servo_on; /* bits 0 .. 5 */
+    bool position_ready;
 };
 
 enum local_io_status {

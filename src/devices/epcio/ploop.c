@@ -11,7 +11,7 @@ bool ploop_tick(const struct ploop_config *c, struct ploop *p, bool on, int64_t 
                 int64_t counts)
 {
     if (!on) {
-        *p = (struct ploop){.on = false};
+        *p = (struct ploop){ .on = false };
         return false;
     }
     if (!p->on)

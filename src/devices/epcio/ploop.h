@@ -8,15 +8,15 @@
 enum { PLOOP_GAIN_MAX = 65535, PLOOP_LIMIT_MAX = 32767, PLOOP_SCALE_MAX = 15 };
 
 struct ploop_config {
-    int32_t limit;      /* [counts] size of the error that latches the overflow interrupt, >= 1 */
-    int32_t scale;      /* DAC code = error * gain / 2^scale, 0 .. 15 */
+    int32_t limit; /* [counts] size of the error that latches the overflow interrupt, >= 1 */
+    int32_t scale; /* DAC code = error * gain / 2^scale, 0 .. 15 */
 };
 
 struct ploop {
-    bool    on;
-    int64_t zero;       /* pulses - counts when the loop was switched on */
-    int32_t error;      /* [counts] pulses - counts since then; 0 while off */
-    bool    over;       /* |error| >= limit */
+    bool on;
+    int64_t zero;  /* pulses - counts when the loop was switched on */
+    int32_t error; /* [counts] pulses - counts since then; 0 while off */
+    bool over;     /* |error| >= limit */
 };
 
 /* Count at a loop instant. Switching on starts from zero, off clears. True when the error has just

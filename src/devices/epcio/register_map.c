@@ -37,18 +37,10 @@ static enum epcio_status write_encoder(struct epcio *card, int base, int i, doub
 {
     struct encoder_config c = card->encoder[i].config;
     switch (base) {
-    case REG_ENC_FORMAT:
-        c.format = (enum encoder_format)small(value);
-        break;
-    case REG_ENC_RATE:
-        c.rate = small(value);
-        break;
-    case REG_ENC_WIRING:
-        c.wiring = bits(value);
-        break;
-    default:
-        c.filter = small(value);
-        break;
+    case REG_ENC_FORMAT: c.format = (enum encoder_format)small(value); break;
+    case REG_ENC_RATE:   c.rate = small(value); break;
+    case REG_ENC_WIRING: c.wiring = bits(value); break;
+    default:             c.filter = small(value); break;
     }
     return epcio_set_encoder(card, i, &c);
 }
@@ -96,33 +88,15 @@ static enum epcio_status write_adc(struct epcio *card, int base, int i, double v
 {
     struct adc_control c = card->adc_control;
     switch (base) {
-    case REG_ADC_MODE:
-        c.mode = (enum adc_mode)small(value);
-        break;
-    case REG_ADC_CHANNEL:
-        c.channel = small(value);
-        break;
-    case REG_ADC_ENABLED:
-        c.enabled = bits(value);
-        break;
-    case REG_ADC_COMPARE_ON:
-        c.compare_on = bits(value);
-        break;
-    case REG_ADC_IGNORED_BITS:
-        c.ignored_bits = small(value);
-        break;
-    case REG_ADC_TAGGED:
-        c.tagged = bits(value);
-        break;
-    case REG_ADC_RANGE:
-        c.range[i] = (enum adc_range)small(value);
-        break;
-    case REG_ADC_COMPARE:
-        c.compare[i] = (enum adc_compare)small(value);
-        break;
-    default:
-        c.compare_volts[i] = value;
-        break;
+    case REG_ADC_MODE:         c.mode = (enum adc_mode)small(value); break;
+    case REG_ADC_CHANNEL:      c.channel = small(value); break;
+    case REG_ADC_ENABLED:      c.enabled = bits(value); break;
+    case REG_ADC_COMPARE_ON:   c.compare_on = bits(value); break;
+    case REG_ADC_IGNORED_BITS: c.ignored_bits = small(value); break;
+    case REG_ADC_TAGGED:       c.tagged = bits(value); break;
+    case REG_ADC_RANGE:        c.range[i] = (enum adc_range)small(value); break;
+    case REG_ADC_COMPARE:      c.compare[i] = (enum adc_compare)small(value); break;
+    default:                   c.compare_volts[i] = value; break;
     }
     return epcio_set_adc(card, &c);
 }
@@ -141,35 +115,19 @@ static enum epcio_status run_adc(struct epcio *card, double value)
 static enum epcio_status write_local(struct epcio *card, int base, int i, double value)
 {
     struct local_io_control c = card->local_control;
-    bool flag = base == REG_LIO_POSITION_READY || base == REG_LIO_STOP_ENABLE ||
-                base == REG_LIO_GATE;
+    bool flag =
+        base == REG_LIO_POSITION_READY || base == REG_LIO_STOP_ENABLE || base == REG_LIO_GATE;
     if (flag && !is_flag(value))
         return EPCIO_BAD_VALUE;
     switch (base) {
-    case REG_LIO_OUTPUTS:
-        c.ldo = bits(value);
-        break;
-    case REG_LIO_SERVO_ON:
-        c.servo_on = bits(value);
-        break;
-    case REG_LIO_POSITION_READY:
-        c.position_ready = value != 0.0;
-        break;
-    case REG_LIO_STOP_ENABLE:
-        c.stop_enable = value != 0.0;
-        break;
-    case REG_LIO_GATE:
-        c.gate = value != 0.0;
-        break;
-    case REG_LIO_DEDICATED:
-        c.dedicated = bits(value);
-        break;
-    case REG_LIO_LDI_EDGE:
-        c.ldi_edge[i] = (enum local_io_edge)small(value);
-        break;
-    default:
-        c.dfi_edge[i] = (enum local_io_edge)small(value);
-        break;
+    case REG_LIO_OUTPUTS:        c.ldo = bits(value); break;
+    case REG_LIO_SERVO_ON:       c.servo_on = bits(value); break;
+    case REG_LIO_POSITION_READY: c.position_ready = value != 0.0; break;
+    case REG_LIO_STOP_ENABLE:    c.stop_enable = value != 0.0; break;
+    case REG_LIO_GATE:           c.gate = value != 0.0; break;
+    case REG_LIO_DEDICATED:      c.dedicated = bits(value); break;
+    case REG_LIO_LDI_EDGE:       c.ldi_edge[i] = (enum local_io_edge)small(value); break;
+    default:                     c.dfi_edge[i] = (enum local_io_edge)small(value); break;
     }
     return epcio_set_local_io(card, &c);
 }
@@ -198,16 +156,12 @@ static enum epcio_status write_remote(struct epcio *card, int base, int i, doubl
     int slave = i / INPUTS % SLAVES, place = i % INPUTS;
     struct remote_io_control c = card->remote_control[set];
     switch (base) {
-    case REG_RIO_RETRY:
-        c.retry_limit = small(value);
-        break;
+    case REG_RIO_RETRY: c.retry_limit = small(value); break;
     case REG_RIO_ENABLED:
         c.enabled = bits(value);
         c.on = value != 0.0;
         break;
-    case REG_RIO_EDGE:
-        c.edge[slave][place] = (enum remote_io_edge)small(value);
-        break;
+    case REG_RIO_EDGE: c.edge[slave][place] = (enum remote_io_edge)small(value); break;
     default:
         if (!(value >= 0.0 && value <= UINT16_MAX))
             return EPCIO_BAD_VALUE;
@@ -220,29 +174,18 @@ static enum epcio_status write_remote(struct epcio *card, int base, int i, doubl
 static enum epcio_status write_one(struct epcio *card, int base, int i, double value)
 {
     switch (base) {
-    case REG_FIFO_ERASE:
-        return write_fifo_erase(card, i, value);
-    case REG_FIFO_SHIFT_OUT:
-        return write_fifo_shift_out(card, i);
-    case REG_ENC_CLEAR:
-        return epcio_clear_encoders(card, (uint32_t)1 << i);
+    case REG_FIFO_ERASE:       return write_fifo_erase(card, i, value);
+    case REG_FIFO_SHIFT_OUT:   return write_fifo_shift_out(card, i);
+    case REG_ENC_CLEAR:        return epcio_clear_encoders(card, (uint32_t)1 << i);
     case REG_ENC_COMPARE:
-    case REG_ENC_COMPARE_ON:
-        return write_compare(card, base, i, value);
+    case REG_ENC_COMPARE_ON:   return write_compare(card, base, i, value);
     case REG_ENC_LATCH:
-    case REG_ENC_LATCH_LAST:
-        return write_latch(card, base, i, value);
-    case REG_PCL_CLEAR:
-        return epcio_clear_loops(card, (uint32_t)1 << i);
-    case REG_ADC_RUN:
-        return run_adc(card, value);
-    case REG_WATCHDOG_REFRESH:
-        epcio_refresh_watchdog(card);
-        return EPCIO_OK;
-    case REG_MODULE_RESET:
-        return epcio_reset_module(card, (enum epcio_module)small(value));
-    default:
-        break;
+    case REG_ENC_LATCH_LAST:   return write_latch(card, base, i, value);
+    case REG_PCL_CLEAR:        return epcio_clear_loops(card, (uint32_t)1 << i);
+    case REG_ADC_RUN:          return run_adc(card, value);
+    case REG_WATCHDOG_REFRESH: epcio_refresh_watchdog(card); return EPCIO_OK;
+    case REG_MODULE_RESET:     return epcio_reset_module(card, (enum epcio_module)small(value));
+    default:                   break;
     }
     if (base >= REG_RIO_RETRY)
         return write_remote(card, base, i, value);

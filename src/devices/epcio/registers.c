@@ -144,7 +144,7 @@ enum epcio_status epcio_clear_loops(struct epcio *card, uint32_t loops)
         return EPCIO_BAD_MASK;
     for (int i = 0; i < EPCIO_LOOPS; i++)
         if (loops & (uint32_t)1 << i)
-            card->loop[i] = (struct ploop){0};
+            card->loop[i] = (struct ploop){ 0 };
     return EPCIO_OK;
 }
 
@@ -251,7 +251,7 @@ static void reset_encoders(struct epcio *card)
     for (int i = 0; i < EPCIO_ENCODERS; i++) {
         encoder_set_compare(&card->encoder[i], false, 0, card->clock);
         encoder_clear(&card->encoder[i], card->clock);
-        card->latch[i] = (struct latch){0};
+        card->latch[i] = (struct latch){ 0 };
     }
 }
 
@@ -265,7 +265,7 @@ static void reset_remote(struct epcio *card, int set)
 
 static void reset_local(struct epcio *card)
 {
-    card->local_control = (struct local_io_control){.gate = true};
+    card->local_control = (struct local_io_control){ .gate = true };
     timer_set(&card->timer, false, 1, card->clock);
     watchdog_set(&card->watchdog, false, 1, 1);
 }
@@ -273,25 +273,15 @@ static void reset_local(struct epcio *card)
 static void reset_one(struct epcio *card, enum epcio_module module)
 {
     switch (module) {
-    case EPCIO_RESET_DDA:
-        reset_dda(card);
-        break;
-    case EPCIO_RESET_ENC:
-        reset_encoders(card);
-        break;
-    case EPCIO_RESET_RIO0:
-        reset_remote(card, 0);
-        break;
-    case EPCIO_RESET_RIO1:
-        reset_remote(card, 1);
-        break;
+    case EPCIO_RESET_DDA:  reset_dda(card); break;
+    case EPCIO_RESET_ENC:  reset_encoders(card); break;
+    case EPCIO_RESET_RIO0: reset_remote(card, 0); break;
+    case EPCIO_RESET_RIO1: reset_remote(card, 1); break;
     case EPCIO_RESET_ADC:
-        card->adc = (struct adc){0};
-        card->adc_control = (struct adc_control){0};
+        card->adc = (struct adc){ 0 };
+        card->adc_control = (struct adc_control){ 0 };
         break;
-    case EPCIO_RESET_LIO:
-        reset_local(card);
-        break;
+    case EPCIO_RESET_LIO: reset_local(card); break;
     case EPCIO_RESET_PCL:
         memset(card->host.gain, 0, sizeof card->host.gain);
         memset(card->host.loop_on, 0, sizeof card->host.loop_on);
@@ -300,10 +290,9 @@ static void reset_one(struct epcio *card, enum epcio_module module)
     case EPCIO_RESET_DAC:
         memset(card->host.dac_loop, 0, sizeof card->host.dac_loop);
         memset(card->host.volts, 0, sizeof card->host.volts);
-        card->analog = (struct analog){0};
+        card->analog = (struct analog){ 0 };
         break;
-    default:
-        break;
+    default: break;
     }
 }
 
@@ -319,9 +308,9 @@ enum epcio_status epcio_reset_module(struct epcio *card, enum epcio_module modul
         first = EPCIO_RESET_DDA;
         last = EPCIO_RESET_DAC;
     }
-    const struct irq silent = {.seq = card->irq.seq, .clock = card->irq.clock};
+    const struct irq silent = { .seq = card->irq.seq, .clock = card->irq.clock };
     if (module == EPCIO_RESET_ALL)
-        card->irq = silent;     /* emptying the FIFOs pulls nothing */
+        card->irq = silent; /* emptying the FIFOs pulls nothing */
     for (int i = first; i <= last; i++)
         reset_one(card, (enum epcio_module)i);
     if (module == EPCIO_RESET_ALL)

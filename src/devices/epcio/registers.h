@@ -39,8 +39,7 @@ enum epcio_status epcio_clear_encoders(struct epcio *card, uint32_t encoders);
 enum epcio_status epcio_set_compare(struct epcio *card, int encoder, bool on, int32_t value);
 
 /* Choose what latches a counter, and arm: only the first trigger, or each. */
-enum epcio_status epcio_set_latch(struct epcio *card, int encoder, uint32_t source,
-                                  bool keep_last);
+enum epcio_status epcio_set_latch(struct epcio *card, int encoder, uint32_t source, bool keep_last);
 
 /* Loops and analog. */
 
@@ -76,17 +75,17 @@ void epcio_acknowledge(struct epcio *card, const uint32_t flags[IRQ_PAGES],
 
 /* Module resets. */
 enum epcio_module {
-    EPCIO_RESET_DDA = 1,    /* FIFOs empty, transactions dropped, reset DDA time from the next
+    EPCIO_RESET_DDA = 1, /* FIFOs empty, transactions dropped, reset DDA time from the next
                                boundary on */
-    EPCIO_RESET_ENC,        /* counters, latches and comparators */
-    EPCIO_RESET_RIO0,       /* remote I/O of a set off, outputs 0 */
+    EPCIO_RESET_ENC,     /* counters, latches and comparators */
+    EPCIO_RESET_RIO0,    /* remote I/O of a set off, outputs 0 */
     EPCIO_RESET_RIO1,
-    EPCIO_RESET_ADC,        /* stopped, registers 0 */
-    EPCIO_RESET_LIO,        /* local outputs off, edges rising, timer and watchdog off */
-    EPCIO_RESET_PCL,        /* gains 0, loops off */
-    EPCIO_RESET_DAC,        /* software source, 0 V, triggers off */
-    EPCIO_RESET_PERI,       /* the six modules from ENC to LIO */
-    EPCIO_RESET_ALL,        /* all of these, and interrupt flags and mask */
+    EPCIO_RESET_ADC,  /* stopped, registers 0 */
+    EPCIO_RESET_LIO,  /* local outputs off, edges rising, timer and watchdog off */
+    EPCIO_RESET_PCL,  /* gains 0, loops off */
+    EPCIO_RESET_DAC,  /* software source, 0 V, triggers off */
+    EPCIO_RESET_PERI, /* the six modules from ENC to LIO */
+    EPCIO_RESET_ALL,  /* all of these, and interrupt flags and mask */
 };
 
 /* Reset a module; what has been counted (frames, pulses, underflows) stays. */

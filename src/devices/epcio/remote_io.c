@@ -15,8 +15,8 @@ enum remote_io_status remote_io_check_control(const struct remote_io_control *se
         return REMOTE_IO_BAD_RETRY;
     for (int i = 0; i < REMOTE_IO_SLAVES; i++)
         for (int k = 0; k < REMOTE_IO_EDGES; k++)
-            if (set->edge[i][k] != REMOTE_IO_RISE && set->edge[i][k] != REMOTE_IO_FALL &&
-                set->edge[i][k] != REMOTE_IO_BOTH)
+            if (set->edge[i][k] != REMOTE_IO_RISE && set->edge[i][k] != REMOTE_IO_FALL
+                && set->edge[i][k] != REMOTE_IO_BOTH)
                 return REMOTE_IO_BAD_EDGE;
     return REMOTE_IO_OK;
 }
@@ -24,18 +24,12 @@ enum remote_io_status remote_io_check_control(const struct remote_io_control *se
 const char *remote_io_status_text(enum remote_io_status status)
 {
     switch (status) {
-    case REMOTE_IO_OK:
-        return "ok";
-    case REMOTE_IO_BAD_TIME:
-        return "a remote exchange takes one clock or more";
-    case REMOTE_IO_BAD_ENABLED:
-        return "a set has 3 remote slaves";
-    case REMOTE_IO_BAD_RETRY:
-        return "the retry limit is 0 to 255";
-    case REMOTE_IO_BAD_EDGE:
-        return "an edge is rising (0), falling (1) or both (2)";
-    default:
-        return "unknown status";
+    case REMOTE_IO_OK:          return "ok";
+    case REMOTE_IO_BAD_TIME:    return "a remote exchange takes one clock or more";
+    case REMOTE_IO_BAD_ENABLED: return "a set has 3 remote slaves";
+    case REMOTE_IO_BAD_RETRY:   return "the retry limit is 0 to 255";
+    case REMOTE_IO_BAD_EDGE:    return "an edge is rising (0), falling (1) or both (2)";
+    default:                    return "unknown status";
     }
 }
 

@@ -7,8 +7,8 @@
 
 enum {
     REMOTE_IO_SLAVES = 3,
-    REMOTE_IO_PORTS = 4,        /* of a slave, 16 bit in and 16 bit out each */
-    REMOTE_IO_EDGES = 4,        /* inputs of a slave that interrupt: port 0, bits 0 .. 3 */
+    REMOTE_IO_PORTS = 4, /* of a slave, 16 bit in and 16 bit out each */
+    REMOTE_IO_EDGES = 4, /* inputs of a slave that interrupt: port 0, bits 0 .. 3 */
     REMOTE_IO_RETRY_MAX = 255,
 };
 
@@ -28,57 +28,57 @@ enum remote_io_event {
 
 /* Fixed at power on. */
 struct remote_io_config {
-    int32_t time;               /* [clocks] of one exchange, >= 1 */
+    int32_t time; /* [clocks] of one exchange, >= 1 */
 };
 
 /* Registers of the host. They may change at any clock. A change of `on` or `enabled` takes effect
  * with remote_io_update(); `out` and `retry_limit` are sent as they are when an exchange begins;
  * `edge` and, for the master's own count, `retry_limit` are looked at when it ends. */
 struct remote_io_control {
-    bool                on;             /* the set is scanned */
-    uint32_t            enabled;        /* bits 0 .. 2: slaves of the scan */
-    int32_t             retry_limit;    /* 0 .. 255 failures in a row that are forgiven */
+    bool on;             /* the set is scanned */
+    uint32_t enabled;    /* bits 0 .. 2: slaves of the scan */
+    int32_t retry_limit; /* 0 .. 255 failures in a row that are forgiven */
     enum remote_io_edge edge[REMOTE_IO_SLAVES][REMOTE_IO_EDGES];
-    uint16_t            out[REMOTE_IO_SLAVES][REMOTE_IO_PORTS];
+    uint16_t out[REMOTE_IO_SLAVES][REMOTE_IO_PORTS];
 };
 
 /* The field: what the slaves see at their terminals. Bits beyond the last slave are ignored. */
 struct remote_io_lines {
-    uint32_t connected;         /* bits 0 .. 2: the slave hears and answers */
+    uint32_t connected; /* bits 0 .. 2: the slave hears and answers */
     uint16_t in[REMOTE_IO_SLAVES][REMOTE_IO_PORTS];
 };
 
 /* All zero is the state after power on: off. */
 struct remote_io {
     uint16_t in[REMOTE_IO_SLAVES][REMOTE_IO_PORTS]; /* of the latest good exchange, ever */
-    uint32_t ready;                         /* slaves of the scan that answer */
-    int32_t  errors[REMOTE_IO_SLAVES];      /* failed exchanges since enabled; stays at 2^31 - 1 */
-    int32_t  in_a_row[REMOTE_IO_SLAVES];    /* since the latest good one; stays at 2^31 - 1 */
-    int32_t  exchanges;                     /* ended since power on; 0 after 2^31 - 1 */
+    uint32_t ready;                                 /* slaves of the scan that answer */
+    int32_t errors[REMOTE_IO_SLAVES];   /* failed exchanges since enabled; stays at 2^31 - 1 */
+    int32_t in_a_row[REMOTE_IO_SLAVES]; /* since the latest good one; stays at 2^31 - 1 */
+    int32_t exchanges;                  /* ended since power on; 0 after 2^31 - 1 */
 
-    uint32_t scanned;                       /* slaves of the scan */
-    uint32_t answered;                      /* had a good exchange since they were enabled */
-    uint32_t told;                          /* NOT_READY has fired since they were enabled */
+    uint32_t scanned;  /* slaves of the scan */
+    uint32_t answered; /* had a good exchange since they were enabled */
+    uint32_t told;     /* NOT_READY has fired since they were enabled */
 
-    bool     busy;                          /* an exchange is under way: */
-    bool     heard;                         /* its slave was connected when it began */
-    int32_t  slave;                         /* 0 .. 2, kept for the turn after it */
-    int64_t  due;                           /* [clock] of its end */
-    int32_t  limit;                         /* retry limit it carries */
-    uint16_t sampled[REMOTE_IO_PORTS];      /* inputs it carries */
-    uint16_t sent[REMOTE_IO_PORTS];         /* outputs it carries */
+    bool busy;                         /* an exchange is under way: */
+    bool heard;                        /* its slave was connected when it began */
+    int32_t slave;                     /* 0 .. 2, kept for the turn after it */
+    int64_t due;                       /* [clock] of its end */
+    int32_t limit;                     /* retry limit it carries */
+    uint16_t sampled[REMOTE_IO_PORTS]; /* inputs it carries */
+    uint16_t sent[REMOTE_IO_PORTS];    /* outputs it carries */
 
-    uint16_t received[REMOTE_IO_SLAVES][REMOTE_IO_PORTS];   /* outputs the slave got last */
-    int32_t  received_limit[REMOTE_IO_SLAVES];              /* with this retry limit */
-    int64_t  received_clock[REMOTE_IO_SLAVES];              /* [clock] at this clock */
+    uint16_t received[REMOTE_IO_SLAVES][REMOTE_IO_PORTS]; /* outputs the slave got last */
+    int32_t received_limit[REMOTE_IO_SLAVES];             /* with this retry limit */
+    int64_t received_clock[REMOTE_IO_SLAVES];             /* [clock] at this clock */
 };
 
 enum remote_io_status {
     REMOTE_IO_OK,
-    REMOTE_IO_BAD_TIME,         /* below 1 clock */
-    REMOTE_IO_BAD_ENABLED,      /* a bit above 2 */
-    REMOTE_IO_BAD_RETRY,        /* not 0 .. 255 */
-    REMOTE_IO_BAD_EDGE,         /* no remote_io_edge */
+    REMOTE_IO_BAD_TIME,    /* below 1 clock */
+    REMOTE_IO_BAD_ENABLED, /* a bit above 2 */
+    REMOTE_IO_BAD_RETRY,   /* not 0 .. 255 */
+    REMOTE_IO_BAD_EDGE,    /* no remote_io_edge */
 };
 
 /* Order at one clock: the exchange ends and takes effect, its events fire, the next one begins with

@@ -60,7 +60,7 @@ static void start(struct single_buffer *card, const int32_t command[EPCIO_AXES])
     for (int i = 0; i < EPCIO_AXES; i++)
         card->underflows[i] = single_buffer_underflows(card, i);
     card->stood = waited(card);
-    d->start = dda_clock(card) - dda_time(d->ticks, d->divider);   /* as if one ended now */
+    d->start = dda_clock(card) - dda_time(d->ticks, d->divider); /* as if one ended now */
     take(card, command);
 }
 
@@ -99,7 +99,7 @@ static void boundary(struct single_buffer *card)
 static void arrive(struct single_buffer *card)
 {
     struct bus_write w = bus_take(&card->bus);
-    bool refused = false;   /* what follows a refused frame is refused: nothing overtakes */
+    bool refused = false; /* what follows a refused frame is refused: nothing overtakes */
     for (int k = 0; k < w.count; k++) {
         refused = refused || single_buffer_write_frame(card, w.frame[k]) != EPCIO_OK;
         if (refused)
@@ -128,8 +128,7 @@ void single_buffer_advance(struct single_buffer *card, int64_t clock)
     card->clock = clock;
 }
 
-enum epcio_status single_buffer_set_dda(struct single_buffer *card, int32_t length,
-                                        int32_t divider)
+enum epcio_status single_buffer_set_dda(struct single_buffer *card, int32_t length, int32_t divider)
 {
     if (length < EPCIO_LENGTH_MIN || length > EPCIO_LENGTH_MAX)
         return EPCIO_BAD_LENGTH;
@@ -163,7 +162,7 @@ enum epcio_status single_buffer_post(struct single_buffer *card, const struct bu
 static enum epcio_status refuse(struct single_buffer *card, enum epcio_status status, int axis,
                                 int32_t command)
 {
-    card->refusal = (struct epcio_refusal){status, axis, command};
+    card->refusal = (struct epcio_refusal){ status, axis, command };
     return status;
 }
 
@@ -171,7 +170,7 @@ enum epcio_status single_buffer_write_frame(struct single_buffer *card,
                                             const int32_t frame[EPCIO_AXES])
 {
     int32_t largest = dda_largest(card->dda.next_ticks);
-    int first = -1;     /* active axis */
+    int first = -1; /* active axis */
     for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->config.active[i] && frame[i] != 0)
             return refuse(card, EPCIO_AXIS_UNUSED, i, frame[i]);

@@ -37,28 +37,28 @@ static_assert((int)EPCIO_AXES <= (int)DDA_CHANNELS_MAX, "a DDA channel per axis"
 
 struct single_buffer_config {
     bool active[EPCIO_AXES];
-    bool latched;                       /* a register before the DDA, else the DDA is the buffer */
+    bool latched; /* a register before the DDA, else the DDA is the buffer */
 };
 
 struct single_buffer {
     struct single_buffer_config config;
-    int64_t    clock;       /* [25 ns] everything up to here has happened */
-    struct dda dda;         /* direct, without command: its start is when the wait began */
-    bool       running;     /* the DDA has a command, perhaps of 0 pulses */
-    bool       waits;       /* latched: the register holds a command */
-    int32_t    command[EPCIO_AXES];     /* [pulses] that command */
-    int32_t    last[EPCIO_AXES];        /* [pulses] command that went into the DDA last */
-    bool       stopped;     /* emergency stop since then: what follows is no gap */
-    int64_t    stood;       /* [clocks] of the DDA times without command since then; latched */
-    int32_t    underflows[EPCIO_AXES];  /* without the wait in progress */
-    int64_t    gap[EPCIO_AXES];         /* [clocks] stood still between two commands that
+    int64_t clock;               /* [25 ns] everything up to here has happened */
+    struct dda dda;              /* direct, without command: its start is when the wait began */
+    bool running;                /* the DDA has a command, perhaps of 0 pulses */
+    bool waits;                  /* latched: the register holds a command */
+    int32_t command[EPCIO_AXES]; /* [pulses] that command */
+    int32_t last[EPCIO_AXES];    /* [pulses] command that went into the DDA last */
+    bool stopped;                /* emergency stop since then: what follows is no gap */
+    int64_t stood;               /* [clocks] of the DDA times without command since then; latched */
+    int32_t underflows[EPCIO_AXES]; /* without the wait in progress */
+    int64_t gap[EPCIO_AXES];        /* [clocks] stood still between two commands that
                                                    both move the axis */
     struct bus bus;
-    int32_t    cmd_ack;     /* latest transaction that arrived */
-    int32_t    frames_taken;
-    int32_t    frames_refused;
+    int32_t cmd_ack; /* latest transaction that arrived */
+    int32_t frames_taken;
+    int32_t frames_refused;
     struct epcio_refusal refusal;
-    struct irq irq;         /* only page IRQ_DDA is used */
+    struct irq irq; /* only page IRQ_DDA is used */
 };
 
 /* Power on at clock 0: buffer free, no command in the DDA, the reset length and divider, DDA

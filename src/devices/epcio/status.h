@@ -41,22 +41,21 @@
 /* The status of a block is its own enum on top of the block's base: EPCIO_ENCODER +
  * ENCODER_BAD_RATE. */
 enum epcio_status {
-    EPCIO_STATUS_TEXTS(EPCIO_STATUS_ENTRY)
-    EPCIO_STATUS_COUNT,
+    EPCIO_STATUS_TEXTS(EPCIO_STATUS_ENTRY) EPCIO_STATUS_COUNT,
     EPCIO_PULSE = 0x100,
     EPCIO_ENCODER = 0x200,
     EPCIO_ADC = 0x300,
     EPCIO_LOCAL_IO = 0x400,
     EPCIO_REMOTE_IO = 0x500,
     EPCIO_TIMER = 0x600,
-    EPCIO_STATUS_LAST = 0x6ff   /* behind a block's number comes its own status */
+    EPCIO_STATUS_LAST = 0x6ff /* behind a block's number comes its own status */
 };
 
 /* Why the latest refused frame was refused. */
 struct epcio_refusal {
     enum epcio_status status;
-    int32_t axis;                   /* 0 .. 5 */
-    int32_t command;                /* [pulses] */
+    int32_t axis;    /* 0 .. 5 */
+    int32_t command; /* [pulses] */
 };
 
 /* What a status of the card itself, of no block, means, for messages. */

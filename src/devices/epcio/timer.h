@@ -8,32 +8,32 @@
 /* Longest period of timer and reset: 32-bit registers [clocks], 107 s. */
 #define TIMER_PERIOD_MAX INT64_C(4294967295)
 
-enum { WATCHDOG_VALUE_MAX = 65535 };    /* 16-bit register */
+enum { WATCHDOG_VALUE_MAX = 65535 }; /* 16-bit register */
 
 /* All zero is the state after power on: off. */
 struct timer {
-    bool    on;
-    int64_t period;         /* [clocks] */
-    int64_t start;          /* [clock] of the latest firing or, before the first, of the start */
-    int64_t count;          /* firings since power on */
+    bool on;
+    int64_t period; /* [clocks] */
+    int64_t start;  /* [clock] of the latest firing or, before the first, of the start */
+    int64_t count;  /* firings since power on */
 };
 
 /* All zero is the state after power on: off. */
 struct watchdog {
-    bool    on;
-    bool    expired;        /* until the host refreshes it or switches it off */
-    bool    resetting;      /* expired, and the reset period runs */
-    int32_t value;          /* [timer firings] without a refresh that let it expire */
-    int32_t count;          /* [timer firings] since the refresh; stops at `value` */
-    int64_t reset_period;   /* [clocks] */
-    int64_t end;            /* [clock] of the end of the reset period, if resetting */
+    bool on;
+    bool expired;         /* until the host refreshes it or switches it off */
+    bool resetting;       /* expired, and the reset period runs */
+    int32_t value;        /* [timer firings] without a refresh that let it expire */
+    int32_t count;        /* [timer firings] since the refresh; stops at `value` */
+    int64_t reset_period; /* [clocks] */
+    int64_t end;          /* [clock] of the end of the reset period, if resetting */
 };
 
 enum timer_status {
     TIMER_OK,
-    TIMER_BAD_PERIOD,       /* not 1 .. 2^32 - 1 clocks */
-    TIMER_BAD_VALUE,        /* watchdog: not 1 .. 65535 timer firings */
-    TIMER_BAD_RESET,        /* watchdog: reset period not 1 .. 2^32 - 1 clocks */
+    TIMER_BAD_PERIOD, /* not 1 .. 2^32 - 1 clocks */
+    TIMER_BAD_VALUE,  /* watchdog: not 1 .. 65535 timer firings */
+    TIMER_BAD_RESET,  /* watchdog: reset period not 1 .. 2^32 - 1 clocks */
 };
 
 /* Order at one clock: the reset period ends and the timer fires (either first, the result is the

@@ -50,7 +50,7 @@ void ether_pipe_send(struct ether_pipe *p, const struct ether_config *c, int64_t
             p->stalls++;
         }
         p->segment[(p->first_segment + p->segments) % ETHER_SEGMENTS] =
-            (struct ether_segment){bytes, arrival};
+            (struct ether_segment){ bytes, arrival };
         p->segments++;
         p->sent += bytes;
     }

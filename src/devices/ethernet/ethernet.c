@@ -71,8 +71,7 @@ static void give(struct ethernet *e, int end, const struct ethernet_seen *seen, 
 {
     struct ethernet_shown *shown = &e->shown[end];
     uint8_t bytes[BYTE_RING_BYTES];
-    const size_t room = BYTE_RING_BYTES -
-                        (size_t)byte_ring_held(shown->rx_count, seen->rx_taken);
+    const size_t room = BYTE_RING_BYTES - (size_t)byte_ring_held(shown->rx_count, seen->rx_taken);
     const size_t most = before_cut(e, end);
     const size_t n = ether_pipe_get(&e->pipe[end], now, bytes, room < most ? room : most);
     byte_ring_put(shown->rx_words, &shown->rx_count, seen->rx_taken, bytes, n);
@@ -92,8 +91,8 @@ static void carry(struct ethernet *e, int64_t now, int64_t next,
 static bool counts_hold(const struct ethernet *e, const struct ethernet_seen *seen)
 {
     for (int i = 0; i < ETHERNET_ENDS; i++) {
-        if (byte_ring_held(seen[i].tx_count, e->shown[i].tx_taken) < 0 ||
-            byte_ring_held(e->shown[i].rx_count, seen[i].rx_taken) < 0)
+        if (byte_ring_held(seen[i].tx_count, e->shown[i].tx_taken) < 0
+            || byte_ring_held(e->shown[i].rx_count, seen[i].rx_taken) < 0)
             return false;
     }
     return true;

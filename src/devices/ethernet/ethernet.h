@@ -16,17 +16,17 @@ enum ethernet_end { ETHERNET_CARD, ETHERNET_HOST };
 struct ethernet_config {
     struct ether_config pipe;
     uint64_t seed;
-    int64_t  connect;                       /* [ns] for a connection to come about */
-    int64_t  away;                          /* [ns] none comes about after a cut */
-    int64_t  cut_at[ETHERNET_CUTS];         /* [ns] 0: none */
-    int64_t  cut_behind[ETHERNET_ENDS][ETHERNET_CUTS];  /* [byte] that this end got; 0: none */
+    int64_t connect;                                  /* [ns] for a connection to come about */
+    int64_t away;                                     /* [ns] none comes about after a cut */
+    int64_t cut_at[ETHERNET_CUTS];                    /* [ns] 0: none */
+    int64_t cut_behind[ETHERNET_ENDS][ETHERNET_CUTS]; /* [byte] that this end got; 0: none */
 };
 
 /* What an end shows. */
 struct ethernet_seen {
     int32_t tx_words[BYTE_RING_WORDS];
     int32_t tx_count, rx_taken;
-    bool    wants;                          /* a connection */
+    bool wants; /* a connection */
 };
 
 /* What it is shown. */
@@ -37,13 +37,13 @@ struct ethernet_shown {
 
 struct ethernet {
     struct ethernet_config config;
-    int32_t  connection;                    /* number; 0 none */
-    int32_t  connections;
-    int64_t  wanted;                        /* [ns] since when both ends want one; -1 not */
-    int64_t  blocked;                       /* [ns] end of the latest cut */
-    int64_t  instant;                       /* [ns] latest one; -1 before the first */
-    uint32_t cuts, faults;                  /* faults: an end showed counts that cannot be */
-    struct ether_pipe pipe[ETHERNET_ENDS];  /* to this end */
+    int32_t connection; /* number; 0 none */
+    int32_t connections;
+    int64_t wanted;                        /* [ns] since when both ends want one; -1 not */
+    int64_t blocked;                       /* [ns] end of the latest cut */
+    int64_t instant;                       /* [ns] latest one; -1 before the first */
+    uint32_t cuts, faults;                 /* faults: an end showed counts that cannot be */
+    struct ether_pipe pipe[ETHERNET_ENDS]; /* to this end */
     struct ethernet_shown shown[ETHERNET_ENDS];
 };
 

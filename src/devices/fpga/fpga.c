@@ -63,8 +63,8 @@ static void exchange_outputs(struct fpga *f)
 {
     int32_t n = 0;
     for (; n < f->entering && f->entries[n].clock <= f->clock; n++)
-        f->host_outputs = (f->host_outputs & ~f->entries[n].mask)
-                          | (f->entries[n].value & f->entries[n].mask);
+        f->host_outputs =
+            (f->host_outputs & ~f->entries[n].mask) | (f->entries[n].value & f->entries[n].mask);
     if (n) {
         f->entering -= n;
         memmove(f->entries, f->entries + n, (size_t)f->entering * sizeof *f->entries);
@@ -89,8 +89,7 @@ static void exchange_stop(struct fpga *f)
 {
     const struct fpga_config *c = &f->config;
     const bool alarm = c->alarm_stops && f->drives >> 8;
-    const bool cause = f->emergency || alarm
-                       || ((f->inputs.image ^ c->stop_low) & c->stop_mask);
+    const bool cause = f->emergency || alarm || ((f->inputs.image ^ c->stop_low) & c->stop_mask);
     if (f->reset && !cause)
         f->stopped = false;
     f->reset = false;
@@ -190,8 +189,8 @@ enum fpga_status fpga_post_write(struct fpga *f, const struct fpga_write *w)
     if (f->writing == FPGA_WRITES)
         return fpga_refuse(f, FPGA_ON_THE_WAY);
     /* In time unless a switch, or an exchange that waited for a mark, lies behind its clock. */
-    const int64_t latest = f->playing >= 0 ? f->start
-                                           : fpga_next_exchange(f) - f->config.slot_clocks;
+    const int64_t latest =
+        f->playing >= 0 ? f->start : fpga_next_exchange(f) - f->config.slot_clocks;
     f->late += w->clock > 0 && w->clock < latest;
     f->writes[f->writing++] = *w;
     return FPGA_OK;

@@ -24,115 +24,115 @@
 #include "slot_memory.h"
 
 enum {
-    FPGA_SLOT_CLOCKS_MIN = 8,       /* two pulses need more than 4 clocks */
+    FPGA_SLOT_CLOCKS_MIN = 8, /* two pulses need more than 4 clocks */
     FPGA_SLOT_CLOCKS_MAX = 4000,
-    FPGA_WRITES = 4,        /* writes of pulse memories that may be on their way */
-    FPGA_WAITING = 64,      /* entries for digital outputs, likewise */
-    FPGA_AO_WRITES = 8,     /* writes of the analog outputs, likewise */
+    FPGA_WRITES = 4,    /* writes of pulse memories that may be on their way */
+    FPGA_WAITING = 64,  /* entries for digital outputs, likewise */
+    FPGA_AO_WRITES = 8, /* writes of the analog outputs, likewise */
 };
 
 enum fpga_status {
     FPGA_OK,
-    FPGA_BAD_MEMORY,    /* not 0 or 1 */
-    FPGA_NO_SLOTS,      /* not 1 .. FPGA_SLOTS */
-    FPGA_BAD_SLOT,      /* more pulses than a slot holds, or a byte that is no number of them */
-    FPGA_NOT_FREE,      /* the memory is marked full and waits */
-    FPGA_PLAYS,         /* the memory plays */
-    FPGA_STOPPED,       /* a stop acts */
-    FPGA_ON_THE_WAY,    /* as many as there is room for are on their way */
+    FPGA_BAD_MEMORY, /* not 0 or 1 */
+    FPGA_NO_SLOTS,   /* not 1 .. FPGA_SLOTS */
+    FPGA_BAD_SLOT,   /* more pulses than a slot holds, or a byte that is no number of them */
+    FPGA_NOT_FREE,   /* the memory is marked full and waits */
+    FPGA_PLAYS,      /* the memory plays */
+    FPGA_STOPPED,    /* a stop acts */
+    FPGA_ON_THE_WAY, /* as many as there is room for are on their way */
 };
 
 struct fpga_config {
-    int32_t          slot_clocks;   /* [clocks] FPGA_SLOT_CLOCKS_MIN .. MAX */
+    int32_t slot_clocks; /* [clocks] FPGA_SLOT_CLOCKS_MIN .. MAX */
     enum fpga_format format;
-    int64_t  irq_every;             /* [clocks] while nothing plays; a whole number of slots */
-    uint32_t input_irq_mask;        /* inputs whose change raises the input interrupt */
-    uint32_t follow_mask;           /* outputs that follow the input of their number */
-    uint32_t stop_mask;             /* inputs that stop */
-    uint32_t stop_low;              /* those of them that stop at the low level */
-    bool     alarm_stops;           /* an alarm of a drive stops */
-    bool     stop_servo_off;        /* a stop switches the drives off */
+    int64_t irq_every;       /* [clocks] while nothing plays; a whole number of slots */
+    uint32_t input_irq_mask; /* inputs whose change raises the input interrupt */
+    uint32_t follow_mask;    /* outputs that follow the input of their number */
+    uint32_t stop_mask;      /* inputs that stop */
+    uint32_t stop_low;       /* those of them that stop at the low level */
+    bool alarm_stops;        /* an alarm of a drive stops */
+    bool stop_servo_off;     /* a stop switches the drives off */
 };
 
 struct fpga_write {
     int32_t seq;
-    int64_t clock;      /* at which it reaches the card; 0 none stated */
+    int64_t clock; /* at which it reaches the card; 0 none stated */
     int32_t memory, slots;
     int32_t words[FPGA_WORDS];
 };
 
 struct fpga_entry {
-    int64_t  clock;
+    int64_t clock;
     uint32_t mask, value;
 };
 
 struct fpga_ao {
     int64_t clock;
-    double  volts[FPGA_ANALOG];     /* [V] */
+    double volts[FPGA_ANALOG]; /* [V] */
 };
 
 /* Digital input pins: their levels, and those they will have at a clock to come. */
 struct fpga_inputs {
-    uint32_t level;             /* at the pins now */
-    uint32_t coming;            /* change at their clock */
-    int64_t  clock[FPGA_CHANNELS];
-    int64_t  first;             /* the least of those that are coming */
-    uint32_t image;             /* as exchanged last */
+    uint32_t level;  /* at the pins now */
+    uint32_t coming; /* change at their clock */
+    int64_t clock[FPGA_CHANNELS];
+    int64_t first;  /* the least of those that are coming */
+    uint32_t image; /* as exchanged last */
 };
 
 struct fpga_irq {
-    int64_t  seq, clock;
+    int64_t seq, clock;
     uint32_t inputs;
-    double   ai[FPGA_ANALOG];   /* [V] */
+    double ai[FPGA_ANALOG]; /* [V] */
 };
 
 /* What was refused last. */
 struct fpga_refusal {
-    enum fpga_status  status;
-    int32_t           seq, memory;
-    struct slot_fault at;       /* FPGA_BAD_SLOT */
+    enum fpga_status status;
+    int32_t seq, memory;
+    struct slot_fault at; /* FPGA_BAD_SLOT */
 };
 
 struct fpga {
     struct fpga_config config;
-    int64_t clock;              /* everything up to here has happened */
-    bool    pending;            /* levels changed: the next exchange has work to do */
+    int64_t clock; /* everything up to here has happened */
+    bool pending;  /* levels changed: the next exchange has work to do */
 
     struct slot_memory memory[FPGA_MEMORIES];
     int32_t playing;            /* memory that plays, -1 none */
     int64_t start;              /* clock of its first slot */
     int64_t marks;              /* memories marked so far */
     int64_t base[FPGA_AXES];    /* [pulses] put out before it */
-    double  rate[FPGA_AXES];    /* [1/s] its mean */
+    double rate[FPGA_AXES];     /* [1/s] its mean */
     int64_t dropped[FPGA_AXES]; /* [pulses] by stops */
     int64_t underruns;
-    bool    run;                /* armed */
+    bool run; /* armed */
 
     struct fpga_inputs inputs;
-    double   ai[FPGA_ANALOG];   /* [V] quantised */
-    uint32_t drive_pins, drives;    /* at the pins, as exchanged: bits 0 - 5 ready, 8 - 13 alarm */
+    double ai[FPGA_ANALOG];      /* [V] quantised */
+    uint32_t drive_pins, drives; /* at the pins, as exchanged: bits 0 - 5 ready, 8 - 13 alarm */
     uint32_t host_outputs, outputs;
-    int64_t  output_clock[FPGA_CHANNELS];   /* latest change */
-    double   ao[FPGA_ANALOG];   /* [V] quantised */
-    uint32_t host_servo, servo; /* a bit an axis */
+    int64_t output_clock[FPGA_CHANNELS]; /* latest change */
+    double ao[FPGA_ANALOG];              /* [V] quantised */
+    uint32_t host_servo, servo;          /* a bit an axis */
 
-    bool    emergency;          /* input */
-    bool    reset;              /* asked for */
-    bool    stopped;
+    bool emergency; /* input */
+    bool reset;     /* asked for */
+    bool stopped;
     int64_t stopped_clock;
 
-    int64_t         timer;      /* clock of the next interrupt if nothing plays until then */
+    int64_t timer; /* clock of the next interrupt if nothing plays until then */
     struct fpga_irq irq, input_irq;
 
     struct fpga_write writes[FPGA_WRITES];
-    int32_t writing;            /* of them on their way, in the order they were sent */
+    int32_t writing; /* of them on their way, in the order they were sent */
     struct fpga_entry entries[FPGA_WAITING];
-    int32_t entering;           /* likewise, in the order of their clocks */
+    int32_t entering; /* likewise, in the order of their clocks */
     struct fpga_ao aos[FPGA_AO_WRITES];
     int32_t ao_waiting;
-    int32_t write_ack;          /* latest write that arrived */
-    int64_t refused;            /* writes and entries */
-    int64_t late;               /* what was posted behind the exchange it was meant for */
+    int32_t write_ack; /* latest write that arrived */
+    int64_t refused;   /* writes and entries */
+    int64_t late;      /* what was posted behind the exchange it was meant for */
     struct fpga_refusal refusal;
 };
 

@@ -83,7 +83,7 @@ void fpga_play_exchange(struct fpga *f)
 
 void fpga_pulses(const struct fpga *f, int64_t pulses[FPGA_AXES])
 {
-    int32_t played[FPGA_AXES] = {0};
+    int32_t played[FPGA_AXES] = { 0 };
     if (f->playing >= 0)
         slot_memory_played(&f->memory[f->playing], f->clock - f->start, f->config.slot_clocks,
                            played);

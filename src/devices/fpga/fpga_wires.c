@@ -11,7 +11,7 @@ static int64_t clock_of(double clock)
 static void take_write(struct fpga *f, const struct fpga_host *host)
 {
     struct fpga_write w;
-    memset(&w, 0, offsetof(struct fpga_write, words));  /* gaps go into a state, too */
+    memset(&w, 0, offsetof(struct fpga_write, words)); /* gaps go into a state, too */
     w.seq = host->write_seq;
     w.clock = clock_of(host->write_clock);
     w.memory = host->write_memory;
@@ -26,12 +26,12 @@ void fpga_take(struct fpga_taken *taken, struct fpga *f, const struct fpga_host 
         take_write(f, host);
     if (link_new(&taken->out_seq, host->out_seq)) {
         for (int i = 0; i < host->out_count; i++)
-            fpga_post_entry(f, &(struct fpga_entry){clock_of(host->out_clock[i]),
-                                                    (uint32_t)host->out_mask[i],
-                                                    (uint32_t)host->out_value[i]});
+            fpga_post_entry(f, &(struct fpga_entry){ clock_of(host->out_clock[i]),
+                                                     (uint32_t)host->out_mask[i],
+                                                     (uint32_t)host->out_value[i] });
     }
     if (link_new(&taken->ao_seq, host->ao_seq)) {
-        struct fpga_ao a = {.clock = clock_of(host->ao_clock)};
+        struct fpga_ao a = { .clock = clock_of(host->ao_clock) };
         LINK_CARRY(a.volts, host->ao)
         fpga_post_ao(f, &a);
     }

@@ -6,7 +6,9 @@
 #include "fpga.h"
 
 /* Numbers of the mailboxes taken last. */
-struct fpga_taken { int32_t write_seq, out_seq, ao_seq, reset_seq; };
+struct fpga_taken {
+    int32_t write_seq, out_seq, ao_seq, reset_seq;
+};
 
 /* Take new mailboxes and the levels. Clocks are finite, rounded up to whole ones; below 0: none
  * stated. */

@@ -12,7 +12,7 @@ bool slot_memory_fill(struct slot_memory *m, const int32_t words[FPGA_WORDS], in
             continue;
         const int32_t bad = fpga_slot_unpack(word, format, most, pulses);
         if (bad >= 0) {
-            *fault = (struct slot_fault){k, bad};
+            *fault = (struct slot_fault){ k, bad };
             return false;
         }
         for (int i = 0; i < FPGA_AXES; i++)

@@ -5,13 +5,15 @@
 #include "fpga_link.h"
 
 struct slot_memory {
-    int32_t slots;      /* 0 free, else marked full or playing */
-    int64_t mark;       /* number of its mark: of two full ones the lower plays first */
-    int16_t sum[FPGA_SLOTS + 1][FPGA_AXES];     /* [pulses] of the slots before slot k */
+    int32_t slots; /* 0 free, else marked full or playing */
+    int64_t mark;  /* number of its mark: of two full ones the lower plays first */
+    int16_t sum[FPGA_SLOTS + 1][FPGA_AXES]; /* [pulses] of the slots before slot k */
 };
 
 /* A byte of a slot that is no number of pulses. */
-struct slot_fault { int32_t slot, axis; };
+struct slot_fault {
+    int32_t slot, axis;
+};
 
 /* Fill a free memory with 1 .. FPGA_SLOTS slots. False: a byte is bad (see fpga_slot_unpack) and
  * the memory stays free. */

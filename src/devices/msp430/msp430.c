@@ -5,7 +5,7 @@
 
 void msp430_reset(struct msp430 *m, const struct msp430_config *c)
 {
-    *m = (struct msp430){.config = *c, .timer_next = c->timer_period};
+    *m = (struct msp430){ .config = *c, .timer_next = c->timer_period };
     m->port.clear = c->clear;
     sequence_reset(&m->sequence, c->homed);
     pwm_reset(&m->pwm, &c->pwm, c->filter_start, c->pwm.period / 2);
@@ -15,11 +15,15 @@ static void tick(struct msp430 *m)
 {
     const struct msp430_config *c = &m->config;
     const struct sequence_input in = {
-        .pb1 = m->pins.pb1, .pb2 = m->pins.pb2, .home = m->pins.home,
-        .home_pending = m->port.flags & PORT_HOME, .zeroed = m->port.zeroed,
+        .pb1 = m->pins.pb1,
+        .pb2 = m->pins.pb2,
+        .home = m->pins.home,
+        .home_pending = m->port.flags & PORT_HOME,
+        .zeroed = m->port.zeroed,
         .target = m->pins.target,
         .share = c->adc_on ? adc12_code(m->pins.volts, c->adc_reference) : ADC12_MAX,
-        .counter = m->port.counter, .counter_2 = m->port.counter_2,
+        .counter = m->port.counter,
+        .counter_2 = m->port.counter_2,
     };
     m->ticks++;
     sequence_tick(&c->sequence, &m->sequence, &in);
@@ -53,8 +57,7 @@ static void work(struct msp430 *m)
         m->routine = MSP430_WRITE;
     } else if (m->routine == MSP430_WRITE) {
         pwm_run(&m->pwm, &m->config.pwm, m->clock);
-        pwm_write(&m->pwm, &m->config.pwm,
-                  m->config.pwm.period / 2 + m->sequence.deviation);
+        pwm_write(&m->pwm, &m->config.pwm, m->config.pwm.period / 2 + m->sequence.deviation);
         m->routine = MSP430_FREE;
     }
 }
@@ -95,8 +98,8 @@ static void run(struct msp430 *m, int64_t until)
     pwm_run(&m->pwm, &m->config.pwm, until);
 }
 
-enum quadrature_status msp430_sample(struct msp430 *m, double phase,
-                                     const struct msp430_pins *pins, int64_t clock)
+enum quadrature_status msp430_sample(struct msp430 *m, double phase, const struct msp430_pins *pins,
+                                     int64_t clock)
 {
     const bool first = !m->scale.primed;
     const enum quadrature_status status = quadrature_check(&m->scale, phase, clock);

@@ -17,19 +17,19 @@ struct msp430_config {
     struct sequence_config sequence;
     struct pwm_config pwm;
     enum port_clear clear;
-    bool    homed;              /* at power-up: ready at count 0, for studies */
-    bool    home_always;        /* P1IE.0 is on always, else in the homing search only */
-    int64_t timer_period;       /* [clocks] */
-    int32_t timer_cycles;       /* [clocks] of the timer's routine, reti included */
-    bool    adc_on;             /* the converter sets the speed */
-    double  adc_reference;      /* [V] */
-    double  filter_start;       /* [V] capacitor of the filter at power-up */
+    bool homed;           /* at power-up: ready at count 0, for studies */
+    bool home_always;     /* P1IE.0 is on always, else in the homing search only */
+    int64_t timer_period; /* [clocks] */
+    int32_t timer_cycles; /* [clocks] of the timer's routine, reti included */
+    bool adc_on;          /* the converter sets the speed */
+    double adc_reference; /* [V] */
+    double filter_start;  /* [V] capacitor of the filter at power-up */
 };
 
 struct msp430_pins {
-    bool    home, pb1, pb2;
-    int32_t target;             /* [counts] */
-    double  volts;              /* [V] at the converter */
+    bool home, pb1, pb2;
+    int32_t target; /* [counts] */
+    double volts;   /* [V] at the converter */
 };
 
 enum msp430_routine { MSP430_FREE = 0, MSP430_PORT, MSP430_READ, MSP430_WRITE };
@@ -43,18 +43,18 @@ struct msp430 {
     struct sequence sequence;
     struct pwm pwm;
     enum msp430_routine routine;
-    int64_t next;               /* [clock] of what the routine does next */
-    int64_t timer_next;         /* [clock] of the timer's next firing */
-    bool    timer_flag;
-    int64_t ticks;              /* timer interrupts accepted */
-    int64_t overruns;           /* firings lost because one was waiting */
+    int64_t next;       /* [clock] of what the routine does next */
+    int64_t timer_next; /* [clock] of the timer's next firing */
+    bool timer_flag;
+    int64_t ticks;    /* timer interrupts accepted */
+    int64_t overruns; /* firings lost because one was waiting */
 };
 
 void msp430_reset(struct msp430 *m, const struct msp430_config *c);
 
 /* An instant at `clock`: the scale's phase there; everything is carried to `clock` with the phase
  * on a straight line and the other pins as they were; then the pins are as given. */
-enum quadrature_status msp430_sample(struct msp430 *m, double phase,
-                                     const struct msp430_pins *pins, int64_t clock);
+enum quadrature_status msp430_sample(struct msp430 *m, double phase, const struct msp430_pins *pins,
+                                     int64_t clock);
 
 #endif

@@ -1,7 +1,7 @@
 #include "port.h"
 
-static const uint8_t FLAG[PORT_SOURCES] = {PORT_A_UP, PORT_A_DOWN, PORT_B_UP, PORT_B_DOWN,
-                                           PORT_HOME};
+static const uint8_t FLAG[PORT_SOURCES] = { PORT_A_UP, PORT_A_DOWN, PORT_B_UP, PORT_B_DOWN,
+                                            PORT_HOME };
 
 /* A constant of 1, 4 or 8 comes from the constant generator: a cycle less than from memory. */
 enum { TEST_CYCLES = 4, LITERAL = 1, JUMP = 2, MEMORY = 4, RETI = 5 };
@@ -26,7 +26,7 @@ static bool raise_flag(struct port *p, int source)
 
 void port_edge(struct port *p, bool line_b, bool high, int way)
 {
-    const bool rises = !high;   /* behind the 74HC14 */
+    const bool rises = !high; /* behind the 74HC14 */
     const int source = (line_b ? 2 : 0) + (rises ? 0 : 1);
     if (raise_flag(p, source))
         p->way[source] = (int8_t)way;
@@ -83,7 +83,7 @@ static int test(struct port *p)
  * into DECCounter. */
 static int decode(struct port *p, bool line_a, bool line_b)
 {
-    static const int LOW[] = {1, -1, -1, 1};
+    static const int LOW[] = { 1, -1, -1, 1 };
     const bool high = p->source < 2 ? !line_b : !line_a;
     const int more = high && FLAG[p->source] != PORT_B_DOWN ? JUMP : 0;
     p->step = high ? -LOW[p->source] : LOW[p->source];
@@ -102,13 +102,9 @@ static void wipe(struct port *p)
 int port_go(struct port *p, bool line_a, bool line_b)
 {
     switch (p->place) {
-    case PORT_TEST:
-        return test(p);
-    case PORT_DROP:
-        p->flags &= (uint8_t)~FLAG[p->source];
-        return serve(p);
-    case PORT_LEVEL:
-        return decode(p, line_a, line_b);
+    case PORT_TEST:  return test(p);
+    case PORT_DROP:  p->flags &= (uint8_t)~FLAG[p->source]; return serve(p);
+    case PORT_LEVEL: return decode(p, line_a, line_b);
     case PORT_COUNT:
         p->counter = (uint16_t)(p->counter + p->step);
         p->served++;
@@ -118,19 +114,14 @@ int port_go(struct port *p, bool line_a, bool line_b)
     case PORT_COUNT_2:
         p->counter_2 = (uint16_t)(p->counter_2 + p->step);
         return p->clear == PORT_CLEAR_ALL ? leave(p) : go_to(p, PORT_RETURN, RETI);
-    case PORT_ZERO:
-        p->counter = 0;
-        return go_to(p, PORT_MARK, MEMORY);
+    case PORT_ZERO: p->counter = 0; return go_to(p, PORT_MARK, MEMORY);
     case PORT_MARK:
         p->zeroed++;
         p->latest = p->source + 1;
         return leave(p);
-    case PORT_WIPE:
-        wipe(p);
-        return go_to(p, PORT_RETURN, RETI);
+    case PORT_WIPE:   wipe(p); return go_to(p, PORT_RETURN, RETI);
     case PORT_RETURN:
-    case PORT_IDLE:
-        break;
+    case PORT_IDLE:   break;
     }
     p->place = PORT_IDLE;
     return 0;

@@ -24,7 +24,7 @@ static void note(struct pwm *p, const struct pwm_config *c)
 
 void pwm_reset(struct pwm *p, const struct pwm_config *c, double filtered, int32_t duty)
 {
-    *p = (struct pwm){.wanted = duty, .duty = duty, .filtered = filtered};
+    *p = (struct pwm){ .wanted = duty, .duty = duty, .filtered = filtered };
     p->least = p->most = pwm_voltage(p, c);
 }
 

@@ -12,24 +12,24 @@
 #include <stdint.h>
 
 struct pwm_config {
-    int32_t period;             /* [clocks] of the PWM, 2 .. 65536; as many steps of duty */
-    double  tau;                /* [clocks] R C */
-    double  high;               /* [V] pin when high */
-    double  offset;             /* [V] VR1, first op-amp */
-    double  gain;               /* of the second */
-    double  limit;              /* [V] saturation of the second, both ways */
+    int32_t period; /* [clocks] of the PWM, 2 .. 65536; as many steps of duty */
+    double tau;     /* [clocks] R C */
+    double high;    /* [V] pin when high */
+    double offset;  /* [V] VR1, first op-amp */
+    double gain;    /* of the second */
+    double limit;   /* [V] saturation of the second, both ways */
 };
 
 struct pwm {
-    int32_t wanted;             /* [clocks] TBCCR1 as written */
-    int32_t duty;               /* [clocks] as latched at the start of this period */
-    int64_t begin;              /* [clock] of this period */
-    int64_t clock;              /* [clock] the filter stands at */
-    double  filtered;           /* [V] Vc there */
-    double  area;               /* [V clocks] integral of the voltage since pwm_mean */
-    int64_t area_begin;         /* [clock] */
-    double  least, most;        /* [V] of the voltage in this period so far */
-    double  ripple;             /* [V] most - least of the latest whole period */
+    int32_t wanted;     /* [clocks] TBCCR1 as written */
+    int32_t duty;       /* [clocks] as latched at the start of this period */
+    int64_t begin;      /* [clock] of this period */
+    int64_t clock;      /* [clock] the filter stands at */
+    double filtered;    /* [V] Vc there */
+    double area;        /* [V clocks] integral of the voltage since pwm_mean */
+    int64_t area_begin; /* [clock] */
+    double least, most; /* [V] of the voltage in this period so far */
+    double ripple;      /* [V] most - least of the latest whole period */
 };
 
 /* At clock 0, with the capacitor at `filtered` [V] and a duty. */

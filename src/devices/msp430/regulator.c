@@ -24,8 +24,8 @@ int16_t regulator_tick(const struct regulator_config *c, struct regulator *s, in
     if (c->kind != REGULATOR_P) {
         integrate(c, s, error);
         const int32_t factor = c->kind == REGULATOR_SUM ? s->sum : fixed_multiply(error, s->count);
-        s->integral = fixed_saturate16(fixed_scale(fixed_multiply48(c->i_gain, factor),
-                                                   c->i_shift));
+        s->integral =
+            fixed_saturate16(fixed_scale(fixed_multiply48(c->i_gain, factor), c->i_shift));
     }
     return fixed_saturate16((int32_t)s->proportional + s->integral);
 }

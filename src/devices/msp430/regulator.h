@@ -16,8 +16,8 @@ enum regulator_kind { REGULATOR_P = 0, REGULATOR_LITERAL = 1, REGULATOR_SUM = 2 
 
 /* What the integral does outside its band. */
 enum regulator_outside {
-    REGULATOR_RESET = 0,              /* count and sum go to 0 */
-    REGULATOR_HOLD = 1,               /* they stand still, and I goes on with them */
+    REGULATOR_RESET = 0, /* count and sum go to 0 */
+    REGULATOR_HOLD = 1,  /* they stand still, and I goes on with them */
 };
 
 enum { REGULATOR_SHIFT_MAX = 31 };
@@ -25,16 +25,16 @@ enum { REGULATOR_SHIFT_MAX = 31 };
 struct regulator_config {
     enum regulator_kind kind;
     int16_t p_gain, i_gain;
-    int     p_shift, i_shift;
-    int16_t band;               /* [counts]; 0: no band */
+    int p_shift, i_shift;
+    int16_t band; /* [counts]; 0: no band */
     enum regulator_outside outside;
 };
 
 struct regulator {
-    int16_t count;              /* periods, literal */
-    int32_t sum;                /* [counts] sum of errors */
-    int16_t proportional;       /* [PWM counts] */
-    int16_t integral;           /* [PWM counts] */
+    int16_t count;        /* periods, literal */
+    int32_t sum;          /* [counts] sum of errors */
+    int16_t proportional; /* [PWM counts] */
+    int16_t integral;     /* [PWM counts] */
 };
 
 /* One period; deviation of the PWM from its middle [PWM counts]. */

@@ -5,8 +5,10 @@
 
 void sequence_reset(struct sequence *s, bool homed)
 {
-    *s = (struct sequence){.pb1.down = true, .pb2.down = true, .homed = homed,
-                           .state = homed ? SEQUENCE_READY : SEQUENCE_UNHOMED};
+    *s = (struct sequence){ .pb1.down = true,
+                            .pb2.down = true,
+                            .homed = homed,
+                            .state = homed ? SEQUENCE_READY : SEQUENCE_UNHOMED };
 }
 
 /* True in the tick in which the button is pressed. */
@@ -49,7 +51,7 @@ static void close_loop(struct sequence *s, const struct sequence_input *in)
 {
     const int64_t counts = trapezoid_counts(&s->track);
     trapezoid_put(&s->track, counts + fixed_subtract(in->counter, (uint16_t)counts));
-    s->law = (struct regulator){0};
+    s->law = (struct regulator){ 0 };
     s->still = 0;
 }
 

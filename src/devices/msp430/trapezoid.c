@@ -7,8 +7,8 @@ int64_t trapezoid_counts(const struct trapezoid *t)
 
 void trapezoid_put(struct trapezoid *t, int64_t counts)
 {
-    *t = (struct trapezoid){.place = counts * (1 << TRAPEZOID_POINT),
-                            .target = counts * (1 << TRAPEZOID_POINT)};
+    *t = (struct trapezoid){ .place = counts * (1 << TRAPEZOID_POINT),
+                             .target = counts * (1 << TRAPEZOID_POINT) };
 }
 
 void trapezoid_freeze(struct trapezoid *t)

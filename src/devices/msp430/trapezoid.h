@@ -12,16 +12,16 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { TRAPEZOID_POINT = 16 };          /* bits behind the binary point of everything here */
+enum { TRAPEZOID_POINT = 16 }; /* bits behind the binary point of everything here */
 
 /* Ticks to rest are a 16-bit word. */
 enum { TRAPEZOID_TICKS_MAX = 65535 };
 
 struct trapezoid {
-    int64_t place;              /* Q32.16 [counts] TRACK: three words */
-    int64_t target;             /* Q32.16 [counts] */
-    int32_t speed;              /* Q16.16 [counts/tick] */
-    int32_t change;             /* Q16.16 [counts/tick] speed less that of the tick before */
+    int64_t place;  /* Q32.16 [counts] TRACK: three words */
+    int64_t target; /* Q32.16 [counts] */
+    int32_t speed;  /* Q16.16 [counts/tick] */
+    int32_t change; /* Q16.16 [counts/tick] speed less that of the tick before */
 };
 
 /* Whole counts of TRACK: the two upper words. */

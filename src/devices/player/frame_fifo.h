@@ -10,15 +10,15 @@
 enum { FRAME_AXES = 4, FRAME_FIFO_LARGEST = 2304 };
 
 struct frame {
-    int16_t command[FRAME_AXES];    /* [pulses] of one period */
-    uint16_t event;                 /* at its begin; 0 none; 16 bits, as 8 would leave padding */
+    int16_t command[FRAME_AXES]; /* [pulses] of one period */
+    uint16_t event;              /* at its begin; 0 none; 16 bits, as 8 would leave padding */
 };
 
 struct frame_fifo {
-    int32_t depth;          /* 1 .. FRAME_FIFO_LARGEST */
-    int32_t head;           /* place of the oldest frame */
+    int32_t depth; /* 1 .. FRAME_FIFO_LARGEST */
+    int32_t head;  /* place of the oldest frame */
     int32_t stock;
-    bool    high;           /* the stock was above half the depth at the last look */
+    bool high; /* the stock was above half the depth at the last look */
     struct frame frame[FRAME_FIFO_LARGEST];
 };
 

@@ -71,9 +71,8 @@ bool player_good_config(const struct player_config *c)
 {
     enum { LONGEST = PLAYER_PERIOD_LONGEST };
 
-    return c->depth >= 1 && c->depth <= FRAME_FIFO_LARGEST && c->width >= 1 &&
-           c->width <= LONGEST && c->setup >= 0 && c->setup <= LONGEST && c->hold >= 0 &&
-           c->hold <= LONGEST;
+    return c->depth >= 1 && c->depth <= FRAME_FIFO_LARGEST && c->width >= 1 && c->width <= LONGEST
+           && c->setup >= 0 && c->setup <= LONGEST && c->hold >= 0 && c->hold <= LONGEST;
 }
 
 bool player_start(struct player *p, const struct player_config *config)
@@ -99,13 +98,13 @@ int32_t player_largest(const struct player *p, int32_t period)
 
 bool player_good_job(const struct player_job *job)
 {
-    bool ok = job->period >= 2 && job->period <= PLAYER_PERIOD_LONGEST &&
-              job->reserve >= RATE_RAMP_LEAST && job->reserve <= 1.0;
+    bool ok = job->period >= 2 && job->period <= PLAYER_PERIOD_LONGEST
+              && job->reserve >= RATE_RAMP_LEAST && job->reserve <= 1.0;
 
     for (int i = 0; i < FRAME_AXES; i++) {
-        ok = ok && job->speed[i] >= 0.0 && job->speed[i] <= 1e9 &&
-             (job->acc[i] == 0.0 || (job->acc[i] >= 1.0 && job->acc[i] <= 1e12)) &&
-             (job->jerk[i] == 0.0 || (job->jerk[i] >= 1.0 && job->jerk[i] <= 1e20));
+        ok = ok && job->speed[i] >= 0.0 && job->speed[i] <= 1e9
+             && (job->acc[i] == 0.0 || (job->acc[i] >= 1.0 && job->acc[i] <= 1e12))
+             && (job->jerk[i] == 0.0 || (job->jerk[i] >= 1.0 && job->jerk[i] <= 1e20));
     }
     return ok;
 }
@@ -222,7 +221,7 @@ void player_clear(struct player *p)
         }
     }
     for (int i = 0; i < FRAME_AXES; i++) {
-        if (p->turned[i] > p->clock) {      /* a change of direction that has not come */
+        if (p->turned[i] > p->clock) { /* a change of direction that has not come */
             p->turned[i] = p->clock;
             p->backward[i] = !p->backward[i];
         }

@@ -36,32 +36,32 @@
 enum {
     PLAYER_CLOCK_NS = 20,
     PLAYER_FULL_RATE = 1 << 24,
-    PLAYER_GRID = 1000,                 /* [clocks] between steps of the rate: 20 us */
-    PLAYER_PERIOD_LONGEST = 500000,     /* [clocks] 10 ms */
+    PLAYER_GRID = 1000,             /* [clocks] between steps of the rate: 20 us */
+    PLAYER_PERIOD_LONGEST = 500000, /* [clocks] 10 ms */
     PLAYER_EVENT_LARGEST = 31
 };
 
 struct player_config {
-    int32_t depth;          /* of the FIFO [frames] 1 .. FRAME_FIFO_LARGEST */
-    int32_t width;          /* [clocks] a pulse is high, 1 or more, and low at least as long */
-    int32_t setup;          /* [clocks] from a change of direction to the next pulse, 0 or more */
-    int32_t hold;           /* [clocks] from the end of a pulse to a change of direction */
+    int32_t depth; /* of the FIFO [frames] 1 .. FRAME_FIFO_LARGEST */
+    int32_t width; /* [clocks] a pulse is high, 1 or more, and low at least as long */
+    int32_t setup; /* [clocks] from a change of direction to the next pulse, 0 or more */
+    int32_t hold;  /* [clocks] from the end of a pulse to a change of direction */
 };
 
 /* What a job brings. */
 struct player_job {
-    int32_t period;         /* [clocks] M, 2 .. PLAYER_PERIOD_LONGEST */
-    double  reserve;        /* share of acc and jerk that its plan leaves free */
-    double  speed[FRAME_AXES];      /* [pulses/s] largest planned; 0 not known */
-    double  acc[FRAME_AXES];        /* [pulses/s^2]; 0: this axis has no say in the rate */
-    double  jerk[FRAME_AXES];       /* [pulses/s^3]; 0: only its acceleration does */
+    int32_t period;           /* [clocks] M, 2 .. PLAYER_PERIOD_LONGEST */
+    double reserve;           /* share of acc and jerk that its plan leaves free */
+    double speed[FRAME_AXES]; /* [pulses/s] largest planned; 0 not known */
+    double acc[FRAME_AXES];   /* [pulses/s^2]; 0: this axis has no say in the rate */
+    double jerk[FRAME_AXES];  /* [pulses/s^3]; 0: only its acceleration does */
 };
 
 enum player_status {
     PLAYER_OK = 0,
-    PLAYER_FULL,            /* no room in the FIFO: the frame is refused (overflow) */
-    PLAYER_RANGE            /* a command beyond player_largest, no such event, a job without sense,
-                             * a frame behind the last one */
+    PLAYER_FULL, /* no room in the FIFO: the frame is refused (overflow) */
+    PLAYER_RANGE /* a command beyond player_largest, no such event, a job without sense,
+                  * a frame behind the last one */
 };
 
 /* What it tells, a bit each. */
@@ -78,8 +78,8 @@ enum player_tells {
 /* Told since it was last taken. */
 struct player_told {
     uint32_t what;
-    uint32_t events;                /* bit n: event n, 1 .. PLAYER_EVENT_LARGEST */
-    int64_t  clock[PLAYER_TELLS];   /* of each bit, the latest */
+    uint32_t events;             /* bit n: event n, 1 .. PLAYER_EVENT_LARGEST */
+    int64_t clock[PLAYER_TELLS]; /* of each bit, the latest */
 };
 
 struct player {
@@ -87,28 +87,28 @@ struct player {
     struct player_job job;
     struct frame_fifo fifo;
     struct frame frame;         /* in progress; zeros if there is none */
-    bool    fresh;              /* a job has begun, its first period not */
-    bool    begun;              /* a period is in progress */
-    bool    playing;            /* and it has a frame */
-    bool    whole;              /* no more frames come */
+    bool fresh;                 /* a job has begun, its first period not */
+    bool begun;                 /* a period is in progress */
+    bool playing;               /* and it has a frame */
+    bool whole;                 /* no more frames come */
     int64_t clock;              /* everything up to here is done */
     int64_t base;               /* [clock] from which the phase grows: behind dead clocks */
     int64_t phase;              /* [1/PLAYER_FULL_RATE ticks] at base, of the period */
     int32_t rate;               /* 0 .. PLAYER_FULL_RATE */
     int64_t before[FRAME_AXES]; /* [pulses] of the frames before */
     int64_t last[FRAME_AXES];   /* [clock] latest pulse up to base; -1 none yet */
-    bool    backward[FRAME_AXES];
-    int64_t turned[FRAME_AXES]; /* [clock] from which it is so; until then the other way */
-    int32_t target;             /* 0 or 1: where the rate is or goes */
-    bool    ramping, braking;   /* braking: the ramp ends between 0 and 1 */
-    int64_t ramp_begin, ramp_step;  /* [clock] begin, next step of its grid */
+    bool backward[FRAME_AXES];
+    int64_t turned[FRAME_AXES];    /* [clock] from which it is so; until then the other way */
+    int32_t target;                /* 0 or 1: where the rate is or goes */
+    bool ramping, braking;         /* braking: the ramp ends between 0 and 1 */
+    int64_t ramp_begin, ramp_step; /* [clock] begin, next step of its grid */
     struct rate_bounds bounds;
     struct rate_ramp ramp;
     struct player_told told;
-    int64_t frames;             /* begun since the job began */
-    int64_t dry;                /* periods without a frame, of all jobs */
-    int64_t refused;            /* frames, of all jobs */
-    int64_t dead;               /* [clocks] put in for changes of direction */
+    int64_t frames;  /* begun since the job began */
+    int64_t dry;     /* periods without a frame, of all jobs */
+    int64_t refused; /* frames, of all jobs */
+    int64_t dead;    /* [clocks] put in for changes of direction */
 };
 
 /* Power on: all counts 0, nothing moves. False: no such configuration. */

@@ -7,7 +7,7 @@
 #include "el_extremes.h"
 #include "player_parts.h"
 
-static const double CLOCK = 1e-9 * PLAYER_CLOCK_NS;     /* [s] */
+static const double CLOCK = 1e-9 * PLAYER_CLOCK_NS; /* [s] */
 
 /* Largest speeds of what is in the FIFO: in a frame of c pulses, which are rounded, an axis goes
  * no faster than (c + 1) / T and what its acceleration adds within the frame. */
@@ -40,7 +40,7 @@ static void begin_ramp(struct player *p)
     look_ahead(p);
     rate_ramp_make(&p->ramp, &p->bounds, from, to);
     if (!p->whole && rate_ramp_way(&p->ramp) > p->fifo.stock * p->job.period * CLOCK) {
-        for (int i = 0; i < FRAME_AXES; i++) {      /* it goes beyond what is in stock */
+        for (int i = 0; i < FRAME_AXES; i++) { /* it goes beyond what is in stock */
             if (p->bounds.speed[i] > 0.0 && p->job.speed[i] > 0.0) {
                 p->bounds.speed[i] = p->job.speed[i];
             }

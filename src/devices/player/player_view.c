@@ -49,6 +49,6 @@ double player_rate(const struct player *p)
 
 double player_velocity(const struct player *p, int axis)
 {
-    return p->frame.command[axis] * player_rate(p) * 1e9 /
-           ((double)p->job.period * PLAYER_CLOCK_NS);
+    return p->frame.command[axis] * player_rate(p) * 1e9
+           / ((double)p->job.period * PLAYER_CLOCK_NS);
 }

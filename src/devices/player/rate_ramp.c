@@ -38,8 +38,8 @@ double rate_ramp_bend_most(const struct rate_bounds *b, double rate)
 /* Largest change of r'^2 over the piece behind node k, whose nodes have their rates. */
 static double change(const struct rate_ramp *r, const struct rate_bounds *b, int k)
 {
-    return 2.0 * rate_ramp_bend_most(b, el_max(r->rate[k], r->rate[k + 1])) *
-           fabs(r->rate[k + 1] - r->rate[k]);
+    return 2.0 * rate_ramp_bend_most(b, el_max(r->rate[k], r->rate[k + 1]))
+           * fabs(r->rate[k + 1] - r->rate[k]);
 }
 
 /* Times and signs of the slopes, from the sizes of the slopes. On a piece r'^2 is linear in r, so
@@ -50,8 +50,8 @@ static void run_through(struct rate_ramp *r)
 
     r->time[0] = 0.0;
     for (int k = 0; k < r->pieces; k++) {
-        r->time[k + 1] = r->time[k] + 2.0 * fabs(r->rate[k + 1] - r->rate[k]) /
-                                      (r->slope[k] + r->slope[k + 1]);
+        r->time[k + 1] =
+            r->time[k] + 2.0 * fabs(r->rate[k + 1] - r->rate[k]) / (r->slope[k] + r->slope[k + 1]);
     }
     for (int k = 0; k <= r->pieces; k++) {
         r->slope[k] *= sign;
@@ -66,12 +66,12 @@ void rate_ramp_make(struct rate_ramp *r, const struct rate_bounds *b, double fro
     memset(r, 0, sizeof *r);
     r->rate[0] = from;
     if (from == to || isinf(rate_ramp_slope_most(b, 1.0))) {
-        r->rate[0] = to;        /* nothing moves: at once */
+        r->rate[0] = to; /* nothing moves: at once */
         return;
     }
     r->pieces = N;
     for (int k = 0; k <= N; k++) {
-        const double x = (double)k / N;     /* short pieces at both ends, where most changes */
+        const double x = (double)k / N; /* short pieces at both ends, where most changes */
         r->rate[k] = k < N ? from + (to - from) * x * x * (3.0 - 2.0 * x) : to;
     }
     square[0] = 0.0;
@@ -132,8 +132,8 @@ void rate_ramp_brake(struct rate_ramp *r, const struct rate_bounds *b, double ti
         if (isinf(bend)) {
             r->slope[n] = 0.0;
         } else if (left <= 0.0 || k + 1 == old.pieces) {
-            r->rate[n + 1] = left <= 0.0 ? r->rate[n] + copysign(square / (2.0 * bend), slope)
-                                         : old.rate[k + 1];
+            r->rate[n + 1] =
+                left <= 0.0 ? r->rate[n] + copysign(square / (2.0 * bend), slope) : old.rate[k + 1];
             r->pieces++;
         } else {
             r->rate[n + 1] = old.rate[k + 1];
@@ -153,7 +153,7 @@ double rate_ramp_way(const struct rate_ramp *r)
 {
     double way = 0.0;
 
-    for (int k = 0; k < r->pieces; k++) {       /* of a parabola: Simpson's rule is exact */
+    for (int k = 0; k < r->pieces; k++) { /* of a parabola: Simpson's rule is exact */
         double slope;
         const double t = r->time[k + 1] - r->time[k],
                      middle = rate_ramp_at(r, r->time[k] + 0.5 * t, &slope);

@@ -28,17 +28,17 @@ enum { RATE_RAMP_PIECES = 64, RATE_RAMP_AXES = 4 };
 #define RATE_RAMP_LEAST 0.02
 
 struct rate_bounds {
-    double reserve;                 /* RATE_RAMP_LEAST .. 1 */
-    double speed[RATE_RAMP_AXES];   /* V [pulses/s]; 0: the axis stands */
-    double acc[RATE_RAMP_AXES];     /* A [pulses/s^2] > 0 */
-    double jerk[RATE_RAMP_AXES];    /* J [pulses/s^3]; 0: no limit */
+    double reserve;               /* RATE_RAMP_LEAST .. 1 */
+    double speed[RATE_RAMP_AXES]; /* V [pulses/s]; 0: the axis stands */
+    double acc[RATE_RAMP_AXES];   /* A [pulses/s^2] > 0 */
+    double jerk[RATE_RAMP_AXES];  /* J [pulses/s^3]; 0: no limit */
 };
 
 struct rate_ramp {
     int32_t pieces;
-    double  time[RATE_RAMP_PIECES + 1];     /* [s] of each node since its begin, rising */
-    double  rate[RATE_RAMP_PIECES + 1];
-    double  slope[RATE_RAMP_PIECES + 1];    /* [1/s] signed */
+    double time[RATE_RAMP_PIECES + 1]; /* [s] of each node since its begin, rising */
+    double rate[RATE_RAMP_PIECES + 1];
+    double slope[RATE_RAMP_PIECES + 1]; /* [1/s] signed */
 };
 
 /* Bounds of |r'| [1/s] and |r''| [1/s^2] up to this rate; INFINITY without any. */

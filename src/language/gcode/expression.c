@@ -6,14 +6,28 @@
 #include "elementary.h"
 #include "modes.h"
 
-static const double EQUAL = 1e-6;       /* closer values are equal, as LinuxCNC documents it */
+static const double EQUAL = 1e-6; /* closer values are equal, as LinuxCNC documents it */
 static const double DEGREE = 0.017453292519943295;
-static const double BITS_MOST = 2147483647.5;   /* rounded they have 32 bits */
-enum { DEEPEST = 30 };                  /* brackets and signs within one another */
+static const double BITS_MOST = 2147483647.5; /* rounded they have 32 bits */
+enum { DEEPEST = 30 };                        /* brackets and signs within one another */
 
 enum operation {
-    POWER, TIMES, DIVIDED, MODULO, PLUS, MINUS, EQUALS, DIFFERS, GREATER, AT_LEAST, LESS, AT_MOST,
-    AND, OR, XOR, NO_OPERATION
+    POWER,
+    TIMES,
+    DIVIDED,
+    MODULO,
+    PLUS,
+    MINUS,
+    EQUALS,
+    DIFFERS,
+    GREATER,
+    AT_LEAST,
+    LESS,
+    AT_MOST,
+    AND,
+    OR,
+    XOR,
+    NO_OPERATION
 };
 
 static bool of_fanuc(const struct reading *s)
@@ -31,11 +45,14 @@ static int rank(enum operation o, bool fanuc)
 /* The next operation; it is taken. */
 static enum operation operation(struct reading *s)
 {
-    static const struct { char word[4]; enum operation is; } words[] = {
-        { "**", POWER }, { "*", TIMES }, { "/", DIVIDED }, { "+", PLUS }, { "-", MINUS },
-        { "MOD", MODULO }, { "EQ", EQUALS }, { "NE", DIFFERS }, { "GT", GREATER },
-        { "GE", AT_LEAST }, { "LT", LESS }, { "LE", AT_MOST }, { "AND", AND }, { "OR", OR },
-        { "XOR", XOR },
+    static const struct {
+        char word[4];
+        enum operation is;
+    } words[] = {
+        { "**", POWER },   { "*", TIMES },     { "/", DIVIDED }, { "+", PLUS },
+        { "-", MINUS },    { "MOD", MODULO },  { "EQ", EQUALS }, { "NE", DIFFERS },
+        { "GT", GREATER }, { "GE", AT_LEAST }, { "LT", LESS },   { "LE", AT_MOST },
+        { "AND", AND },    { "OR", OR },       { "XOR", XOR },
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         if (reading_word(s, words[i].word)) {
@@ -55,21 +72,21 @@ static double modulo(double a, double b)
 static double apply(enum operation o, double a, double b)
 {
     switch (o) {
-    case POWER:     return el_pow(a, b);
-    case TIMES:     return a * b;
-    case DIVIDED:   return a / b;
-    case MODULO:    return modulo(a, b);
-    case PLUS:      return a + b;
-    case MINUS:     return a - b;
-    case EQUALS:    return fabs(a - b) < EQUAL;
-    case DIFFERS:   return fabs(a - b) >= EQUAL;
-    case GREATER:   return a > b;
-    case AT_LEAST:  return a >= b;
-    case LESS:      return a < b;
-    case AT_MOST:   return a <= b;
-    case AND:       return a != 0.0 && b != 0.0;
-    case OR:        return a != 0.0 || b != 0.0;
-    case XOR:       return (a != 0.0) != (b != 0.0);
+    case POWER:        return el_pow(a, b);
+    case TIMES:        return a * b;
+    case DIVIDED:      return a / b;
+    case MODULO:       return modulo(a, b);
+    case PLUS:         return a + b;
+    case MINUS:        return a - b;
+    case EQUALS:       return fabs(a - b) < EQUAL;
+    case DIFFERS:      return fabs(a - b) >= EQUAL;
+    case GREATER:      return a > b;
+    case AT_LEAST:     return a >= b;
+    case LESS:         return a < b;
+    case AT_MOST:      return a <= b;
+    case AND:          return a != 0.0 && b != 0.0;
+    case OR:           return a != 0.0 || b != 0.0;
+    case XOR:          return (a != 0.0) != (b != 0.0);
     case NO_OPERATION: break;
     }
     return 0.0;
@@ -120,7 +137,7 @@ static enum fault chain(struct reading *s, int least, bool bare, double *value)
 {
     const int32_t from = s->at;
     bool whole;
-    enum fault f = value_of(s, from - 1, value, &whole);    /* behind [ or an operation */
+    enum fault f = value_of(s, from - 1, value, &whole); /* behind [ or an operation */
 
     while (f == FAULT_NONE && reading_peek(s) != ']' && s->at < s->end) {
         const int32_t at = s->at;
@@ -178,15 +195,28 @@ enum fault expression_bare(struct reading *s, double *value)
 }
 
 enum function {
-    ABS, ACOS, ASIN, ATAN, COS, EXISTS, EXP, FIX, FUP, LN, ROUND, SIN, SQRT, TAN, NO_FUNCTION
+    ABS,
+    ACOS,
+    ASIN,
+    ATAN,
+    COS,
+    EXISTS,
+    EXP,
+    FIX,
+    FUP,
+    LN,
+    ROUND,
+    SIN,
+    SQRT,
+    TAN,
+    NO_FUNCTION
 };
 
 static enum function function(struct reading *s)
 {
-    static const char words[NO_FUNCTION][8] = {
-        "ABS", "ACOS", "ASIN", "ATAN", "COS", "EXISTS", "EXP", "FIX", "FUP", "LN", "ROUND", "SIN",
-        "SQRT", "TAN"
-    };
+    static const char words[NO_FUNCTION][8] = { "ABS",    "ACOS", "ASIN", "ATAN", "COS",
+                                                "EXISTS", "EXP",  "FIX",  "FUP",  "LN",
+                                                "ROUND",  "SIN",  "SQRT", "TAN" };
     int i = 0;
     while (i < NO_FUNCTION && !reading_word(s, words[i])) {
         i++;
@@ -198,19 +228,19 @@ static enum function function(struct reading *s)
 static double of(enum function f, double x, bool fanuc)
 {
     switch (f) {
-    case ABS:   return fabs(x);
-    case ACOS:  return el_acos(x) / DEGREE;
-    case ASIN:  return el_asin(x) / DEGREE;
-    case COS:   return el_cos(x * DEGREE);
-    case EXP:   return el_exp(x);
-    case FIX:                               /* a zero without a sign, that ATAN would see */
+    case ABS:  return fabs(x);
+    case ACOS: return el_acos(x) / DEGREE;
+    case ASIN: return el_asin(x) / DEGREE;
+    case COS:  return el_cos(x * DEGREE);
+    case EXP:  return el_exp(x);
+    case FIX: /* a zero without a sign, that ATAN would see */
         return (fanuc && x < 0.0 ? ceil(x) : floor(x)) + 0.0;
-    case FUP:   return (fanuc && x < 0.0 ? floor(x) : ceil(x)) + 0.0;
-    case LN:    return el_log(x);
-    case ROUND: return round(x) + 0.0;
-    case SIN:   return el_sin(x * DEGREE);
-    case SQRT:  return sqrt(x);
-    case TAN:   return el_tan(x * DEGREE);
+    case FUP:         return (fanuc && x < 0.0 ? floor(x) : ceil(x)) + 0.0;
+    case LN:          return el_log(x);
+    case ROUND:       return round(x) + 0.0;
+    case SIN:         return el_sin(x * DEGREE);
+    case SQRT:        return sqrt(x);
+    case TAN:         return el_tan(x * DEGREE);
     case ATAN:
     case EXISTS:
     case NO_FUNCTION: break;
@@ -259,8 +289,8 @@ static enum fault call(struct reading *s, int32_t from, double *value)
     if (f != FAULT_NONE) {
         return f;
     }
-    if (((g == ACOS || g == ASIN) && fabs(x) > 1.0) || (g == SQRT && x < 0.0) ||
-        (g == LN && x <= 0.0)) {
+    if (((g == ACOS || g == ASIN) && fabs(x) > 1.0) || (g == SQRT && x < 0.0)
+        || (g == LN && x <= 0.0)) {
         return reading_fault(s, FAULT_ARGUMENT, at);
     }
     *value = g == ATAN ? el_atan2(x, y) / DEGREE : of(g, x, of_fanuc(s));
@@ -316,8 +346,9 @@ static bool sign_of_value(const struct reading *s)
     while (i < s->end && reading_blank(s->text[i])) {
         i++;
     }
-    return i < s->end && (s->text[i] == '#' || s->text[i] == '[' || s->text[i] == '-' ||
-                          s->text[i] == '+' || reading_letter(s->text[i]));
+    return i < s->end
+           && (s->text[i] == '#' || s->text[i] == '[' || s->text[i] == '-' || s->text[i] == '+'
+               || reading_letter(s->text[i]));
 }
 
 /* Read a value, which may be vacant. */

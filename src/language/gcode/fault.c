@@ -24,7 +24,7 @@ void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t len
 }
 
 /* The texts themselves, not pointers to them, which would not be constant in a shared library. */
-#define ROW(name, text) [name] = text,
+#define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[FAULT_COUNT][76] = { FAULT_TEXTS(ROW) };
 FAULT_TEXTS(FITS)

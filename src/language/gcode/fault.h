@@ -9,7 +9,7 @@
  * last. */
 #define FAULT_TEXTS(X) \
     X(FAULT_NONE, "no fault") \
-    X(FAULT_CHARACTER, "unexpected character")  /* neither letter, comment nor end of line */ \
+    X(FAULT_CHARACTER, "unexpected character") /* neither letter, comment nor end of line */ \
     X(FAULT_NUMBER, "number expected after") \
     X(FAULT_DIGITS, "number of more than 120 digits") \
     X(FAULT_ZERO, "byte 0, which no text has, behind") \
@@ -17,23 +17,23 @@
     X(FAULT_WORD_COUNT, "too many words in the line") \
     X(FAULT_READ, "the program cannot be read") \
     X(FAULT_COMMENT, "comment without )") \
-    X(FAULT_BRACKET, "[ ] expected")  /* [ ] expected, or left open */ \
-    X(FAULT_OPERATOR, "operation or ] expected")  /* no operation that exists */ \
+    X(FAULT_BRACKET, "[ ] expected")             /* [ ] expected, or left open */ \
+    X(FAULT_OPERATOR, "operation or ] expected") /* no operation that exists */ \
     X(FAULT_NAME, "a name has 1 to 31 characters between < and >") \
     X(FAULT_ATAN, "ATAN needs [ ]/[ ]") \
     X(FAULT_EXISTS, "EXISTS needs [#<name>]") \
-    X(FAULT_ASSIGNMENT, "= expected behind")  /* # at the start of a word, no = behind it */ \
+    X(FAULT_ASSIGNMENT, "= expected behind") /* # at the start of a word, no = behind it */ \
     X(FAULT_DEEP, "more than 30 brackets within one another") \
     X(FAULT_DIVISION, "division by zero") \
-    X(FAULT_ARGUMENT, "no value for this argument")  /* a function has no value there */ \
+    X(FAULT_ARGUMENT, "no value for this argument") /* a function has no value there */ \
     X(FAULT_LARGE, "value too large") \
-    X(FAULT_PARAMETER, "no such parameter")  /* a number that no parameter has */ \
-    X(FAULT_UNSET, "parameter has not been set")  /* a name read before it was set */ \
+    X(FAULT_PARAMETER, "no such parameter")      /* a number that no parameter has */ \
+    X(FAULT_UNSET, "parameter has not been set") /* a name read before it was set */ \
     /* a name that other controllers give a value */ \
     X(FAULT_FOREIGN, "this machine has no value for") \
     X(FAULT_FIXED, "parameter cannot be set") \
     X(FAULT_NAMES, "more than 100 named parameters") \
-    X(FAULT_O_WORD, "unknown O word")  /* no O word of the language, or in the middle of a line */ \
+    X(FAULT_O_WORD, "unknown O word") /* no O word of the language, or in the middle of a line */ \
     /* a label computed where it must be written */ \
     X(FAULT_O_LABEL, "only a call may compute its O number") \
     X(FAULT_O_BEHIND, "O words allow no other word in their line") \
@@ -48,20 +48,20 @@
     X(FAULT_SEQUENCE, "no line of this program has this N") \
     X(FAULT_LOOP_END, "DO without the END of its number") \
     X(FAULT_THEN, "IF [ ] goes on with GOTO or THEN, WHILE [ ] with DO") \
-    X(FAULT_ALARM, "alarm of the program")  /* #3000 = n (message) */ \
+    X(FAULT_ALARM, "alarm of the program") /* #3000 = n (message) */ \
     /* G66 or a canned cycle while G66 is in force */ \
     X(FAULT_MODAL, "not while G66 is in force (G67 ends it)") \
-    X(FAULT_NO_SUB, "no such subprogram")  /* the text does not have what is called */ \
+    X(FAULT_NO_SUB, "no such subprogram") /* the text does not have what is called */ \
     X(FAULT_USER, "no subprogram of its name (o<m100> sub) says what it does:") \
     X(FAULT_FILES, "more than 32 files are called") \
     X(FAULT_CALLS, "more than 10 calls within one another") \
-    X(FAULT_M99, "M99 in a subprogram that ends with endsub")  /* M99 in an o sub */ \
+    X(FAULT_M99, "M99 in a subprogram that ends with endsub") /* M99 in an o sub */ \
     X(FAULT_ENDLESS, "1,000,000 lines read again without anything that takes time") \
     /* A B C where the tool does not turn */ \
     X(FAULT_ANGLE, "this machine has no rotary axes (--angles: A B C in place of U V W)") \
-    X(FAULT_SIDE, "this machine has A B C in place of the axes U V W")  /* U V W where it does */ \
-    X(FAULT_WORD, "unknown word")  /* letter or G, M number not in the language */ \
-    X(FAULT_TWICE, "word given twice")  /* a letter other than G and M twice */ \
+    X(FAULT_SIDE, "this machine has A B C in place of the axes U V W") /* U V W where it does */ \
+    X(FAULT_WORD, "unknown word")      /* letter or G, M number not in the language */ \
+    X(FAULT_TWICE, "word given twice") /* a letter other than G and M twice */ \
     X(FAULT_GROUP, "second word of one modal group") \
     X(FAULT_M_COUNT, "more than four M words in the line") \
     /* two codes that take the same words: axes, or P */ \
@@ -70,9 +70,9 @@
     X(FAULT_VALUE, "value out of range") \
     X(FAULT_NO_MOTION, "axis word without G0, G1, G2 or G3") \
     X(FAULT_NO_DWELL, "G4 without P") \
-    X(FAULT_NO_AXES, "no axis word")  /* G10, G52, G53 or G92 without an axis */ \
-    X(FAULT_NO_SYSTEM, "G10 needs L2 or L20 and P0 to P9")  /* G10 without L2 or P */ \
-    X(FAULT_NO_OUTPUT, "output without P0 to P31")  /* M62 .. M65 without P */ \
+    X(FAULT_NO_AXES, "no axis word") /* G10, G52, G53 or G92 without an axis */ \
+    X(FAULT_NO_SYSTEM, "G10 needs L2 or L20 and P0 to P9") /* G10 without L2 or P */ \
+    X(FAULT_NO_OUTPUT, "output without P0 to P31")         /* M62 .. M65 without P */ \
     X(FAULT_G53, "G53 needs G0 or G1") \
     X(FAULT_AXIS, "axis is not active") \
     /* arc with neither centre nor radius, or half a centre */ \
@@ -85,14 +85,14 @@
     /* R form with end = start, or three points on one line */ \
     X(FAULT_ARC_CLOSED, "arc is not determined by its points") \
     X(FAULT_TURNING, "for turning; this is no lathe") \
-    X(FAULT_NURBS, "G5.2 is not ended by G5.3 before")  /* another motion or plane before G5.3 */ \
+    X(FAULT_NURBS, "G5.2 is not ended by G5.3 before") /* another motion or plane before G5.3 */ \
     X(FAULT_NURBS_END, "G5.2 is not ended by G5.3 behind") \
     X(FAULT_NURBS_NONE, "no G5.2 before") \
     X(FAULT_NURBS_FEW, "fewer points since G5.2 than its order L, or 3, before") \
     X(FAULT_NURBS_POINT, "point of a NURBS without both axes of the plane") \
     X(FAULT_NURBS_FEED, "NURBS with G93, in which a feed is that of one motion") \
     X(FAULT_SPLINE, "spline without control points (G5 I J P Q, G5.1 I J)") \
-    X(FAULT_SPLINE_PLANE, "splines are in the plane of G17")  /* not in the plane XY */ \
+    X(FAULT_SPLINE_PLANE, "splines are in the plane of G17") /* not in the plane XY */ \
     X(FAULT_CUSP, "spline turns on the spot") \
     X(FAULT_PLAIN, "this machine drives no splines") \
     /* changes the zero while G51 or G68 is in force, or G51 within G68 */ \
@@ -114,21 +114,21 @@
     /* a code without a word that it needs */ \
     X(FAULT_MISSING, "a word is missing that goes with") \
     X(FAULT_TOOL, "no such tool in the tool table") \
-    X(FAULT_NO_INPUTS, "this machine has no inputs for")  /* M66 where no inputs can be asked */ \
-    X(FAULT_NO_PROBE, "this machine has no probe for")  /* G38 without a probe */ \
-    X(FAULT_PROBE_POINT, "probing leads nowhere")  /* G38 to where the tool stands */ \
+    X(FAULT_NO_INPUTS, "this machine has no inputs for") /* M66 where no inputs can be asked */ \
+    X(FAULT_NO_PROBE, "this machine has no probe for")   /* G38 without a probe */ \
+    X(FAULT_PROBE_POINT, "probing leads nowhere")        /* G38 to where the tool stands */ \
     /* M72 without M70 or M73 in this call */ \
     X(FAULT_NO_MODES, "no M70 or M73 in this call before") \
     /* M72 or the end of a call with M73 beside a contour or G51, G68 */ \
     X(FAULT_RESTORE, "cutter compensation, G51 or G68 allow no change that this restores") \
-    X(FAULT_NO_TOOL, "no T since the tool change before")  /* M6 with no T since the one before */ \
+    X(FAULT_NO_TOOL, "no T since the tool change before") /* M6 with no T since the one before */ \
     /* G17.1, G18.1, G19.1 */ \
     X(FAULT_PLANE, "plane of U V W, in which this machine has no arcs or cycles") \
     X(FAULT_CYCLE_R, "canned cycle without R") \
     /* a cycle without the word along the normal of the plane */ \
     X(FAULT_CYCLE_DEPTH, "canned cycle without its depth") \
-    X(FAULT_CYCLE_Q, "canned cycle without Q")  /* G73 or G83 without Q */ \
-    X(FAULT_CYCLE_P, "canned cycle without P")  /* G82, G86, G88 or G89 without P */ \
+    X(FAULT_CYCLE_Q, "canned cycle without Q") /* G73 or G83 without Q */ \
+    X(FAULT_CYCLE_P, "canned cycle without P") /* G82, G86, G88 or G89 without P */ \
     /* G87 without the letters of I J K that it needs */ \
     X(FAULT_CYCLE_ASIDE, "G87 without I, J and K") \
     X(FAULT_TAP_K, "G33.1 without K, the way of a turn") \
@@ -148,7 +148,7 @@
     X(FAULT_CUTTER_WORD, "not while cutter compensation is on") \
     /* the first motion is too short, or cannot meet the second */ \
     X(FAULT_CUTTER_ENTRY, "first motion of cutter compensation cannot reach the contour") \
-    X(FAULT_CUTTER_EXIT, "motion behind G40 has to be straight")  /* an arc right behind G40 */ \
+    X(FAULT_CUTTER_EXIT, "motion behind G40 has to be straight") /* an arc right behind G40 */ \
     X(FAULT_CUTTER_ARC, "tool does not fit into the arc") \
     X(FAULT_CUTTER_CORNER, "tool does not fit into the corner in front of") \
     X(FAULT_CUTTER_SHORT, "motion too short for the tool to fit into its corners") \
@@ -177,43 +177,40 @@
     X(FAULT_NOTE_CHECKED, "lines that repeat are checked up to here")
 
 #define FAULT_ENTRY(name, text) name,
-enum fault {
-    FAULT_TEXTS(FAULT_ENTRY)
-    FAULT_COUNT
-};
+enum fault { FAULT_TEXTS(FAULT_ENTRY) FAULT_COUNT };
 
-enum { FAULT_FILE = 32 };      /* [byte] of the name of a file that is called */
+enum { FAULT_FILE = 32 }; /* [byte] of the name of a file that is called */
 
 enum { FAULT_LIST = 20, FAULT_NOTES = FAULT_COUNT - FAULT_NOTE_COMMENT };
 
 /* A note and where it stands, as below. */
 struct fault_note {
     enum fault what;
-    int32_t    line, at, length;
-    int64_t    offset;
-    char       file[FAULT_FILE];
+    int32_t line, at, length;
+    int64_t offset;
+    char file[FAULT_FILE];
 };
 
 /* Something wrong with a part program, or a note. */
 struct fault_report {
     enum fault fault;
-    int32_t    notes;       /* of what has been read, each kind once */
+    int32_t notes; /* of what has been read, each kind once */
     struct fault_note note[FAULT_NOTES];
-    int32_t    line;        /* source line, from 1 */
-    int64_t    offset;      /* [byte] where that line begins in the program, */
-    char       file[FAULT_FILE];    /* or in a file that it calls, by its name; empty: none */
-    int32_t    at, length;  /* offending text in the line */
-    int32_t    other_at, other_length;  /* of GROUP, SHARED: the word it does not agree with */
-    int32_t    axis;            /* of TRAVEL, SPEED: the joint */
-    double     value, limit;    /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min];
-                                 * SPEED: of the joint's highest, and 1 */
-    double     feed;            /* SPEED: the largest that is possible there [mm/min] */
+    int32_t line;                   /* source line, from 1 */
+    int64_t offset;                 /* [byte] where that line begins in the program, */
+    char file[FAULT_FILE];          /* or in a file that it calls, by its name; empty: none */
+    int32_t at, length;             /* offending text in the line */
+    int32_t other_at, other_length; /* of GROUP, SHARED: the word it does not agree with */
+    int32_t axis;                   /* of TRAVEL, SPEED: the joint */
+    double value, limit;            /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min];
+                                     * SPEED: of the joint's highest, and 1 */
+    double feed;                    /* SPEED: the largest that is possible there [mm/min] */
 };
 
 /* All that is wrong with a part program, a line each, and the notes, once each. */
 struct fault_list {
     int32_t count, notes;
-    bool    more;           /* there are more faults than fit */
+    bool more; /* there are more faults than fit */
     struct fault_report of[FAULT_LIST];
     struct fault_report note[FAULT_NOTES];
 };

@@ -42,8 +42,8 @@ enum fault flow_again(struct interpreter *in, struct oword_place to, struct faul
 
     f->again += lines > 0 ? lines : 1;
     flow_go(in, to);
-    return f->again - f->idle <= FLOW_IDLE ? FAULT_NONE : fault_at(r, FAULT_ENDLESS, r->at,
-                                                                   r->length);
+    return f->again - f->idle <= FLOW_IDLE ? FAULT_NONE
+                                           : fault_at(r, FAULT_ENDLESS, r->at, r->length);
 }
 
 struct oword_place flow_behind(const struct interpreter *in)
@@ -70,7 +70,7 @@ static enum fault seek_end(const struct flow_step *l, const char *label, int32_t
         }
     }
     *place = flow_behind(l->in);
-    flow_refuse(l, FAULT_O_END);        /* of this line, whose text goes when others are read */
+    flow_refuse(l, FAULT_O_END); /* of this line, whose text goes when others are read */
     const char *const file = flow_file(l->in, place->file);
     enum fault g = oword_seek(l->s->program, file, label, words, stop, place, &is);
     if (g == FAULT_NONE && !is) {
@@ -166,7 +166,7 @@ static enum fault if_line(const struct flow_step *l)
         l->in->flow.opens--;
         return oword_alone(l->s);
     }
-    if (o && o->left) {                     /* a branch before it has run */
+    if (o && o->left) { /* a branch before it has run */
         return skip_to(l, l->o.label, OWORD_ENDIF, false);
     }
     enum fault f = l->o.is == OWORD_ELSE ? oword_alone(l->s) : flow_condition(l, &value);
@@ -188,7 +188,7 @@ static enum fault loop_end(const struct flow_step *l, enum flow_kind kind, bool 
 {
     struct flow_open *o = innermost(l, kind);
 
-    l->in->flow.opens -= !more || kind == FLOW_WHILE;   /* its line opens it again */
+    l->in->flow.opens -= !more || kind == FLOW_WHILE; /* its line opens it again */
     reading_fault(l->s, FAULT_ENDLESS, l->at);
     return !more ? FAULT_NONE
                  : flow_again(l->in, kind == FLOW_WHILE ? o->here : o->behind, l->s->r);
@@ -196,8 +196,7 @@ static enum fault loop_end(const struct flow_step *l, enum flow_kind kind, bool 
 
 enum fault flow_loop_end(const struct flow_step *l)
 {
-    return innermost(l, FLOW_WHILE) ? loop_end(l, FLOW_WHILE, true)
-                                    : flow_refuse(l, FAULT_O_PLACE);
+    return innermost(l, FLOW_WHILE) ? loop_end(l, FLOW_WHILE, true) : flow_refuse(l, FAULT_O_PLACE);
 }
 
 /* while begins a loop, or ends one that began with do. */
@@ -258,7 +257,8 @@ static enum fault leave_line(const struct flow_step *l)
         return f != FAULT_NONE ? f : flow_refuse(l, FAULT_O_PLACE);
     }
     const int32_t end = o->kind == FLOW_WHILE ? OWORD_ENDWHILE
-                      : o->kind == FLOW_DO ? OWORD_WHILE : OWORD_ENDREPEAT;
+                        : o->kind == FLOW_DO  ? OWORD_WHILE
+                                              : OWORD_ENDREPEAT;
     const bool out = l->o.is == OWORD_BREAK;
     flow->opens = (int32_t)(o - flow->open) + !out;
     return skip_to(l, l->o.label, end, out);
@@ -280,30 +280,21 @@ enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_pla
         return f;
     }
     switch (l.o.is) {
-    case OWORD_NUMBER:
-        return in->flow.begun ? flow_refuse(&l, FAULT_O_NUMBER) : oword_alone(s);
+    case OWORD_NUMBER: return in->flow.begun ? flow_refuse(&l, FAULT_O_NUMBER) : oword_alone(s);
     case OWORD_SUB:
         f = oword_alone(s);
         return f == FAULT_NONE ? skip_to(&l, l.o.label, OWORD_ENDSUB, true) : f;
-    case OWORD_CALL:
-        return flow_call_line(&l);
+    case OWORD_CALL:      return flow_call_line(&l);
     case OWORD_RETURN:
-    case OWORD_ENDSUB:
-        return flow_return_line(&l);
-    case OWORD_WHILE:
-        return while_line(&l);
-    case OWORD_DO:
-        return do_line(&l);
-    case OWORD_REPEAT:
-        return repeat_line(&l);
+    case OWORD_ENDSUB:    return flow_return_line(&l);
+    case OWORD_WHILE:     return while_line(&l);
+    case OWORD_DO:        return do_line(&l);
+    case OWORD_REPEAT:    return repeat_line(&l);
     case OWORD_ENDWHILE:
-    case OWORD_ENDREPEAT:
-        return end_line(&l);
+    case OWORD_ENDREPEAT: return end_line(&l);
     case OWORD_BREAK:
-    case OWORD_CONTINUE:
-        return leave_line(&l);
-    default:
-        return if_line(&l);
+    case OWORD_CONTINUE:  return leave_line(&l);
+    default:              return if_line(&l);
     }
 }
 

@@ -17,11 +17,11 @@
 #endif
 
 enum {
-    FLOW_CALLS = 10,        /* calls within calls */
-    FLOW_OPEN = 64,         /* if, while, do, repeat within one another, those of the callers too */
-    FLOW_FILES = 32,        /* that are called */
-    FLOW_FANUC = 'D',       /* in front of the number of DO; labels of O words have no capitals */
-    FLOW_KNOWN = 32,        /* places remembered: of subprograms, and of ends */
+    FLOW_CALLS = 10,  /* calls within calls */
+    FLOW_OPEN = 64,   /* if, while, do, repeat within one another, those of the callers too */
+    FLOW_FILES = 32,  /* that are called */
+    FLOW_FANUC = 'D', /* in front of the number of DO; labels of O words have no capitals */
+    FLOW_KNOWN = 32,  /* places remembered: of subprograms, and of ends */
     FLOW_IDLE = FLOW_AGAIN
 };
 
@@ -30,48 +30,48 @@ enum flow_kind { FLOW_IF, FLOW_WHILE, FLOW_DO, FLOW_REPEAT };
 enum flow_caller { FLOW_SUB, FLOW_M98, FLOW_G65 };
 
 struct flow_open {
-    char    label[OWORD_LABEL];
+    char label[OWORD_LABEL];
     enum flow_kind kind;
-    int32_t left;           /* runs of REPEAT, this one too; 1 of IF: a branch has been taken */
-    struct oword_place here, behind;    /* its line, the one behind it */
+    int32_t left; /* runs of REPEAT, this one too; 1 of IF: a branch has been taken */
+    struct oword_place here, behind; /* its line, the one behind it */
 };
 
 /* Values of a call for the local numbers, #1 and those behind it. */
 struct flow_local {
-    double   value[PARAMETERS_LOCAL_FANUC];
-    uint64_t set;           /* bits, as parameters.given has them */
+    double value[PARAMETERS_LOCAL_FANUC];
+    uint64_t set; /* bits, as parameters.given has them */
 };
 
 /* G66: a macro that is called behind each line that moves. */
 struct flow_modal {
-    bool    on;
-    int32_t level;          /* of the calls in which lines make it */
-    char    label[OWORD_LABEL];
+    bool on;
+    int32_t level; /* of the calls in which lines make it */
+    char label[OWORD_LABEL];
     int32_t runs;
     struct oword_place body;
     struct flow_local given;
 };
 
 struct flow_call {
-    char    label[OWORD_LABEL];
+    char label[OWORD_LABEL];
     enum flow_caller caller;
-    int32_t left;           /* runs, this one too */
-    int32_t opens;          /* open when it was called */
-    bool    rest;           /* the line that calls it is still to be executed: M100 .. M199 */
-    struct oword_place body, here, back;    /* where it begins, is called, goes on */
-    int32_t locals;         /* #1 .. that belong to it; 0 of M98, which has its caller's */
-    struct flow_local before, given;    /* of the caller; to each run */
+    int32_t left;  /* runs, this one too */
+    int32_t opens; /* open when it was called */
+    bool rest;     /* the line that calls it is still to be executed: M100 .. M199 */
+    struct oword_place body, here, back; /* where it begins, is called, goes on */
+    int32_t locals;                  /* #1 .. that belong to it; 0 of M98, which has its caller's */
+    struct flow_local before, given; /* of the caller; to each run */
 };
 
 struct flow_known_sub {
-    char    label[OWORD_LABEL];
-    int32_t words;          /* what was looked for; 0 nothing */
-    int32_t file;           /* from where */
+    char label[OWORD_LABEL];
+    int32_t words; /* what was looked for; 0 nothing */
+    int32_t file;  /* from where */
     struct oword_place place;
 };
 
 struct flow_known_end {
-    int64_t from;           /* [byte] */
+    int64_t from; /* [byte] */
     int32_t file, words;
     struct oword_place place;
 };
@@ -83,16 +83,16 @@ struct flow {
     struct flow_modal modal;
     struct flow_known_sub sub[FLOW_KNOWN];
     struct flow_known_end end[FLOW_KNOWN];
-    int32_t subs, ends;     /* the next to be replaced */
-    char    file[FLOW_FILES][OWORD_LABEL];      /* that have been called */
+    int32_t subs, ends;                 /* the next to be replaced */
+    char file[FLOW_FILES][OWORD_LABEL]; /* that have been called */
     int32_t files;
-    double  value;          /* #<_value> */
-    bool    returned;       /* #<_value_returned> */
-    int32_t left;           /* the call that has just ended and restores modes; 0 none */
-    bool    begun;          /* words have been read: an O number no longer names the program */
-    bool    rest;           /* the next line has made its call already */
-    int64_t again;          /* lines read again: in loops, in calls, behind M99 */
-    int64_t idle;           /* the same when the last command that takes time was made */
+    double value;  /* #<_value> */
+    bool returned; /* #<_value_returned> */
+    int32_t left;  /* the call that has just ended and restores modes; 0 none */
+    bool begun;    /* words have been read: an O number no longer names the program */
+    bool rest;     /* the next line has made its call already */
+    int64_t again; /* lines read again: in loops, in calls, behind M99 */
+    int64_t idle;  /* the same when the last command that takes time was made */
 };
 
 /* Name of a file, empty for the program. */
@@ -121,8 +121,7 @@ enum fault flow_subprogram(struct interpreter *in, const struct program *p, doub
 enum fault flow_modal_begin(struct interpreter *in, const struct program *p, double number,
                             const double *runs, const struct flow_local *local,
                             struct fault_report *r);
-enum fault flow_modal_call(struct interpreter *in, const struct program *p,
-                           struct fault_report *r);
+enum fault flow_modal_call(struct interpreter *in, const struct program *p, struct fault_report *r);
 
 /* Whether lines of the call that runs make it. */
 bool flow_modal_acts(const struct flow *f);
@@ -136,7 +135,6 @@ enum fault flow_user(struct interpreter *in, const struct program *p, int32_t nu
 enum fault flow_return(struct interpreter *in, struct fault_report *r);
 
 /* The text has ended: FAULT_O_END if something is still open. */
-enum fault flow_end(const struct interpreter *in, const struct program *p,
-                    struct fault_report *r);
+enum fault flow_end(const struct interpreter *in, const struct program *p, struct fault_report *r);
 
 #endif

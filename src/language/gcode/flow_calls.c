@@ -170,9 +170,9 @@ enum fault flow_call_line(const struct flow_step *l)
     }
     flow_refuse(l, FAULT_NO_SUB);
     f = find_sub(l->in, l->s->program, l->o.label, OWORD_SUB, &body);
-    return f == FAULT_NONE ? call(l->in, l->s->program, l->o.label, FLOW_SUB, 1, body, &local,
-                                  l->s->r)
-                           : f;
+    return f == FAULT_NONE
+               ? call(l->in, l->s->program, l->o.label, FLOW_SUB, 1, body, &local, l->s->r)
+               : f;
 }
 
 enum fault flow_return_line(const struct flow_step *l)
@@ -187,8 +187,8 @@ enum fault flow_return_line(const struct flow_step *l)
         return f;
     }
     /* return stands in ifs and loops, whose label it may have, as rs274 has it */
-    if (!c || c->caller != FLOW_SUB ||
-        (l->o.is == OWORD_ENDSUB && !oword_same(c->label, l->o.label))) {
+    if (!c || c->caller != FLOW_SUB
+        || (l->o.is == OWORD_ENDSUB && !oword_same(c->label, l->o.label))) {
         return flow_refuse(l, FAULT_O_PLACE);
     }
     if (l->o.is == OWORD_ENDSUB && flow->opens > c->opens) {
@@ -213,8 +213,8 @@ static enum fault find_numbered(struct interpreter *in, const struct program *p,
     int32_t label;
 
     n->times = 1;
-    if (!reading_integer(number, &label) || label < 0 ||
-        (runs && (!reading_integer(*runs, &n->times) || n->times < 0))) {
+    if (!reading_integer(number, &label) || label < 0
+        || (runs && (!reading_integer(*runs, &n->times) || n->times < 0))) {
         return fault_at(r, FAULT_VALUE, r->at, r->length);
     }
     if (p->fanuc && !runs && label >= FANUC_RUNS) {

@@ -4,16 +4,19 @@
 #include "flow_step.h"
 #include "modes.h"
 
-enum { LOOPS = 3 };         /* most nested loops: their numbers are 1 to 3 */
-static const double SEQUENCE_MOST = 99999999.0;     /* N */
+enum { LOOPS = 3 };                             /* most nested loops: their numbers are 1 to 3 */
+static const double SEQUENCE_MOST = 99999999.0; /* N */
 
 enum fanuc_word { FANUC_NONE, FANUC_GOTO, FANUC_IF, FANUC_WHILE, FANUC_DO, FANUC_END };
 
 static enum fanuc_word word(struct reading *s)
 {
-    static const struct { char word[6]; enum fanuc_word is; } words[] = {
-        { "GOTO", FANUC_GOTO }, { "IF", FANUC_IF }, { "WHILE", FANUC_WHILE }, { "DO", FANUC_DO },
-        { "END", FANUC_END },
+    static const struct {
+        char word[6];
+        enum fanuc_word is;
+    } words[] = {
+        { "GOTO", FANUC_GOTO }, { "IF", FANUC_IF },   { "WHILE", FANUC_WHILE },
+        { "DO", FANUC_DO },     { "END", FANUC_END },
     };
 
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
@@ -30,7 +33,10 @@ bool flow_fanuc_begins(struct reading s)
 }
 
 /* What a search looks for: N, or END with a number. */
-struct sought { bool end; int32_t number; };
+struct sought {
+    bool end;
+    int32_t number;
+};
 
 /* Digits that are left, as a number; -1: there are none. */
 static double digits(struct reading *s)
@@ -64,8 +70,7 @@ static bool match(const struct source_line *line, const struct program *p, struc
         *other = digits(&s) >= 0.0 && oword_alone(&s) == FAULT_NONE;
         return false;
     }
-    return what.end ? word(&s) == FANUC_END && digits(&s) == what.number
-                    : sequence == what.number;
+    return what.end ? word(&s) == FANUC_END && digits(&s) == what.number : sequence == what.number;
 }
 
 /* From a place up to another, or to the next program if `until` is not behind it. */
@@ -160,7 +165,7 @@ static enum fault go_to(const struct flow_step *l)
     if (f != FAULT_NONE) {
         return f;
     }
-    flow_refuse(l, FAULT_SEQUENCE);     /* of this line, whose text goes when others are read */
+    flow_refuse(l, FAULT_SEQUENCE); /* of this line, whose text goes when others are read */
     struct oword_place to = flow_behind(in);
     f = seek(l, what, -1, &to, &found);
     if (f == FAULT_NONE && !found) {
@@ -255,15 +260,10 @@ enum fault flow_fanuc(struct interpreter *in, struct reading *s, struct oword_pl
     *then = false;
     in->flow.begun = true;
     switch (word(s)) {
-    case FANUC_GOTO:
-        return go_to(&l);
-    case FANUC_IF:
-        return condition(&l, then);
-    case FANUC_WHILE:
-        return loop(&l, true);
-    case FANUC_DO:
-        return loop(&l, false);
-    default:
-        return end(&l);
+    case FANUC_GOTO:  return go_to(&l);
+    case FANUC_IF:    return condition(&l, then);
+    case FANUC_WHILE: return loop(&l, true);
+    case FANUC_DO:    return loop(&l, false);
+    default:          return end(&l);
     }
 }

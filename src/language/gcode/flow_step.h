@@ -9,7 +9,7 @@ struct flow_step {
     struct reading *s;
     struct oword o;
     struct oword_place here;
-    int32_t at;             /* the O */
+    int32_t at; /* the O */
 };
 
 /* Note the line as far as it has been read as the offending text; returns f. */

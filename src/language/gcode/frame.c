@@ -133,8 +133,8 @@ bool frame_circles(const struct interpreter *in, enum path_plane plane, double *
 
     *ratio = fabs(a);
     *mirrored = a * b < 0.0;
-    return fabs(a) == fabs(b) && (!w->rotated || w->plane == (int32_t)plane) &&
-           (system_turn(in) == 0.0 || plane == PATH_XY);
+    return fabs(a) == fabs(b) && (!w->rotated || w->plane == (int32_t)plane)
+           && (system_turn(in) == 0.0 || plane == PATH_XY);
 }
 
 /* Axes that a word of one of them moves together: bits. */
@@ -231,14 +231,15 @@ void frame_from(const struct interpreter *in, const struct block *b, double from
     const int first = path_first(k->plane), second = path_second(k->plane);
 
     memcpy(from, in->point, AXES * sizeof *from);
-    if (k->aside && (gcode_word(&b->g, BLOCK_AXES[first]) ||
-                     gcode_word(&b->g, BLOCK_AXES[second]) || gcode_first(&b->g, "@^"))) {
+    if (k->aside
+        && (gcode_word(&b->g, BLOCK_AXES[first]) || gcode_word(&b->g, BLOCK_AXES[second])
+            || gcode_first(&b->g, "@^"))) {
         frame_here(in, from);
     }
 }
 
-void frame_cycle_way(const struct interpreter *in, const struct block *b,
-                     const double before[AXES], struct cycle_way *way)
+void frame_cycle_way(const struct interpreter *in, const struct block *b, const double before[AXES],
+                     struct cycle_way *way)
 {
     const int axis[2] = { path_first(in->plane), path_second(in->plane) };
     const struct token *word[2] = { gcode_word(&b->g, BLOCK_AXES[axis[0]]),
@@ -289,11 +290,11 @@ bool frame_go_on(struct interpreter *in, const struct cycle_way *way, double pla
 
 /* Where a block leads to, axis by axis. */
 struct ends {
-    bool    machine, framed;    /* G53; the program's coordinates are not only offset */
-    int     together;           /* axes that a rotation couples, a bit each, */
-    int     polar, moved;       /* that polar words, or words of the program's coordinates, move */
-    double  *end;
-    double  program[AXES];
+    bool machine, framed; /* G53; the program's coordinates are not only offset */
+    int together;         /* axes that a rotation couples, a bit each, */
+    int polar, moved;     /* that polar words, or words of the program's coordinates, move */
+    double *end;
+    double program[AXES];
 };
 
 /* Polar words, or the axis words of the plane in polar mode. */
@@ -307,8 +308,8 @@ static enum fault polar_ends(struct interpreter *in, const struct block *b, stru
         e->polar = 3;
         return polar_words(in, b, e->program, r);
     }
-    if (in->words.polar && (other == GCODE_ABSENT || other == 40) &&
-        polar_mode(in, b, e->program)) {
+    if (in->words.polar && (other == GCODE_ABSENT || other == 40)
+        && polar_mode(in, b, e->program)) {
         e->polar = 1 << path_first(in->plane) | 1 << path_second(in->plane);
     }
     return FAULT_NONE;
@@ -479,7 +480,7 @@ enum fault frame_change(struct interpreter *in, const struct program *p, const s
     if (turning == 690) {
         in->words.rotated = false;
     }
-    if (scaling != GCODE_ABSENT && in->words.rotated) {     /* the order in which they apply */
+    if (scaling != GCODE_ABSENT && in->words.rotated) { /* the order in which they apply */
         return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_SCALING]);
     }
     if (scaling == 500) {

@@ -12,10 +12,8 @@
 #include "modes.h"
 
 /* Machine coordinates of program coordinates, and the other way round. [mm], [deg] */
-void frame_machine(const struct interpreter *in, const double program[AXES],
-                   double machine[AXES]);
-void frame_program(const struct interpreter *in, const double machine[AXES],
-                   double program[AXES]);
+void frame_machine(const struct interpreter *in, const double program[AXES], double machine[AXES]);
+void frame_program(const struct interpreter *in, const double machine[AXES], double program[AXES]);
 
 /* A way in X Y Z, no place. [mm] */
 void frame_way(const struct interpreter *in, double way[3]);
@@ -34,8 +32,8 @@ enum fault frame_end(struct interpreter *in, const struct program *p, const stru
                      double end[AXES], struct fault_report *r);
 
 /* The way from one hole of a cycle's block to its next with G91, from a place before the first. */
-void frame_cycle_way(const struct interpreter *in, const struct block *b,
-                     const double before[AXES], struct cycle_way *way);
+void frame_cycle_way(const struct interpreter *in, const struct block *b, const double before[AXES],
+                     struct cycle_way *way);
 
 /* Go on by it. False: the tool is at the pole, from which no angle is known. [mm] program */
 bool frame_go_on(struct interpreter *in, const struct cycle_way *way, double place[AXES]);

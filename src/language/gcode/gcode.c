@@ -4,60 +4,125 @@
 #include <stddef.h>
 #include <string.h>
 
-struct code { int code; enum gcode_group group; };
+struct code {
+    int code;
+    enum gcode_group group;
+};
 
 static const struct code g_codes[] = {
-    { 0, GCODE_MOTION },    { 10, GCODE_MOTION },   { 20, GCODE_MOTION },   { 30, GCODE_MOTION },
-    { 50, GCODE_MOTION },   { 51, GCODE_MOTION },   { GCODE_NO_MOTION, GCODE_MOTION },
-    { 331, GCODE_MOTION },  { 52, GCODE_MOTION },   { 53, GCODE_MOTION },
-    { 382, GCODE_MOTION },  { 383, GCODE_MOTION },  { 384, GCODE_MOTION },  { 385, GCODE_MOTION },
-    { 730, GCODE_MOTION },  { 740, GCODE_MOTION },  { 810, GCODE_MOTION },  { 820, GCODE_MOTION },
-    { 830, GCODE_MOTION },  { 840, GCODE_MOTION },  { 850, GCODE_MOTION },  { 860, GCODE_MOTION },
+    { 0, GCODE_MOTION },
+    { 10, GCODE_MOTION },
+    { 20, GCODE_MOTION },
+    { 30, GCODE_MOTION },
+    { 50, GCODE_MOTION },
+    { 51, GCODE_MOTION },
+    { GCODE_NO_MOTION, GCODE_MOTION },
+    { 331, GCODE_MOTION },
+    { 52, GCODE_MOTION },
+    { 53, GCODE_MOTION },
+    { 382, GCODE_MOTION },
+    { 383, GCODE_MOTION },
+    { 384, GCODE_MOTION },
+    { 385, GCODE_MOTION },
+    { 730, GCODE_MOTION },
+    { 740, GCODE_MOTION },
+    { 810, GCODE_MOTION },
+    { 820, GCODE_MOTION },
+    { 830, GCODE_MOTION },
+    { 840, GCODE_MOTION },
+    { 850, GCODE_MOTION },
+    { 860, GCODE_MOTION },
     { 870, GCODE_MOTION },
-    { 880, GCODE_MOTION },  { 890, GCODE_MOTION },  { 980, GCODE_RETRACT }, { 990, GCODE_RETRACT },
-    { 410, GCODE_CUTTER },  { 420, GCODE_CUTTER },  { 411, GCODE_CUTTER },  { 421, GCODE_CUTTER },
-    { 40, GCODE_NONMODAL }, { 100, GCODE_NONMODAL },
-    { 280, GCODE_NONMODAL }, { 281, GCODE_NONMODAL }, { 300, GCODE_NONMODAL },
-    { 301, GCODE_NONMODAL }, { 520, GCODE_NONMODAL }, { 530, GCODE_NONMODAL },
-    { 920, GCODE_NONMODAL }, { 921, GCODE_NONMODAL }, { 922, GCODE_NONMODAL },
-    { 923, GCODE_NONMODAL }, { 170, GCODE_PLANE },  { 180, GCODE_PLANE },   { 190, GCODE_PLANE },
-    { 200, GCODE_UNITS },   { 210, GCODE_UNITS },   { 400, GCODE_CUTTER },  { 490, GCODE_TOOL },
-    { 430, GCODE_TOOL },    { 431, GCODE_TOOL },    { 432, GCODE_TOOL },
-    { 960, GCODE_SURFACE }, { 970, GCODE_SURFACE },
-    { 540, GCODE_SYSTEM },  { 550, GCODE_SYSTEM },  { 560, GCODE_SYSTEM },  { 570, GCODE_SYSTEM },
-    { 580, GCODE_SYSTEM },  { 590, GCODE_SYSTEM },  { 591, GCODE_SYSTEM },  { 592, GCODE_SYSTEM },
-    { 593, GCODE_SYSTEM },  { 610, GCODE_PATH },    { 611, GCODE_PATH },    { 640, GCODE_PATH },
-    { 500, GCODE_SCALING }, { 510, GCODE_SCALING }, { 680, GCODE_ROTATION },
-    { 690, GCODE_ROTATION }, { 150, GCODE_POLAR },  { 160, GCODE_POLAR },
-    { 900, GCODE_DISTANCE }, { 910, GCODE_DISTANCE }, { 901, GCODE_CENTRE }, { 911, GCODE_CENTRE },
-    { 930, GCODE_FEED_MODE }, { 940, GCODE_FEED_MODE }, { 950, GCODE_FEED_MODE },
+    { 880, GCODE_MOTION },
+    { 890, GCODE_MOTION },
+    { 980, GCODE_RETRACT },
+    { 990, GCODE_RETRACT },
+    { 410, GCODE_CUTTER },
+    { 420, GCODE_CUTTER },
+    { 411, GCODE_CUTTER },
+    { 421, GCODE_CUTTER },
+    { 40, GCODE_NONMODAL },
+    { 100, GCODE_NONMODAL },
+    { 280, GCODE_NONMODAL },
+    { 281, GCODE_NONMODAL },
+    { 300, GCODE_NONMODAL },
+    { 301, GCODE_NONMODAL },
+    { 520, GCODE_NONMODAL },
+    { 530, GCODE_NONMODAL },
+    { 920, GCODE_NONMODAL },
+    { 921, GCODE_NONMODAL },
+    { 922, GCODE_NONMODAL },
+    { 923, GCODE_NONMODAL },
+    { 170, GCODE_PLANE },
+    { 180, GCODE_PLANE },
+    { 190, GCODE_PLANE },
+    { 200, GCODE_UNITS },
+    { 210, GCODE_UNITS },
+    { 400, GCODE_CUTTER },
+    { 490, GCODE_TOOL },
+    { 430, GCODE_TOOL },
+    { 431, GCODE_TOOL },
+    { 432, GCODE_TOOL },
+    { 960, GCODE_SURFACE },
+    { 970, GCODE_SURFACE },
+    { 540, GCODE_SYSTEM },
+    { 550, GCODE_SYSTEM },
+    { 560, GCODE_SYSTEM },
+    { 570, GCODE_SYSTEM },
+    { 580, GCODE_SYSTEM },
+    { 590, GCODE_SYSTEM },
+    { 591, GCODE_SYSTEM },
+    { 592, GCODE_SYSTEM },
+    { 593, GCODE_SYSTEM },
+    { 610, GCODE_PATH },
+    { 611, GCODE_PATH },
+    { 640, GCODE_PATH },
+    { 500, GCODE_SCALING },
+    { 510, GCODE_SCALING },
+    { 680, GCODE_ROTATION },
+    { 690, GCODE_ROTATION },
+    { 150, GCODE_POLAR },
+    { 160, GCODE_POLAR },
+    { 900, GCODE_DISTANCE },
+    { 910, GCODE_DISTANCE },
+    { 901, GCODE_CENTRE },
+    { 911, GCODE_CENTRE },
+    { 930, GCODE_FEED_MODE },
+    { 940, GCODE_FEED_MODE },
+    { 950, GCODE_FEED_MODE },
 };
 
 /* What only Fanuc's controls have, and Haas'. */
 static const struct code fanuc_codes[] = {
-    { 90, GCODE_EXACT },    { 670, GCODE_MODAL },   { GCODE_MORE, GCODE_SYSTEM },
+    { 90, GCODE_EXACT },
+    { 670, GCODE_MODAL },
+    { GCODE_MORE, GCODE_SYSTEM },
     { GCODE_MORE_HAAS, GCODE_SYSTEM },
 };
 
 static const struct code m_codes[] = {
-    { 0, GCODE_STOP },      { 10, GCODE_STOP },     { 20, GCODE_STOP },     { 300, GCODE_STOP },
-    { 980, GCODE_STOP },    { 990, GCODE_STOP },
-    { 30, GCODE_SPINDLE },  { 40, GCODE_SPINDLE },  { 50, GCODE_SPINDLE },
-    { 70, GCODE_COOLANT },  { 80, GCODE_COOLANT },  { 90, GCODE_COOLANT },
-    { 600, GCODE_STOP },    { 190, GCODE_SPINDLE }, { 60, GCODE_CHANGE },   { 610, GCODE_CHANGE },
-    { 480, GCODE_OVERRIDE }, { 490, GCODE_OVERRIDE }, { 500, GCODE_OVERRIDE },
-    { 510, GCODE_OVERRIDE }, { 520, GCODE_OVERRIDE }, { 530, GCODE_OVERRIDE },
-    { 700, GCODE_SAVING },  { 710, GCODE_SAVING },  { 720, GCODE_SAVING },  { 730, GCODE_SAVING },
-    { 660, GCODE_IO },      { 670, GCODE_IO },      { 680, GCODE_IO },
-    { 620, GCODE_IO },      { 630, GCODE_IO },      { 640, GCODE_IO },      { 650, GCODE_IO },
+    { 0, GCODE_STOP },       { 10, GCODE_STOP },      { 20, GCODE_STOP },
+    { 300, GCODE_STOP },     { 980, GCODE_STOP },     { 990, GCODE_STOP },
+    { 30, GCODE_SPINDLE },   { 40, GCODE_SPINDLE },   { 50, GCODE_SPINDLE },
+    { 70, GCODE_COOLANT },   { 80, GCODE_COOLANT },   { 90, GCODE_COOLANT },
+    { 600, GCODE_STOP },     { 190, GCODE_SPINDLE },  { 60, GCODE_CHANGE },
+    { 610, GCODE_CHANGE },   { 480, GCODE_OVERRIDE }, { 490, GCODE_OVERRIDE },
+    { 500, GCODE_OVERRIDE }, { 510, GCODE_OVERRIDE }, { 520, GCODE_OVERRIDE },
+    { 530, GCODE_OVERRIDE }, { 700, GCODE_SAVING },   { 710, GCODE_SAVING },
+    { 720, GCODE_SAVING },   { 730, GCODE_SAVING },   { 660, GCODE_IO },
+    { 670, GCODE_IO },       { 680, GCODE_IO },       { 620, GCODE_IO },
+    { 630, GCODE_IO },       { 640, GCODE_IO },       { 650, GCODE_IO },
 };
 
 /* Codes that this machine has no use for, and why. */
-static const struct refusal { int code; enum fault why; } g_refused[] = {
-    { 171, FAULT_PLANE },   { 181, FAULT_PLANE },   { 191, FAULT_PLANE },
-    { 70, FAULT_TURNING },  { 80, FAULT_TURNING },  { 330, FAULT_TURNING },
-    { 700, FAULT_TURNING }, { 710, FAULT_TURNING }, { 711, FAULT_TURNING }, { 712, FAULT_TURNING },
-    { 720, FAULT_TURNING }, { 721, FAULT_TURNING }, { 722, FAULT_TURNING }, { 760, FAULT_TURNING },
+static const struct refusal {
+    int code;
+    enum fault why;
+} g_refused[] = {
+    { 171, FAULT_PLANE },   { 181, FAULT_PLANE },   { 191, FAULT_PLANE },   { 70, FAULT_TURNING },
+    { 80, FAULT_TURNING },  { 330, FAULT_TURNING }, { 700, FAULT_TURNING }, { 710, FAULT_TURNING },
+    { 711, FAULT_TURNING }, { 712, FAULT_TURNING }, { 720, FAULT_TURNING }, { 721, FAULT_TURNING },
+    { 722, FAULT_TURNING }, { 760, FAULT_TURNING },
 };
 
 int gcode_code(const struct token *w)
@@ -69,8 +134,8 @@ int gcode_code(const struct token *w)
 bool gcode_user(const struct token *w)
 {
     const int code = gcode_code(w);
-    return w->letter == 'M' && code >= GCODE_USER_FIRST && code <= GCODE_USER_LAST &&
-           code % 10 == 0;
+    return w->letter == 'M' && code >= GCODE_USER_FIRST && code <= GCODE_USER_LAST
+           && code % 10 == 0;
 }
 
 static enum fault sort_code(struct gcode *g, const struct token *w, const struct code *codes,
@@ -83,16 +148,16 @@ static enum fault sort_code(struct gcode *g, const struct token *w, const struct
         }
         g->by[GCODE_USER] = w;
         g->groups |= (uint32_t)1 << GCODE_USER;
-        g->code[GCODE_USER] = GCODE_USER_FIRST;     /* whichever: it takes the same words */
+        g->code[GCODE_USER] = GCODE_USER_FIRST; /* whichever: it takes the same words */
         return FAULT_NONE;
     }
     for (size_t i = 0; i < count; i++) {
         if (codes[i].code == code) {
             const enum gcode_group group = codes[i].group;
-            if (group == GCODE_MOTION && g->by[group] && code != g->code[group] &&
-                (code == GCODE_NO_MOTION || g->code[group] == GCODE_NO_MOTION)) {
+            if (group == GCODE_MOTION && g->by[group] && code != g->code[group]
+                && (code == GCODE_NO_MOTION || g->code[group] == GCODE_NO_MOTION)) {
                 if (code == GCODE_NO_MOTION) {
-                    return FAULT_NONE;      /* G80 gives way to the motion word beside it */
+                    return FAULT_NONE; /* G80 gives way to the motion word beside it */
                 }
             } else if (g->by[group]) {
                 return tokens_at_words(r, FAULT_GROUP, w, g->by[group]);
@@ -112,18 +177,17 @@ static enum fault sort_code(struct gcode *g, const struct token *w, const struct
 }
 
 /* Letters of the language beside G and M. */
-#define ANGLES (GCODE_BIT('A') | GCODE_BIT('B') | GCODE_BIT('C'))
+#define ANGLES  (GCODE_BIT('A') | GCODE_BIT('B') | GCODE_BIT('C'))
 #define LENGTHS (GCODE_BIT('U') | GCODE_BIT('V') | GCODE_BIT('W'))
-#define LETTERS                                                                                 \
-    (GCODE_BIT('N') | GCODE_BIT('F') | GCODE_BIT('S') | GCODE_BIT('T') | GCODE_BIT('X') |       \
-     GCODE_BIT('Y') | GCODE_BIT('Z') | GCODE_BIT('I') | GCODE_BIT('J') | GCODE_BIT('K') |       \
-     GCODE_BIT('R') | GCODE_BIT('P') | GCODE_BIT('L') | GCODE_BIT('Q') | GCODE_BIT('H') |       \
-     GCODE_BIT('D') | GCODE_BIT('E') | GCODE_BIT('@') | GCODE_BIT('^') |                        \
-     GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
+#define LETTERS \
+    (GCODE_BIT('N') | GCODE_BIT('F') | GCODE_BIT('S') | GCODE_BIT('T') | GCODE_BIT('X') \
+     | GCODE_BIT('Y') | GCODE_BIT('Z') | GCODE_BIT('I') | GCODE_BIT('J') | GCODE_BIT('K') \
+     | GCODE_BIT('R') | GCODE_BIT('P') | GCODE_BIT('L') | GCODE_BIT('Q') | GCODE_BIT('H') \
+     | GCODE_BIT('D') | GCODE_BIT('E') | GCODE_BIT('@') | GCODE_BIT('^') \
+     | GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
 
 /* An axis that the machine does not have, at rest: posts write A0 for all machines. */
-static enum fault idle(struct gcode *g, const struct token *w, bool angles,
-                       struct fault_report *r)
+static enum fault idle(struct gcode *g, const struct token *w, bool angles, struct fault_report *r)
 {
     if (w->value != 0.0) {
         return tokens_at_word(r, angles ? FAULT_SIDE : FAULT_ANGLE, w);
@@ -139,7 +203,7 @@ static enum fault idle(struct gcode *g, const struct token *w, bool angles,
 static enum fault sort_letter(struct gcode *g, const struct token *w, bool angles,
                               struct fault_report *r)
 {
-    const int turns = w->letter - 'A';    /* 0..2 for A B C, which stand where U V W would */
+    const int turns = w->letter - 'A'; /* 0..2 for A B C, which stand where U V W would */
     const bool angle = angles && turns >= 0 && turns < 3;
     const char letter = (char)(w->letter + (angle ? 'U' - 'A' : 0));
     const struct token **place = &g->word[letter - '@'];
@@ -172,8 +236,7 @@ static bool fanuc_code(const struct token *w)
     return i < sizeof fanuc_codes / sizeof *fanuc_codes;
 }
 
-static enum fault sort(struct block *b, const struct token *w, int *m_words,
-                       struct fault_report *r)
+static enum fault sort(struct block *b, const struct token *w, int *m_words, struct fault_report *r)
 {
     struct gcode *g = &b->g;
 

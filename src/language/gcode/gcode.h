@@ -10,51 +10,53 @@
 
 /* Modal groups of RS-274 that have members here. */
 enum gcode_group {
-    GCODE_NONMODAL,     /* G4 G10 G28 G28.1 G30 G30.1 G52 G53 G92 to G92.3 */
-    GCODE_MOTION,       /* G0 to G3 G5 to G5.3 G33.1 G73 G74 G80 to G89 */
-    GCODE_PLANE,        /* G17 G18 G19 */
-    GCODE_DISTANCE,     /* G90 G91 */
-    GCODE_CENTRE,       /* G90.1 G91.1 */
-    GCODE_FEED_MODE,    /* G93 G94 G95 */
-    GCODE_UNITS,        /* G20 G21 */
-    GCODE_CUTTER,       /* G40 G41 G42 G41.1 G42.1 */
-    GCODE_TOOL,         /* G43 G43.1 G43.2 G49 */
-    GCODE_SYSTEM,       /* G54 .. G59.3, G54.1, G154 */
-    GCODE_PATH,         /* G61 G61.1 G64 */
-    GCODE_SCALING,      /* G50 G51 */
-    GCODE_ROTATION,     /* G68 G69 */
-    GCODE_POLAR,        /* G15 G16 */
-    GCODE_RETRACT,      /* G98 G99 */
-    GCODE_STOP,         /* M0 M1 M2 M30 M60 */
-    GCODE_IO,           /* M62 .. M68 */
-    GCODE_CHANGE,       /* M6 M61 */
-    GCODE_SPINDLE,      /* M3 M4 M5 M19 */
-    GCODE_SURFACE,      /* G96 G97 */
-    GCODE_OVERRIDE,     /* M48 .. M53 */
-    GCODE_COOLANT,      /* M7 M8 M9 */
-    GCODE_SAVING,       /* M70 .. M73 */
-    GCODE_EXACT,        /* G9, of Fanuc's controls */
-    GCODE_MODAL,        /* G67, of theirs; G66 has words of its own */
-    GCODE_USER,         /* M100 .. M199 */
+    GCODE_NONMODAL,  /* G4 G10 G28 G28.1 G30 G30.1 G52 G53 G92 to G92.3 */
+    GCODE_MOTION,    /* G0 to G3 G5 to G5.3 G33.1 G73 G74 G80 to G89 */
+    GCODE_PLANE,     /* G17 G18 G19 */
+    GCODE_DISTANCE,  /* G90 G91 */
+    GCODE_CENTRE,    /* G90.1 G91.1 */
+    GCODE_FEED_MODE, /* G93 G94 G95 */
+    GCODE_UNITS,     /* G20 G21 */
+    GCODE_CUTTER,    /* G40 G41 G42 G41.1 G42.1 */
+    GCODE_TOOL,      /* G43 G43.1 G43.2 G49 */
+    GCODE_SYSTEM,    /* G54 .. G59.3, G54.1, G154 */
+    GCODE_PATH,      /* G61 G61.1 G64 */
+    GCODE_SCALING,   /* G50 G51 */
+    GCODE_ROTATION,  /* G68 G69 */
+    GCODE_POLAR,     /* G15 G16 */
+    GCODE_RETRACT,   /* G98 G99 */
+    GCODE_STOP,      /* M0 M1 M2 M30 M60 */
+    GCODE_IO,        /* M62 .. M68 */
+    GCODE_CHANGE,    /* M6 M61 */
+    GCODE_SPINDLE,   /* M3 M4 M5 M19 */
+    GCODE_SURFACE,   /* G96 G97 */
+    GCODE_OVERRIDE,  /* M48 .. M53 */
+    GCODE_COOLANT,   /* M7 M8 M9 */
+    GCODE_SAVING,    /* M70 .. M73 */
+    GCODE_EXACT,     /* G9, of Fanuc's controls */
+    GCODE_MODAL,     /* G67, of theirs; G66 has words of its own */
+    GCODE_USER,      /* M100 .. M199 */
     GCODE_GROUPS
 };
 
 enum {
     GCODE_ABSENT = -1,
-    GCODE_NO_MOTION = 800,      /* G80 */
-    GCODE_MORE = 541, GCODE_MORE_HAAS = 1540,   /* G54.1, G154: further systems */
-    GCODE_USER_FIRST = 1000, GCODE_USER_LAST = 1990,    /* M100, M199 */
-    GCODE_M_MAX = 4,            /* M words in a line */
+    GCODE_NO_MOTION = 800, /* G80 */
+    GCODE_MORE = 541,
+    GCODE_MORE_HAAS = 1540, /* G54.1, G154: further systems */
+    GCODE_USER_FIRST = 1000,
+    GCODE_USER_LAST = 1990, /* M100, M199 */
+    GCODE_M_MAX = 4,        /* M words in a line */
     GCODE_LETTERS = '^' - '@' + 1
 };
 
 struct gcode {
-    const struct token *word[GCODE_LETTERS];    /* from @ to ^ by letter, except G, M; or NULL */
-    const struct token *by[GCODE_GROUPS];   /* the word that gave the code */
-    int code[GCODE_GROUPS];                 /* ten times the number of G or M, or GCODE_ABSENT */
-    uint32_t letters;                       /* that have a word, bits from @ on */
-    uint32_t idle;                          /* of A B C at 0 where the tool does not turn, bits */
-    uint32_t groups;                        /* that have a code, bits */
+    const struct token *word[GCODE_LETTERS]; /* from @ to ^ by letter, except G, M; or NULL */
+    const struct token *by[GCODE_GROUPS];    /* the word that gave the code */
+    int code[GCODE_GROUPS];                  /* ten times the number of G or M, or GCODE_ABSENT */
+    uint32_t letters;                        /* that have a word, bits from @ on */
+    uint32_t idle;                           /* of A B C at 0 where the tool does not turn, bits */
+    uint32_t groups;                         /* that have a code, bits */
 };
 
 /* The bit of a letter. */
@@ -79,9 +81,9 @@ static inline bool gcode_spline(int code)
 struct block {
     struct tokens tokens;
     struct gcode g;
-    double scale;       /* [mm] per unit of the program */
-    bool angles;        /* U V W are A B C, which have no such unit */
-    bool fanuc;         /* it is meant for one of Fanuc's controls */
+    double scale; /* [mm] per unit of the program */
+    bool angles;  /* U V W are A B C, which have no such unit */
+    bool fanuc;   /* it is meant for one of Fanuc's controls */
 };
 
 /* Ten times the code of a G or M word: a number within 0.0001 of one is meant; -1 if it is none. */

@@ -5,17 +5,16 @@
 #include "gcode.h"
 
 /* The parameter of each letter A .. Z; 0: it has none. */
-static const int32_t NUMBER[26] = {
-    1, 2, 3, 7, 8, 9, 0, 11, 4, 5, 6, 0, 13, 0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26
-};
+static const int32_t NUMBER[26] = { 1, 2, 3, 7,  8,  9,  0,  11, 4,  5,  6,  0,  13,
+                                    0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26 };
 
-enum { MODAL = 660 };      /* G66 */
+enum { MODAL = 660 }; /* G66 */
 
 /* I J K may come ten times: the next three numbers then. */
 struct arguments {
-    uint32_t seen;          /* letters, bits from A on */
-    int group;              /* of I J K, from 1 */
-    char latest;            /* of them */
+    uint32_t seen; /* letters, bits from A on */
+    int group;     /* of I J K, from 1 */
+    char latest;   /* of them */
 };
 
 /* The parameter of a word of G65 or G66; 0: it has none. */
@@ -30,8 +29,7 @@ static enum fault number_of(struct arguments *a, const struct token *w, int32_t 
         a->group += a->group == 0 || w->letter <= a->latest;
         a->latest = w->letter;
         *number += 3 * (a->group - 1);
-        return *number <= PARAMETERS_LOCAL_FANUC ? FAULT_NONE
-                                                 : tokens_at_word(r, FAULT_UNUSED, w);
+        return *number <= PARAMETERS_LOCAL_FANUC ? FAULT_NONE : tokens_at_word(r, FAULT_UNUSED, w);
     }
     if (a->seen & bit) {
         return tokens_at_word(r, FAULT_TWICE, w);
@@ -98,12 +96,11 @@ const struct token *macro_user(const struct tokens *t)
     return NULL;
 }
 
-enum fault macro_call_user(struct interpreter *in, const struct program *p,
-                           const struct tokens *t, struct oword_place here,
-                           struct fault_report *r)
+enum fault macro_call_user(struct interpreter *in, const struct program *p, const struct tokens *t,
+                           struct oword_place here, struct fault_report *r)
 {
     const struct token *const m = macro_user(t);
-    double given[2] = { -1.0, -1.0 };       /* as LinuxCNC tells its programs */
+    double given[2] = { -1.0, -1.0 }; /* as LinuxCNC tells its programs */
 
     for (int i = 0; i < t->count; i++) {
         const char letter = t->word[i].letter;

@@ -25,8 +25,8 @@ double offsets_zero(const struct interpreter *in, int axis)
 /* System of G54.1 with a P, which may be missing; -1: there is none. */
 static int further(const struct token *p)
 {
-    const bool good = p && p->value >= 1.0 && p->value <= INTERPRETER_MORE &&
-                      p->value == round(p->value);
+    const bool good =
+        p && p->value >= 1.0 && p->value <= INTERPRETER_MORE && p->value == round(p->value);
     return good ? INTERPRETER_SYSTEMS + (int)p->value - 1 : -1;
 }
 
@@ -50,8 +50,7 @@ enum fault offsets_select(struct interpreter *in, const struct block *b, struct 
 bool offsets_changed(const struct block *b)
 {
     const int code = b->g.code[GCODE_NONMODAL];
-    return code == 100 || code == 281 || code == 301 || code == 520 ||
-           (code >= 920 && code <= 923);
+    return code == 100 || code == 281 || code == 301 || code == 520 || (code >= 920 && code <= 923);
 }
 
 bool offsets_take_axes(const struct block *b)
@@ -72,7 +71,7 @@ static enum fault system_of(const struct interpreter *in, const struct block *b,
     if (l->value != 2.0 && l->value != 20.0) {
         return tokens_at_word(r, FAULT_VALUE, l);
     }
-    if (b->fanuc && l->value == 20.0) {         /* there it sets a system of G54.1 */
+    if (b->fanuc && l->value == 20.0) { /* there it sets a system of G54.1 */
         *system = further(p);
         return *system < 0 ? tokens_at_word(r, FAULT_VALUE, p) : FAULT_NONE;
     }
@@ -83,8 +82,7 @@ static enum fault system_of(const struct interpreter *in, const struct block *b,
     return FAULT_NONE;
 }
 
-static enum fault check_axes(const struct program *p, const struct block *b,
-                             struct fault_report *r)
+static enum fault check_axes(const struct program *p, const struct block *b, struct fault_report *r)
 {
     for (int i = 0; i < AXES; i++) {
         const struct token *w = gcode_word(&b->g, BLOCK_AXES[i]);
@@ -115,7 +113,7 @@ static enum fault set_system(struct interpreter *in, const struct block *b, stru
     }
     double now[AXES], program[AXES], place[AXES];
     const int32_t force = in->system;
-    in->system = system;                    /* for the coordinates in it */
+    in->system = system; /* for the coordinates in it */
     frame_here(in, now);
     frame_program(in, now, program);
     for (int i = 0; i < AXES; i++) {
@@ -146,7 +144,7 @@ static void set_shift(struct interpreter *in, const struct block *b)
     }
     in->shifted = false;
     frame_here(in, program);
-    frame_program(in, program, program);        /* without the shift */
+    frame_program(in, program, program); /* without the shift */
     in->shifted = true;
     for (int i = 0; i < AXES; i++) {
         const struct token *w = gcode_word(&b->g, BLOCK_AXES[i]);
@@ -170,8 +168,8 @@ enum fault offsets_change(struct interpreter *in, const struct program *p, const
         return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_NONMODAL]);
     }
     if (offsets_take_axes(b)) {
-        if (!gcode_first(&b->g, BLOCK_AXES) && !b->g.idle &&
-            !(code == 100 && gcode_word(&b->g, 'R'))) {
+        if (!gcode_first(&b->g, BLOCK_AXES) && !b->g.idle
+            && !(code == 100 && gcode_word(&b->g, 'R'))) {
             return tokens_at_line(r, FAULT_NO_AXES, &b->tokens);
         }
         const enum fault f = check_axes(p, b, r);
@@ -191,8 +189,9 @@ enum fault offsets_change(struct interpreter *in, const struct program *p, const
 int offsets_axis(bool angles, int letter)
 {
     const int turned = angles ? 3 : 6;
-    return letter >= 0 && letter < 3 ? letter
-         : letter >= turned && letter < turned + 3 ? letter - turned + 3 : -1;
+    return letter >= 0 && letter < 3                 ? letter
+           : letter >= turned && letter < turned + 3 ? letter - turned + 3
+                                                     : -1;
 }
 
 /* Origins of G54.1 as Fanuc's controls number them: the axes in their order, 20 apart. */
@@ -215,10 +214,11 @@ bool offsets_parameter(const struct interpreter *in, const struct program *p, in
     static const double NONE[AXES];
     const int block = number >= 5221 ? (number - 5221) / 20 : 0;
     const int letter = number >= 5221 ? (number - 5221) % 20 : (number - 1) % 10;
-    const double *row = number >= 5161 && number <= 5169 ? in->words.park[0]
-                      : number >= 5181 && number <= 5189 ? in->words.park[1]
-                      : number >= 5211 && number <= 5219 ? in->shift
-                      : number >= 5221 && block < INTERPRETER_SYSTEMS ? in->origin[block] : NULL;
+    const double *row = number >= 5161 && number <= 5169                ? in->words.park[0]
+                        : number >= 5181 && number <= 5189              ? in->words.park[1]
+                        : number >= 5211 && number <= 5219              ? in->shift
+                        : number >= 5221 && block < INTERPRETER_SYSTEMS ? in->origin[block]
+                                                                        : NULL;
 
     if (number == 5210 || number == 5220) {
         *value = number == 5220 ? in->system + 1.0 : in->shifted;

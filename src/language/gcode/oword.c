@@ -56,12 +56,24 @@ static enum fault computed(struct reading *s, int32_t from, char label[OWORD_LAB
 /* The word behind the label; 0 if there is none like it. */
 static int32_t kind(struct reading *s)
 {
-    static const struct { char word[10]; int32_t is; } words[] = {
-        { "SUB", OWORD_SUB }, { "ENDSUB", OWORD_ENDSUB }, { "CALL", OWORD_CALL },
-        { "RETURN", OWORD_RETURN }, { "IF", OWORD_IF }, { "ELSEIF", OWORD_ELSEIF },
-        { "ELSE", OWORD_ELSE }, { "ENDIF", OWORD_ENDIF }, { "WHILE", OWORD_WHILE },
-        { "ENDWHILE", OWORD_ENDWHILE }, { "DO", OWORD_DO }, { "REPEAT", OWORD_REPEAT },
-        { "ENDREPEAT", OWORD_ENDREPEAT }, { "BREAK", OWORD_BREAK },
+    static const struct {
+        char word[10];
+        int32_t is;
+    } words[] = {
+        { "SUB", OWORD_SUB },
+        { "ENDSUB", OWORD_ENDSUB },
+        { "CALL", OWORD_CALL },
+        { "RETURN", OWORD_RETURN },
+        { "IF", OWORD_IF },
+        { "ELSEIF", OWORD_ELSEIF },
+        { "ELSE", OWORD_ELSE },
+        { "ENDIF", OWORD_ENDIF },
+        { "WHILE", OWORD_WHILE },
+        { "ENDWHILE", OWORD_ENDWHILE },
+        { "DO", OWORD_DO },
+        { "REPEAT", OWORD_REPEAT },
+        { "ENDREPEAT", OWORD_ENDREPEAT },
+        { "BREAK", OWORD_BREAK },
         { "CONTINUE", OWORD_CONTINUE },
     };
     const char c = reading_peek(s);

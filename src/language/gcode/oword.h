@@ -11,26 +11,36 @@ enum { OWORD_LABEL = PARAMETERS_NAME };
 
 /* What an O word is; a bit each, so that one of several can be looked for. */
 enum oword_is {
-    OWORD_NUMBER = 1 << 0,      /* nothing behind the label: the number of a program */
-    OWORD_SUB = 1 << 1, OWORD_ENDSUB = 1 << 2, OWORD_CALL = 1 << 3, OWORD_RETURN = 1 << 4,
-    OWORD_IF = 1 << 5, OWORD_ELSEIF = 1 << 6, OWORD_ELSE = 1 << 7, OWORD_ENDIF = 1 << 8,
-    OWORD_WHILE = 1 << 9, OWORD_ENDWHILE = 1 << 10, OWORD_DO = 1 << 11,
-    OWORD_REPEAT = 1 << 12, OWORD_ENDREPEAT = 1 << 13, OWORD_BREAK = 1 << 14,
+    OWORD_NUMBER = 1 << 0, /* nothing behind the label: the number of a program */
+    OWORD_SUB = 1 << 1,
+    OWORD_ENDSUB = 1 << 2,
+    OWORD_CALL = 1 << 3,
+    OWORD_RETURN = 1 << 4,
+    OWORD_IF = 1 << 5,
+    OWORD_ELSEIF = 1 << 6,
+    OWORD_ELSE = 1 << 7,
+    OWORD_ENDIF = 1 << 8,
+    OWORD_WHILE = 1 << 9,
+    OWORD_ENDWHILE = 1 << 10,
+    OWORD_DO = 1 << 11,
+    OWORD_REPEAT = 1 << 12,
+    OWORD_ENDREPEAT = 1 << 13,
+    OWORD_BREAK = 1 << 14,
     OWORD_CONTINUE = 1 << 15,
     OWORD_EITHER_SUB = OWORD_SUB | OWORD_ENDSUB
 };
 
 struct oword {
-    char    label[OWORD_LABEL];     /* name or digits without leading zeros, filled up with zeros */
+    char label[OWORD_LABEL]; /* name or digits without leading zeros, filled up with zeros */
     enum oword_is is;
-    bool    computed;               /* o#1, o[#1 + 2] */
+    bool computed; /* o#1, o[#1 + 2] */
 };
 
 /* A place in the text. */
 struct oword_place {
-    int64_t offset;         /* [byte] of a line */
-    int32_t line;           /* lines in front of it */
-    int32_t file;           /* 0 the program; of the files that it calls, from 1 */
+    int64_t offset; /* [byte] of a line */
+    int32_t line;   /* lines in front of it */
+    int32_t file;   /* 0 the program; of the files that it calls, from 1 */
 };
 
 /* Whether two labels are one. */

@@ -26,20 +26,19 @@ static bool machine_value(const struct interpreter *in, const struct program *p,
     double point[AXES];
 
     frame_here(in, point);
-    if (n >= 5021 && n <= 5029) {       /* where the axes stand, of the machine */
+    if (n >= 5021 && n <= 5029) { /* where the axes stand, of the machine */
         *value = coordinate(in, p, n - 5021, point);
     } else if (p->fanuc && ((n >= 5001 && n <= 5006) || (n >= 5041 && n <= 5046))) {
-        frame_program(in, point, point);                /* the axes in their order */
+        frame_program(in, point, point); /* the axes in their order */
         *value = point[(n - 1) % 20] / (in->inch && !(p->angles && (n - 1) % 20 >= 3) ? 25.4 : 1.0);
-    } else if (n == 5599) {             /* (DEBUG, ) comments get a note */
+    } else if (n == 5599) { /* (DEBUG, ) comments get a note */
         *value = in->parameters.debug;
-    } else if (n >= 5420 && n <= 5428) {        /* of the program */
+    } else if (n >= 5420 && n <= 5428) { /* of the program */
         frame_program(in, point, point);
         *value = coordinate(in, p, n - 5420, point);
     } else {
-        return offsets_parameter(in, p, n, value) ||
-               tools_parameter(in, p->angles, n, value) ||
-               waiting_parameter(in, p->angles, n, value);
+        return offsets_parameter(in, p, n, value) || tools_parameter(in, p->angles, n, value)
+               || waiting_parameter(in, p->angles, n, value);
     }
     return true;
 }
@@ -70,39 +69,50 @@ static double feed_of_program(const struct interpreter *in)
 }
 
 /* What only a name says: names as LinuxCNC has them, in the order of modal groups there. */
-#define NAMES(X)                                                                                 \
-    X(_line, in->line)                      X(_task, 1)                                          \
-    X(_value, in->flow.value)               X(_value_returned, in->flow.returned)                \
-    X(_call_level, in->flow.level)          X(_motion_mode, in->motion)                          \
-    X(_plane, in->plane == PATH_XY ? 170 : in->plane == PATH_ZX ? 180 : 190)                     \
-    X(_ccomp, in->cutter.side == 0 ? 400 : in->cutter.side > 0 ? 410 : 420)                      \
-    X(_metric, !in->inch)                   X(_imperial, in->inch)                               \
-    X(_absolute, !in->incremental)          X(_incremental, in->incremental)                     \
-    X(_inverse_time, in->words.feed_mode == 930)                                                 \
-    X(_units_per_minute, in->words.feed_mode == 940)                                             \
-    X(_units_per_rev, in->words.feed_mode == 950)                                                \
-    X(_coord_system, in->system < 6 ? 540 + 10 * in->system                                      \
-      : in->system < INTERPRETER_SYSTEMS ? 585 + in->system : 541)                           \
-    X(_tool_offset, tools_any_length(in))                                                        \
-    X(_retract_r_plane, in->cycle.to_r)     X(_retract_old_z, !in->cycle.to_r)                   \
-    X(_spindle_rpm_mode, !in->switches.by_radius)                                                \
-    X(_spindle_css_mode, in->switches.by_radius)                                                 \
-    X(_ijk_absolute_mode, in->absolute_centre)                                                   \
-    X(_spindle_on, in->switches.turning != 0)                                                    \
-    X(_spindle_cw, in->switches.turning > 0)                                                     \
-    X(_mist, (in->switches.coolant & OUTPUTS_MIST) != 0)                                         \
-    X(_flood, (in->switches.coolant & OUTPUTS_FLOOD) != 0)                                       \
-    X(_speed_override, !(in->switches.overrides & OUTPUTS_SPEED_FIXED))                          \
-    X(_feed_override, !(in->switches.overrides & OUTPUTS_FEED_FIXED))                            \
-    X(_adaptive_feed, (in->switches.overrides & OUTPUTS_ADAPTIVE) != 0)                          \
-    X(_feed_hold, !(in->switches.overrides & OUTPUTS_HOLD_OFF))                                  \
-    X(_feed, feed_of_program(in))           X(_rpm, in->switches.speed)                          \
-    X(_current_tool, in->tools.loaded)                                                           \
-    X(_current_pocket, pocket_of(in, in->tools.loaded))                                          \
-    X(_selected_tool, in->tools.chosen ? in->tools.next : -1)                                    \
-    X(_selected_pocket, in->tools.chosen ? pocket_of(in, in->tools.next) : -1)                   \
-    X(_lathe_diameter_mode, 0)              X(_lathe_radius_mode, 0)                             \
-    X(_remap_level, 0)                      X(_vmajor, 2.9)         X(_vminor, 0)
+#define NAMES(X) \
+    X(_line, in->line) \
+    X(_task, 1) \
+    X(_value, in->flow.value) \
+    X(_value_returned, in->flow.returned) \
+    X(_call_level, in->flow.level) \
+    X(_motion_mode, in->motion) \
+    X(_plane, in->plane == PATH_XY ? 170 : in->plane == PATH_ZX ? 180 : 190) \
+    X(_ccomp, in->cutter.side == 0 ? 400 : in->cutter.side > 0 ? 410 : 420) \
+    X(_metric, !in->inch) \
+    X(_imperial, in->inch) \
+    X(_absolute, !in->incremental) \
+    X(_incremental, in->incremental) \
+    X(_inverse_time, in->words.feed_mode == 930) \
+    X(_units_per_minute, in->words.feed_mode == 940) \
+    X(_units_per_rev, in->words.feed_mode == 950) \
+    X(_coord_system, in->system < 6                     ? 540 + 10 * in->system \
+                     : in->system < INTERPRETER_SYSTEMS ? 585 + in->system \
+                                                        : 541) \
+    X(_tool_offset, tools_any_length(in)) \
+    X(_retract_r_plane, in->cycle.to_r) \
+    X(_retract_old_z, !in->cycle.to_r) \
+    X(_spindle_rpm_mode, !in->switches.by_radius) \
+    X(_spindle_css_mode, in->switches.by_radius) \
+    X(_ijk_absolute_mode, in->absolute_centre) \
+    X(_spindle_on, in->switches.turning != 0) \
+    X(_spindle_cw, in->switches.turning > 0) \
+    X(_mist, (in->switches.coolant & OUTPUTS_MIST) != 0) \
+    X(_flood, (in->switches.coolant & OUTPUTS_FLOOD) != 0) \
+    X(_speed_override, !(in->switches.overrides & OUTPUTS_SPEED_FIXED)) \
+    X(_feed_override, !(in->switches.overrides & OUTPUTS_FEED_FIXED)) \
+    X(_adaptive_feed, (in->switches.overrides & OUTPUTS_ADAPTIVE) != 0) \
+    X(_feed_hold, !(in->switches.overrides & OUTPUTS_HOLD_OFF)) \
+    X(_feed, feed_of_program(in)) \
+    X(_rpm, in->switches.speed) \
+    X(_current_tool, in->tools.loaded) \
+    X(_current_pocket, pocket_of(in, in->tools.loaded)) \
+    X(_selected_tool, in->tools.chosen ? in->tools.next : -1) \
+    X(_selected_pocket, in->tools.chosen ? pocket_of(in, in->tools.next) : -1) \
+    X(_lathe_diameter_mode, 0) \
+    X(_lathe_radius_mode, 0) \
+    X(_remap_level, 0) \
+    X(_vmajor, 2.9) \
+    X(_vminor, 0)
 
 /* What LinuxCNC has of its own pins and settings. */
 static bool foreign(const char *name)
@@ -120,7 +130,8 @@ static bool given(const struct parameters *all, int32_t number)
 static bool named_value(const struct interpreter *in, const char *name, double *value)
 {
 #define NAME(word, is) #word,
-#define VALUE(word, is) case VALUE_##word: *value = is; break;
+#define VALUE(word, is) \
+    case VALUE_##word: *value = is; break;
 #define NUMBER(word, is) VALUE_##word,
     static const char ALL[][PARAMETERS_NAME] = { NAMES(NAME) };
     enum { NAMES(NUMBER) COUNT };
@@ -130,9 +141,8 @@ static bool named_value(const struct interpreter *in, const char *name, double *
         i++;
     }
     switch (i) {
-    NAMES(VALUE)
-    default:
-        return false;
+        NAMES(VALUE)
+    default: return false;
     }
     return true;
 }
@@ -144,8 +154,9 @@ static int32_t find(const struct interpreter *in, const char *name)
     const int32_t level = name[0] == '_' ? -1 : in->flow.level;
     int32_t i = 0;
 
-    while (i < all->names && (all->named[i].level != level ||
-                              memcmp(all->named[i].name, name, PARAMETERS_NAME) != 0)) {
+    while (i < all->names
+           && (all->named[i].level != level
+               || memcmp(all->named[i].name, name, PARAMETERS_NAME) != 0)) {
         i++;
     }
     return i;
@@ -172,9 +183,11 @@ enum fault parameters_get(const struct interpreter *in, const struct program *p,
         *value = all->named[i].value;
         return FAULT_NONE;
     }
-    return named_value(in, which->name, value) ||
-                   machine_value(in, p, number_of(which->name), value) ? FAULT_NONE
-         : foreign(which->name) ? FAULT_FOREIGN : FAULT_UNSET;
+    return named_value(in, which->name, value)
+                   || machine_value(in, p, number_of(which->name), value)
+               ? FAULT_NONE
+           : foreign(which->name) ? FAULT_FOREIGN
+                                  : FAULT_UNSET;
 }
 
 enum fault parameters_set(struct interpreter *in, const struct program *p,
@@ -201,10 +214,10 @@ enum fault parameters_set(struct interpreter *in, const struct program *p,
     }
     if (which->number) {
         return waiting_set(in, p->angles, which->number, value) ? FAULT_NONE
-             : machine_value(in, p, which->number, &now) ? FAULT_FIXED : FAULT_PARAMETER;
+               : machine_value(in, p, which->number, &now)      ? FAULT_FIXED
+                                                                : FAULT_PARAMETER;
     }
-    if (named_value(in, which->name, &now) ||
-        machine_value(in, p, number_of(which->name), &now)) {
+    if (named_value(in, which->name, &now) || machine_value(in, p, number_of(which->name), &now)) {
         return FAULT_FIXED;
     }
     if (foreign(which->name)) {

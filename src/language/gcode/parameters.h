@@ -14,35 +14,35 @@
 #include "fault.h"
 
 enum {
-    PARAMETERS_LOCAL = 30,      /* #1 .. of a call, */
-    PARAMETERS_LOCAL_FANUC = 33,        /* of one of Fanuc's controls */
-    PARAMETERS_NUMBERED = 5000, /* #1 .. that hold any value */
-    PARAMETERS_PAGE = 64,       /* numbers with a bit each in one word */
+    PARAMETERS_LOCAL = 30,       /* #1 .. of a call, */
+    PARAMETERS_LOCAL_FANUC = 33, /* of one of Fanuc's controls */
+    PARAMETERS_NUMBERED = 5000,  /* #1 .. that hold any value */
+    PARAMETERS_PAGE = 64,        /* numbers with a bit each in one word */
     PARAMETERS_PAGES = (PARAMETERS_NUMBERED + PARAMETERS_PAGE - 1) / PARAMETERS_PAGE,
-    PARAMETERS_ALARM = 3000,    /* of Fanuc's controls: a program that sets it stops */
-    PARAMETERS_ZERO = -1,       /* #0 of theirs, as a number of struct parameter */
-    PARAMETERS_NAMED = 100,     /* names in force at a time */
-    PARAMETERS_NAME = 32        /* [byte] of a name: 31 characters at most */
+    PARAMETERS_ALARM = 3000, /* of Fanuc's controls: a program that sets it stops */
+    PARAMETERS_ZERO = -1,    /* #0 of theirs, as a number of struct parameter */
+    PARAMETERS_NAMED = 100,  /* names in force at a time */
+    PARAMETERS_NAME = 32     /* [byte] of a name: 31 characters at most */
 };
 
 /* Which parameter: a number, or a name in lower case, filled up with zeros. */
 struct parameter {
-    int32_t number;             /* 0: it has a name */
-    char    name[PARAMETERS_NAME];
+    int32_t number; /* 0: it has a name */
+    char name[PARAMETERS_NAME];
 };
 
 struct parameter_named {
-    char    name[PARAMETERS_NAME];
-    int32_t level;              /* of the call it belongs to, 0 the main program; -1 all */
-    double  value;
+    char name[PARAMETERS_NAME];
+    int32_t level; /* of the call it belongs to, 0 the main program; -1 all */
+    double value;
 };
 
 struct parameters {
-    double value[PARAMETERS_NUMBERED];      /* of #1 on */
-    uint64_t given[PARAMETERS_PAGES];       /* bits: has been set; else nobody reads the value */
+    double value[PARAMETERS_NUMBERED]; /* of #1 on */
+    uint64_t given[PARAMETERS_PAGES];  /* bits: has been set; else nobody reads the value */
     struct parameter_named named[PARAMETERS_NAMED];
     int32_t names;
-    double debug;               /* #5599 */
+    double debug; /* #5599 */
 };
 
 struct interpreter;

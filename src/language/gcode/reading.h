@@ -9,10 +9,10 @@
 
 struct reading {
     const char *text;
-    int32_t at, end;            /* the next character, and behind the last */
-    int32_t depth;              /* brackets around it */
-    const struct interpreter *in;       /* for the values of parameters; NULL: there are none */
-    const struct program *program;      /* as a part of a program; or NULL */
+    int32_t at, end;               /* the next character, and behind the last */
+    int32_t depth;                 /* brackets around it */
+    const struct interpreter *in;  /* for the values of parameters; NULL: there are none */
+    const struct program *program; /* as a part of a program; or NULL */
     struct fault_report *r;
 };
 

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { BOM = 3 };       /* [byte] of the mark with which some editors begin UTF-8 */
+enum { BOM = 3 }; /* [byte] of the mark with which some editors begin UTF-8 */
 
 /* Leave a line behind that is too long. */
 static enum fault leave(const struct source *s, const char *file, int64_t *offset,
@@ -67,8 +67,8 @@ bool source_name(const char *file)
     bool may = file[0] != '\0';
 
     for (const char *c = file; *c; c++) {
-        may = may && ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9') || *c == '-' ||
-                      *c == '_');
+        may =
+            may && ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9') || *c == '-' || *c == '_');
     }
     return may;
 }

@@ -11,9 +11,9 @@
 #include "fault.h"
 
 enum {
-    SOURCE_LINE_MAX = 256,                  /* [characters] of a line without CR LF */
-    SOURCE_WINDOW = SOURCE_LINE_MAX + 2,    /* [byte] enough to see whether a line is too long */
-    SOURCE_NONE = -2                        /* there is no such file */
+    SOURCE_LINE_MAX = 256,               /* [characters] of a line without CR LF */
+    SOURCE_WINDOW = SOURCE_LINE_MAX + 2, /* [byte] enough to see whether a line is too long */
+    SOURCE_NONE = -2                     /* there is no such file */
 };
 
 struct source {
@@ -26,8 +26,8 @@ struct source {
 };
 
 struct source_line {
-    const char *text;       /* without its end; NULL behind the last line */
-    int32_t length;         /* [byte] */
+    const char *text; /* without its end; NULL behind the last line */
+    int32_t length;   /* [byte] */
 };
 
 /* Read the line at *offset of a file and move *offset behind its end. A mark of UTF-8 in front of
@@ -42,7 +42,7 @@ bool source_has(const struct source *s, const char *file);
 /* A program that stands in memory and calls no files. */
 struct source_text {
     const char *text;
-    int64_t length;         /* [byte] */
+    int64_t length; /* [byte] */
 };
 
 struct source source_of(struct source_text *t);

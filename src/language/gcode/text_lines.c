@@ -9,7 +9,7 @@ static enum fault set(struct interpreter *in, const struct program *p, const str
 {
     for (int i = 0; i < t->settings; i++) {
         const struct setting *s = &t->setting[i];
-        if (p->fanuc && s->which.number == PARAMETERS_ALARM) {      /* with its message */
+        if (p->fanuc && s->which.number == PARAMETERS_ALARM) { /* with its message */
             return fault_at(r, FAULT_ALARM, s->at, t->at + t->length - s->at);
         }
         const enum fault f = parameters_set(in, p, &s->which, s->value);
@@ -72,7 +72,7 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
 
     t->count = 0;
     if (f == FAULT_NONE && !line.text) {
-        in->ended = true;       /* of a file, too: what was called has no end */
+        in->ended = true; /* of a file, too: what was called has no end */
         return flow_end(in, p, r);
     }
     r->line = ++in->line;
@@ -82,11 +82,11 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
     struct reading s = { .text = line.text, .end = line.length, .in = in, .program = p, .r = r };
     f = tokens_read(t, &s);
     if (t->slash && p->block_delete) {
-        t->count = 0;           /* whatever stands behind it */
+        t->count = 0; /* whatever stands behind it */
         return FAULT_NONE;
     }
     if (f == FAULT_NONE && t->percent) {
-        in->ended = in->percent;    /* the second % closes the program */
+        in->ended = in->percent; /* the second % closes the program */
         in->percent = true;
         return in->ended ? flow_end(in, p, r) : FAULT_NONE;
     }

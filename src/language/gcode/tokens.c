@@ -42,20 +42,19 @@ static enum fault word(struct tokens *t, struct reading *s, char letter)
     w->at = s->at++;
     const enum fault f = expression_or_vacant(s, w->at, &w->value, &w->whole);
     w->length = s->at - w->at;
-    if (f == FAULT_NONE && w->whole && s->program && s->program->least_increment > 0.0 &&
-        strchr("XYZUVWABCIJKRQ[]", letter)) {
+    if (f == FAULT_NONE && w->whole && s->program && s->program->least_increment > 0.0
+        && strchr("XYZUVWABCIJKRQ[]", letter)) {
         w->value *= s->program->least_increment;
     }
-    t->count += f == FAULT_NONE && !parameters_vacant(w->value);    /* else as if not there */
+    t->count += f == FAULT_NONE && !parameters_vacant(w->value); /* else as if not there */
     return f;
 }
 
 /* The comment is one that other controls act on. */
 static bool acts(struct reading s)
 {
-    static const char words[][12] = {
-        "PRINT,", "DEBUG,", "LOG,", "LOGOPEN,", "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN", "PROBECLOSE"
-    };
+    static const char words[][12] = { "PRINT,",     "DEBUG,",   "LOG,",      "LOGOPEN,",
+                                      "LOGAPPEND,", "LOGCLOSE", "PROBEOPEN", "PROBECLOSE" };
     size_t i = 0;
 
     while (i < sizeof words / sizeof *words && !reading_word(&s, words[i])) {
@@ -177,7 +176,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
     block_delete(t, s);
     for (char c = reading_peek(s); c != '\0' && c != ';'; c = reading_peek(s)) {
         const int32_t from = s->at;
-        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s));    /* : as ISO has it */
+        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s)); /* : as ISO has it */
         if ((c == 'O' || other) && first(t)) {
             t->flow = true;
             break;
@@ -185,7 +184,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
         const enum fault one = item(t, s, c);
         if (one != FAULT_NONE) {
             f = f == FAULT_NONE ? one : f;
-            s->r = &ignored;        /* what follows the first fault is told no more */
+            s->r = &ignored; /* what follows the first fault is told no more */
             skip(s, from);
         }
     }

@@ -10,31 +10,32 @@
 
 enum {
     TOKENS_WORDS_MAX = 40,
-    TOKENS_CHAMFER = '[', TOKENS_ROUND = ']'    /* letters of the words ,C and ,R */
+    TOKENS_CHAMFER = '[',
+    TOKENS_ROUND = ']' /* letters of the words ,C and ,R */
 };
 
 struct token {
-    char    letter;         /* 'A'..'Z', '@', '^', TOKENS_CHAMFER, TOKENS_ROUND */
-    bool    whole;          /* a number without a decimal point */
-    int32_t at, length;     /* where it stands in the line */
-    double  value;
+    char letter;        /* 'A'..'Z', '@', '^', TOKENS_CHAMFER, TOKENS_ROUND */
+    bool whole;         /* a number without a decimal point */
+    int32_t at, length; /* where it stands in the line */
+    double value;
 };
 
 /* #1 = 5: takes effect when the whole line has been read. The value may be vacant. */
 struct setting {
     struct parameter which;
-    double  value;
+    double value;
     int32_t at, length;
 };
 
 struct tokens {
     struct token word[TOKENS_WORDS_MAX];
     struct setting setting[TOKENS_WORDS_MAX];
-    int     count, settings;
-    bool    percent;        /* the line is a % */
-    bool    slash;          /* it begins with a /; noted before any fault behind it */
-    bool    flow;           /* where the reading stopped stands an O word, or GOTO .. END */
-    int32_t at, length;     /* the line without blanks at its ends */
+    int count, settings;
+    bool percent;       /* the line is a % */
+    bool slash;         /* it begins with a /; noted before any fault behind it */
+    bool flow;          /* where the reading stopped stands an O word, or GOTO .. END */
+    int32_t at, length; /* the line without blanks at its ends */
 };
 
 /* Cut what is left of a line. s->r gets the place of the first fault; the words around it are there

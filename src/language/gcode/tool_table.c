@@ -68,7 +68,8 @@ static const char *take_word(struct tool *tool, const struct token *w, bool angl
         return NULL;
     }
     return strchr(passed, w->letter) || (strchr("ABCUVW", w->letter) && w->value == 0.0)
-           ? NULL : "no column of a tool table";
+               ? NULL
+               : "no column of a tool table";
 }
 
 /* The words of a line: one tool, each letter once. */
@@ -109,8 +110,10 @@ const char *tool_table_line(struct tool_table *t, const char *text, int32_t leng
         return NULL;
     }
     const char *why = take_words(&tool, &words, angles, at);
-    why = why ? why : entry_of(t, tool.number) ? "a tool that is in the table already"
-                    : t->count == TOOL_TABLE_MAX ? "more than 200 tools" : NULL;
+    why = why                          ? why
+          : entry_of(t, tool.number)   ? "a tool that is in the table already"
+          : t->count == TOOL_TABLE_MAX ? "more than 200 tools"
+                                       : NULL;
     if (!why) {
         t->tool[t->count++] = tool;
     }

@@ -11,14 +11,14 @@ enum { TOOL_TABLE_MAX = 200, TOOL_NUMBER_MAX = 999999999 };
 
 struct tool {
     int32_t number, pocket;
-    double  offset[AXES];       /* [mm], [deg] length and more: from the tip to the spindle */
-    double  diameter;           /* [mm] */
+    double offset[AXES]; /* [mm], [deg] length and more: from the tip to the spindle */
+    double diameter;     /* [mm] */
 };
 
 /* Tools by number. An open table has no file behind it: every tool it does not have exists, too,
  * with length and diameter 0. Cleared it is open. Tool 0 is none: the spindle is empty. */
 struct tool_table {
-    bool    closed;
+    bool closed;
     int32_t count;
     struct tool tool[TOOL_TABLE_MAX];
 };

@@ -22,8 +22,8 @@ static enum fault tool_of(const struct interpreter *in, const struct token *w, s
     int32_t number = 0;
     const enum fault f = tools_number(w, &number, r);
 
-    if (f == FAULT_NONE &&
-        !tool_table_find(&in->tools.table, number ? number : in->tools.loaded, tool)) {
+    if (f == FAULT_NONE
+        && !tool_table_find(&in->tools.table, number ? number : in->tools.loaded, tool)) {
         return tokens_at_word(r, FAULT_TOOL, w);
     }
     return f;
@@ -129,10 +129,11 @@ bool tools_parameter(const struct interpreter *in, bool angles, int number, doub
     }
     const int axis = offsets_axis(angles, number - (length ? 5081 : 5401));
     tool_table_find(&in->tools.table, in->tools.loaded, &tool);
-    *value = number == 5400 ? tool.number
-           : number == 5410 ? tool.diameter
-           : number > 5410 || axis < 0 ? 0.0
-           : length ? in->tools.length[axis] : tool.offset[axis];
+    *value = number == 5400              ? tool.number
+             : number == 5410            ? tool.diameter
+             : number > 5410 || axis < 0 ? 0.0
+             : length                    ? in->tools.length[axis]
+                                         : tool.offset[axis];
     return true;
 }
 

@@ -6,7 +6,7 @@
 #include "frame.h"
 #include "offsets.h"
 
-static const double WAIT_MAX = 86400.0;     /* [s] a day */
+static const double WAIT_MAX = 86400.0; /* [s] a day */
 
 void waiting_for(struct interpreter *in, enum wait_kind kind)
 {
@@ -121,15 +121,10 @@ void waiting_pass(struct interpreter *in)
 bool waiting_done(const struct waiting *w, double is, double was)
 {
     switch (w->mode) {
-    case WAIT_RISE:
-        return is != 0.0 && was == 0.0;
-    case WAIT_FALL:
-        return is == 0.0 && was != 0.0;
-    case WAIT_HIGH:
-        return is != 0.0;
-    case WAIT_LOW:
-        return is == 0.0;
-    default:
-        return true;
+    case WAIT_RISE: return is != 0.0 && was == 0.0;
+    case WAIT_FALL: return is == 0.0 && was != 0.0;
+    case WAIT_HIGH: return is != 0.0;
+    case WAIT_LOW:  return is == 0.0;
+    default:        return true;
     }
 }

@@ -79,14 +79,18 @@ static int header(struct inform_reading *in)
 
 double inform_low(enum inform_operand_kind kind)
 {
-    return kind == INFORM_B ? 0.0 : kind == INFORM_I ? INT16_MIN
-         : kind == INFORM_D ? INT32_MIN : -DBL_MAX;
+    return kind == INFORM_B   ? 0.0
+           : kind == INFORM_I ? INT16_MIN
+           : kind == INFORM_D ? INT32_MIN
+                              : -DBL_MAX;
 }
 
 double inform_high(enum inform_operand_kind kind)
 {
-    return kind == INFORM_B ? UINT8_MAX : kind == INFORM_I ? INT16_MAX
-         : kind == INFORM_D ? INT32_MAX : DBL_MAX;
+    return kind == INFORM_B   ? UINT8_MAX
+           : kind == INFORM_I ? INT16_MAX
+           : kind == INFORM_D ? INT32_MAX
+                              : DBL_MAX;
 }
 
 int32_t inform_job(const struct inform_program *p, const char *name)

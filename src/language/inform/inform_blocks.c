@@ -71,7 +71,7 @@ int inform_block_else(struct inform_reading *in, bool condition)
     if (!out) {
         return -1;
     }
-    out->to = b->out;           /* where it goes to is known at ENDIF */
+    out->to = b->out; /* where it goes to is known at ENDIF */
     b->out = in->p->count - 1;
     in->p->code[b->code].to = in->p->count;
     if (!condition) {
@@ -116,9 +116,7 @@ int inform_block_endwhile(struct inform_reading *in)
 
 int inform_block_loop(struct inform_reading *in)
 {
-    enum {
-        COUNTS = 1u << INFORM_CONSTANT | 1u << INFORM_B | 1u << INFORM_I | 1u << INFORM_D
-    };
+    enum { COUNTS = 1u << INFORM_CONSTANT | 1u << INFORM_B | 1u << INFORM_I | 1u << INFORM_D };
     struct inform_scan *s = &in->s;
     struct inform_code *c = inform_reading_add(in, INFORM_OP_LOOP);
     if (!c) {

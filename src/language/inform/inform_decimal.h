@@ -6,7 +6,7 @@
 
 /* Where a text grows; `at` stays below `size`, what does not fit is left out. */
 struct inform_text {
-    char   *text;
+    char *text;
     int32_t size, at;
 };
 

@@ -3,7 +3,7 @@
 #include "inform_decimal.h"
 
 /* The texts themselves, not pointers to them, which would not be constant in a shared library. */
-#define ROW(name, text) [name] = text,
+#define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[INFORM_FAULT_COUNT][51] = { INFORM_FAULT_TEXTS(ROW) };
 INFORM_FAULT_TEXTS(FITS)

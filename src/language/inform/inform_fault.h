@@ -9,15 +9,15 @@
     X(INFORM_OK, "no fault") \
     /* any text */ \
     X(INFORM_BAD_BYTE, "byte 0, which no text has, behind") \
-    X(INFORM_BAD_TEXT_LENGTH, "text too long")  /* more than INFORM_TEXT_MAX bytes */ \
-    X(INFORM_BAD_LINE_LENGTH, "line too long")  /* more than INFORM_LINE_MAX characters */ \
+    X(INFORM_BAD_TEXT_LENGTH, "text too long") /* more than INFORM_TEXT_MAX bytes */ \
+    X(INFORM_BAD_LINE_LENGTH, "line too long") /* more than INFORM_LINE_MAX characters */ \
     X(INFORM_BAD_WORD, "unknown word") \
-    X(INFORM_BAD_MISSING, "incomplete")  /* the line ends before it is complete */ \
-    X(INFORM_BAD_EXTRA, "unexpected")  /* something else is expected here, or nothing more */ \
+    X(INFORM_BAD_MISSING, "incomplete") /* the line ends before it is complete */ \
+    X(INFORM_BAD_EXTRA, "unexpected")   /* something else is expected here, or nothing more */ \
     X(INFORM_BAD_TWICE, "given twice")  /* a tag given twice, or two that exclude each other */ \
     X(INFORM_BAD_NUMBER, "number with more than 15 digits") \
     X(INFORM_BAD_WHOLE, "no whole number") \
-    X(INFORM_BAD_VALUE, "value out of range")  /* outside low .. high of the report */ \
+    X(INFORM_BAD_VALUE, "value out of range") /* outside low .. high of the report */ \
     /* points file */ \
     /* a point, tool or user frame has been defined; other: its line */ \
     X(INFORM_BAD_POINT_TWICE, "defined twice") \
@@ -29,7 +29,7 @@
     X(INFORM_BAD_FRAME, "tool or user frame not in the points file") \
     X(INFORM_BAD_JOB, "no such job") \
     X(INFORM_BAD_LABEL, "no such label in this job") \
-    X(INFORM_BAD_JOB_TWICE, "second job of this name")  /* other: line of the first */ \
+    X(INFORM_BAD_JOB_TWICE, "second job of this name") /* other: line of the first */ \
     /* other: line of the first */ \
     X(INFORM_BAD_LABEL_TWICE, "second label of this name in the job") \
     /* a jump into a LOOP from outside; other: line of the LOOP */ \
@@ -40,7 +40,7 @@
     X(INFORM_BAD_OPEN, "has no end") \
     /* ELSE or ELSEIF behind ELSE; other: line of the ELSE */ \
     X(INFORM_BAD_AFTER_ELSE, "behind ELSE") \
-    X(INFORM_BAD_AFTER_END, "behind END")  /* an instruction behind END; other: line of the END */ \
+    X(INFORM_BAD_AFTER_END, "behind END") /* an instruction behind END; other: line of the END */ \
     /* no name, or one with more than INFORM_NAME_MAX characters */ \
     X(INFORM_BAD_NAME, "name too long") \
     X(INFORM_BAD_ARC_POINTS, "MOVC of one point: three in a row, start, via, end") \
@@ -56,7 +56,7 @@
     /* instructions, jobs, labels, blocks; high: how many may be */ \
     X(INFORM_BAD_TOO_MANY, "too many") \
     /* while it runs */ \
-    X(INFORM_BAD_STACK, "CALL inside too many others")  /* CALL deeper than INFORM_CALLS */ \
+    X(INFORM_BAD_STACK, "CALL inside too many others") /* CALL deeper than INFORM_CALLS */ \
     X(INFORM_BAD_ZERO_DIVISION, "division by zero") \
     /* a result outside the range of its variable or output */ \
     X(INFORM_BAD_RANGE, "result out of range") \
@@ -64,10 +64,7 @@
     X(INFORM_BAD_ENDLESS, "endless without motion, input, output or wait")
 
 #define INFORM_FAULT_ENTRY(name, text) name,
-enum inform_fault {
-    INFORM_FAULT_TEXTS(INFORM_FAULT_ENTRY)
-    INFORM_FAULT_COUNT
-};
+enum inform_fault { INFORM_FAULT_TEXTS(INFORM_FAULT_ENTRY) INFORM_FAULT_COUNT };
 
 /* The first thing wrong with a text. */
 struct inform_report {
@@ -76,7 +73,7 @@ struct inform_report {
     int32_t column;         /* from 1 */
     int32_t offset, length; /* [byte] the offending text in the whole text */
     int32_t other;          /* another line that belongs to it, or 0 */
-    double  low, high;      /* of BAD_VALUE; high of BAD_TOO_MANY, too */
+    double low, high;       /* of BAD_VALUE; high of BAD_TOO_MANY, too */
 };
 
 /* What a fault means, in words. */

@@ -1,22 +1,23 @@
 #include "inform_reading.h"
 
 /* What may be asked for; a controller may do less. */
-#define V_MIN 0.1               /* [mm/s] */
-#define V_MAX 10000.0           /* [mm/s] */
-#define VR_MIN 0.1              /* [deg/s] */
-#define VR_MAX 1000.0           /* [deg/s] */
-#define VJ_MIN 0.01             /* [%] */
-#define VJ_MAX 100.0            /* [%] */
-#define CORNER_MIN 0.1          /* [mm] */
-#define CORNER_MAX 6553.5       /* [mm] as in the maker's language */
+#define V_MIN      0.1     /* [mm/s] */
+#define V_MAX      10000.0 /* [mm/s] */
+#define VR_MIN     0.1     /* [deg/s] */
+#define VR_MAX     1000.0  /* [deg/s] */
+#define VJ_MIN     0.01    /* [%] */
+#define VJ_MAX     100.0   /* [%] */
+#define CORNER_MIN 0.1     /* [mm] */
+#define CORNER_MAX 6553.5  /* [mm] as in the maker's language */
 
 /* VJ, V or VR with its value: 1 taken, 0 none, -1. */
 static int speed_tag(struct inform_scan *s, struct inform_piece w, enum inform_speed *tag,
                      double *value)
 {
-    *tag = inform_scan_is(s, w, "VJ") ? INFORM_VJ
-         : inform_scan_is(s, w, "V")  ? INFORM_V
-         : inform_scan_is(s, w, "VR") ? INFORM_VR : INFORM_DEFAULT;
+    *tag = inform_scan_is(s, w, "VJ")   ? INFORM_VJ
+           : inform_scan_is(s, w, "V")  ? INFORM_V
+           : inform_scan_is(s, w, "VR") ? INFORM_VR
+                                        : INFORM_DEFAULT;
     if (*tag == INFORM_DEFAULT) {
         return 0;
     }
@@ -62,7 +63,8 @@ static int take_tag(struct inform_scan *s, struct inform_piece w, struct inform_
         c->speed = speed;
         w.length = s->at - w.at;
         return (c->tag == INFORM_VJ) == (c->path == INFORM_JOINT)
-                   ? 0 : inform_scan_fault(s, INFORM_BAD_KIND, w);
+                   ? 0
+                   : inform_scan_fault(s, INFORM_BAD_KIND, w);
     }
     const bool level = inform_scan_is(s, w, "PL");
     if (!level && !inform_scan_is(s, w, "CR")) {
@@ -82,7 +84,8 @@ static int same_frames(struct inform_reading *in, int32_t via, int32_t end)
 {
     const struct inform_point *a = &in->points->point[via], *b = &in->points->point[end];
     return a->tool == b->tool && a->user == b->user
-               ? 0 : inform_scan_fault_line(&in->s, INFORM_BAD_ARC_FRAMES);
+               ? 0
+               : inform_scan_fault_line(&in->s, INFORM_BAD_ARC_FRAMES);
 }
 
 int inform_move_arc_over(struct inform_reading *in)
@@ -103,9 +106,7 @@ static int arc_point(struct inform_reading *in, struct inform_code *c)
     in->arc_line = s->line;
     in->arc_at = (struct inform_piece){ s->begin, s->end - s->begin };
     switch (++in->arc) {
-    case 1:
-        c->path = INFORM_LINE;
-        return 0;
+    case 1: c->path = INFORM_LINE; return 0;
     case 2:
         in->via = *c;
         in->p->count--;
@@ -117,8 +118,7 @@ static int arc_point(struct inform_reading *in, struct inform_code *c)
             return inform_scan_fault_line(&in->s, INFORM_BAD_ARC_SPEED);
         }
         return same_frames(in, c->via, c->to);
-    default:
-        return inform_scan_fault_line(&in->s, INFORM_BAD_ARC_POINTS);
+    default: return inform_scan_fault_line(&in->s, INFORM_BAD_ARC_POINTS);
     }
 }
 

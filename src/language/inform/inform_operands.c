@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#define TIME_MAX 655.35         /* [s] as in the maker's language */
+#define TIME_MAX 655.35 /* [s] as in the maker's language */
 
 /* The largest number that any operand may be. */
 #define CONSTANT_MAX 1e12
@@ -85,8 +85,9 @@ static enum inform_relation relation(struct inform_scan *s)
         return INFORM_EQUAL;
     }
     if (inform_scan_take(s, '<')) {
-        return s->at < s->end && s->text[s->at] == '>' ? (s->at++, INFORM_NOT_EQUAL)
-             : s->at < s->end && s->text[s->at] == '=' ? (s->at++, INFORM_AT_MOST) : INFORM_LESS;
+        return s->at < s->end && s->text[s->at] == '>'   ? (s->at++, INFORM_NOT_EQUAL)
+               : s->at < s->end && s->text[s->at] == '=' ? (s->at++, INFORM_AT_MOST)
+                                                         : INFORM_LESS;
     }
     if (inform_scan_take(s, '>')) {
         return s->at < s->end && s->text[s->at] == '=' ? (s->at++, INFORM_AT_LEAST) : INFORM_MORE;
@@ -128,9 +129,9 @@ int inform_operand_condition(struct inform_reading *in, struct inform_code *c)
     if (c->relation == INFORM_ALWAYS) {
         return inform_scan_unexpected(s);
     }
-    if (c->left.kind == INFORM_IN || c->left.kind == INFORM_OT ? on_or_off(in, c)
-                                                               : inform_operand(in, RIGHT,
-                                                                                &c->right)) {
+    if (c->left.kind == INFORM_IN || c->left.kind == INFORM_OT
+            ? on_or_off(in, c)
+            : inform_operand(in, RIGHT, &c->right)) {
         return -1;
     }
     return !bracket || inform_scan_take(s, ')') ? 0 : inform_scan_unexpected(s);

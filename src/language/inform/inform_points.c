@@ -5,19 +5,19 @@
 
 #include "inform_decimal.h"
 
-#define JOINT_MAX 3600.0        /* [deg] ten turns: no arm's limit */
-#define PLACE_MAX 100000.0      /* [mm] */
-#define ANGLE_MAX 360.0         /* [deg] */
+#define JOINT_MAX 3600.0   /* [deg] ten turns: no arm's limit */
+#define PLACE_MAX 100000.0 /* [mm] */
+#define ANGLE_MAX 360.0    /* [deg] */
 
-enum { COORDINATES = 0x3f };    /* all six are given */
+enum { COORDINATES = 0x3f }; /* all six are given */
 
 static const char AXES[] = "XYZABC";
-static const int TURNS[3] = { 1, 4, 6 };    /* joints */
+static const int TURNS[3] = { 1, 4, 6 }; /* joints */
 
 /* Words of a configuration: the even ones are 0, the odd ones 1. */
-static const struct { char word[8]; } FLAGS[6] = {
-    { "FRONT" }, { "BACK" }, { "UP" }, { "DOWN" }, { "NOFLIP" }, { "FLIP" }
-};
+static const struct {
+    char word[8];
+} FLAGS[6] = { { "FRONT" }, { "BACK" }, { "UP" }, { "DOWN" }, { "NOFLIP" }, { "FLIP" } };
 
 void inform_points_clear(struct inform_points *p)
 {
@@ -128,11 +128,12 @@ static int take_flag(struct inform_scan *s, struct inform_piece w, struct inform
 
 static struct inform_point no_point(void)
 {
-    return (struct inform_point){
-        .shoulder = INFORM_ANY, .elbow = INFORM_ANY, .wrist = INFORM_ANY,
-        .turn = { INFORM_ANY_TURN, INFORM_ANY_TURN, INFORM_ANY_TURN },
-        .tool = INFORM_ANY, .user = INFORM_ANY
-    };
+    return (struct inform_point){ .shoulder = INFORM_ANY,
+                                  .elbow = INFORM_ANY,
+                                  .wrist = INFORM_ANY,
+                                  .turn = { INFORM_ANY_TURN, INFORM_ANY_TURN, INFORM_ANY_TURN },
+                                  .tool = INFORM_ANY,
+                                  .user = INFORM_ANY };
 }
 
 static int read_tags(struct inform_scan *s, const struct inform_points *points,
@@ -229,14 +230,13 @@ int inform_points_read(struct inform_points *p, const char *text, int64_t length
 static bool writable(int32_t number, const struct inform_point *p)
 {
     bool good = number >= 0 && number < INFORM_POINTS
-                && (p->kind == INFORM_JOINTS || p->kind == INFORM_POSE)
-                && p->shoulder >= INFORM_ANY && p->shoulder <= 1 && p->elbow >= INFORM_ANY
-                && p->elbow <= 1 && p->wrist >= INFORM_ANY && p->wrist <= 1
-                && p->tool >= INFORM_ANY && p->tool < INFORM_FRAMES && p->user >= INFORM_ANY
-                && p->user < INFORM_FRAMES;
+                && (p->kind == INFORM_JOINTS || p->kind == INFORM_POSE) && p->shoulder >= INFORM_ANY
+                && p->shoulder <= 1 && p->elbow >= INFORM_ANY && p->elbow <= 1
+                && p->wrist >= INFORM_ANY && p->wrist <= 1 && p->tool >= INFORM_ANY
+                && p->tool < INFORM_FRAMES && p->user >= INFORM_ANY && p->user < INFORM_FRAMES;
     for (int32_t i = 0; i < 3; i++) {
-        good &= p->turn[i] == INFORM_ANY_TURN || (p->turn[i] >= -INFORM_TURN_MAX
-                                                  && p->turn[i] <= INFORM_TURN_MAX);
+        good &= p->turn[i] == INFORM_ANY_TURN
+                || (p->turn[i] >= -INFORM_TURN_MAX && p->turn[i] <= INFORM_TURN_MAX);
     }
     for (int32_t i = 0; i < 6; i++) {
         good &= fabs(p->value[i]) <= (p->kind == INFORM_JOINTS ? JOINT_MAX : coordinate_max(i));

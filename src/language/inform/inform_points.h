@@ -16,10 +16,10 @@
 #include "inform_fault.h"
 
 enum {
-    INFORM_TEXT_MAX = 1 << 22,      /* [byte] */
-    INFORM_LINE_MAX = 256,          /* [characters] of a line without CR LF */
-    INFORM_POINTS = 1000,           /* P000 .. P999 */
-    INFORM_FRAMES = 64              /* tools 0 (flange) .. 63, user frames 0 (base) .. 63 */
+    INFORM_TEXT_MAX = 1 << 22, /* [byte] */
+    INFORM_LINE_MAX = 256,     /* [characters] of a line without CR LF */
+    INFORM_POINTS = 1000,      /* P000 .. P999 */
+    INFORM_FRAMES = 64         /* tools 0 (flange) .. 63, user frames 0 (base) .. 63 */
 };
 
 enum inform_point_kind { INFORM_NO_POINT, INFORM_JOINTS, INFORM_POSE };
@@ -28,20 +28,20 @@ enum inform_point_kind { INFORM_NO_POINT, INFORM_JOINTS, INFORM_POSE };
 enum { INFORM_ANY = -1, INFORM_ANY_TURN = -128, INFORM_TURN_MAX = 100 };
 
 struct inform_point {
-    double  value[6];           /* joints [deg], or X Y Z [mm] A B C [deg] */
+    double value[6]; /* joints [deg], or X Y Z [mm] A B C [deg] */
     enum inform_point_kind kind;
-    int32_t shoulder;           /* 0 FRONT, 1 BACK, INFORM_ANY */
-    int32_t elbow;              /* 0 UP, 1 DOWN, INFORM_ANY */
-    int32_t wrist;              /* 0 NOFLIP, 1 FLIP, INFORM_ANY */
-    int32_t turn[3];            /* of joints 1 4 6: n for 360 n - 180 < joint <= 360 n + 180 [deg],
-                                 * -100 .. 100, or INFORM_ANY_TURN */
-    int32_t tool, user;         /* INFORM_ANY: what is in force where the program goes there */
-    int32_t line;               /* where it is defined, 0: taught */
+    int32_t shoulder;   /* 0 FRONT, 1 BACK, INFORM_ANY */
+    int32_t elbow;      /* 0 UP, 1 DOWN, INFORM_ANY */
+    int32_t wrist;      /* 0 NOFLIP, 1 FLIP, INFORM_ANY */
+    int32_t turn[3];    /* of joints 1 4 6: n for 360 n - 180 < joint <= 360 n + 180 [deg],
+                         * -100 .. 100, or INFORM_ANY_TURN */
+    int32_t tool, user; /* INFORM_ANY: what is in force where the program goes there */
+    int32_t line;       /* where it is defined, 0: taught */
 };
 
 struct inform_frame {
-    bool    defined;            /* 0 always is: no shift, no turn */
-    double  value[6];           /* X Y Z [mm] A B C [deg]; in the flange, in the base */
+    bool defined;    /* 0 always is: no shift, no turn */
+    double value[6]; /* X Y Z [mm] A B C [deg]; in the flange, in the base */
     int32_t line;
 };
 
@@ -63,7 +63,6 @@ enum { INFORM_POINT_TEXT = 256 };
 /* The line of one point without its end, as the reader takes it: to 1e-6 mm and deg, so what was
  * read from at most six decimals comes back as the same bits. -1: a value or number is out of the
  * reader's range or not finite, nothing is written. */
-int inform_point_write(int32_t number, const struct inform_point *p,
-                       char text[INFORM_POINT_TEXT]);
+int inform_point_write(int32_t number, const struct inform_point *p, char text[INFORM_POINT_TEXT]);
 
 #endif

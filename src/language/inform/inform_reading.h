@@ -8,11 +8,11 @@
 /* A block that is open: IF (`from` its latest branch), LOOP, WHILE. */
 struct inform_block {
     enum { INFORM_BLOCK_IF, INFORM_BLOCK_ELSE, INFORM_BLOCK_LOOP, INFORM_BLOCK_WHILE } kind;
-    int32_t code;               /* the branch not taken jumps from here: IF, ELSEIF, WHILE, LOOP */
-    int32_t out;                /* latest jump to the end of an IF, each has the one before; -1 */
+    int32_t code; /* the branch not taken jumps from here: IF, ELSEIF, WHILE, LOOP */
+    int32_t out;  /* latest jump to the end of an IF, each has the one before; -1 */
     int32_t else_line;
     int32_t line;
-    struct inform_piece begin;  /* its line */
+    struct inform_piece begin; /* its line */
 };
 
 struct inform_reading {
@@ -21,12 +21,12 @@ struct inform_reading {
     struct inform_scan s;
     struct inform_block block[INFORM_BLOCKS];
     int32_t blocks;
-    int32_t end_line;           /* of END of this job, or 0 */
-    int32_t last;               /* latest line of this job */
-    int32_t arc;                /* MOVC of one point in a row: 0 .. 3 */
-    int32_t arc_line;           /* of the latest */
+    int32_t end_line; /* of END of this job, or 0 */
+    int32_t last;     /* latest line of this job */
+    int32_t arc;      /* MOVC of one point in a row: 0 .. 3 */
+    int32_t arc_line; /* of the latest */
     struct inform_piece arc_at;
-    struct inform_code via;     /* of the second */
+    struct inform_code via; /* of the second */
 };
 
 /* A new instruction of this line, to be filled in; NULL: too many. */

@@ -7,13 +7,13 @@ enum kind { NOTHING, MOTION, MODE, OUTPUT, NUMBER, TIME, FLOW, OPERATOR };
 
 /* What an instruction is about. */
 static const uint8_t KIND[] = {
-    [INFORM_OP_MOVE] = MOTION, [INFORM_OP_SPEED] = MODE, [INFORM_OP_LEVEL] = MODE,
-    [INFORM_OP_TOOL] = MODE, [INFORM_OP_USER] = MODE, [INFORM_OP_DOUT] = OUTPUT,
-    [INFORM_OP_AOUT] = OUTPUT, [INFORM_OP_SET] = NUMBER, [INFORM_OP_ADD] = NUMBER,
-    [INFORM_OP_SUB] = NUMBER, [INFORM_OP_MUL] = NUMBER, [INFORM_OP_DIV] = NUMBER,
-    [INFORM_OP_WAIT] = TIME, [INFORM_OP_TIMER] = TIME, [INFORM_OP_JUMP] = FLOW,
-    [INFORM_OP_UNLESS] = FLOW, [INFORM_OP_CALL] = FLOW, [INFORM_OP_RET] = FLOW,
-    [INFORM_OP_LOOP] = FLOW, [INFORM_OP_ENDLOOP] = FLOW, [INFORM_OP_PAUSE] = OPERATOR,
+    [INFORM_OP_MOVE] = MOTION, [INFORM_OP_SPEED] = MODE,   [INFORM_OP_LEVEL] = MODE,
+    [INFORM_OP_TOOL] = MODE,   [INFORM_OP_USER] = MODE,    [INFORM_OP_DOUT] = OUTPUT,
+    [INFORM_OP_AOUT] = OUTPUT, [INFORM_OP_SET] = NUMBER,   [INFORM_OP_ADD] = NUMBER,
+    [INFORM_OP_SUB] = NUMBER,  [INFORM_OP_MUL] = NUMBER,   [INFORM_OP_DIV] = NUMBER,
+    [INFORM_OP_WAIT] = TIME,   [INFORM_OP_TIMER] = TIME,   [INFORM_OP_JUMP] = FLOW,
+    [INFORM_OP_UNLESS] = FLOW, [INFORM_OP_CALL] = FLOW,    [INFORM_OP_RET] = FLOW,
+    [INFORM_OP_LOOP] = FLOW,   [INFORM_OP_ENDLOOP] = FLOW, [INFORM_OP_PAUSE] = OPERATOR,
     [INFORM_OP_NOP] = NOTHING
 };
 
@@ -38,13 +38,13 @@ static double value(const struct inform_run *run, const struct inform_inputs *in
     switch (o->kind) {
     case INFORM_B:
     case INFORM_I:
-    case INFORM_D:       return run->whole[o->kind - INFORM_B][o->index];
-    case INFORM_R:       return run->real[o->index];
-    case INFORM_IN:      return in->di >> o->index & 1u;
-    case INFORM_OT:      return run->out >> o->index & 1u;
-    case INFORM_AI:      return in->ai[o->index];
+    case INFORM_D:        return run->whole[o->kind - INFORM_B][o->index];
+    case INFORM_R:        return run->real[o->index];
+    case INFORM_IN:       return in->di >> o->index & 1u;
+    case INFORM_OT:       return run->out >> o->index & 1u;
+    case INFORM_AI:       return in->ai[o->index];
     case INFORM_CONSTANT:
-    case INFORM_NOTHING: break;
+    case INFORM_NOTHING:  break;
     }
     return o->number;
 }
@@ -95,9 +95,9 @@ static enum inform_fault calculate(struct inform_run *run, const struct inform_i
     case INFORM_OP_ADD: return store(run, &c->left, left + right);
     case INFORM_OP_SUB: return store(run, &c->left, left - right);
     case INFORM_OP_MUL: return store(run, &c->left, left * right);
-    case INFORM_OP_DIV: return right == 0.0 ? INFORM_BAD_ZERO_DIVISION
-                                            : store(run, &c->left, left / right);
-    default:            return store(run, &c->left, right);
+    case INFORM_OP_DIV:
+        return right == 0.0 ? INFORM_BAD_ZERO_DIVISION : store(run, &c->left, left / right);
+    default: return store(run, &c->left, right);
     }
 }
 
@@ -107,7 +107,8 @@ static void move(struct inform_run *run, const struct inform_points *points,
 {
     const struct inform_point *p = &points->point[c->to];
     const enum inform_speed usual = c->path == INFORM_JOINT ? INFORM_VJ
-                                    : run->rotary ? INFORM_VR : INFORM_V;
+                                    : run->rotary           ? INFORM_VR
+                                                            : INFORM_V;
     r->answer = INFORM_MOVE;
     r->after = ++run->moves;
     r->path = c->path;
@@ -212,14 +213,9 @@ static void set_mode(struct inform_run *run, const struct inform_code *c)
         run->speed[c->tag] = c->speed;
         run->rotary = c->tag == INFORM_VJ ? run->rotary : c->tag == INFORM_VR;
         break;
-    case INFORM_OP_LEVEL:
-        run->level = c->to;
-        break;
-    case INFORM_OP_TOOL:
-        run->tool = c->to;
-        break;
-    default:
-        run->user = c->to;
+    case INFORM_OP_LEVEL: run->level = c->to; break;
+    case INFORM_OP_TOOL:  run->tool = c->to; break;
+    default:              run->user = c->to;
     }
 }
 
@@ -270,32 +266,19 @@ static bool step(struct inform_run *run, const struct inform_program *p,
     const bool done = c->op == INFORM_OP_WAIT || holds(run, in, c);
     run->idle = is_input(&c->left) || is_input(&c->right) ? 0 : run->idle + 1;
     switch (KIND[c->op]) {
-    case MOTION:
-        move(run, points, c, r);
-        break;
-    case MODE:
-        set_mode(run, c);
-        break;
-    case OUTPUT:
-        run->fault = output(run, in, c, r);
-        break;
-    case NUMBER:
-        run->fault = calculate(run, in, c);
-        break;
+    case MOTION: move(run, points, c, r); break;
+    case MODE:   set_mode(run, c); break;
+    case OUTPUT: run->fault = output(run, in, c, r); break;
+    case NUMBER: run->fault = calculate(run, in, c); break;
     case TIME:
         if (!waited(run, in, c)) {
             r->answer = INFORM_WAIT;
             next = pc;
         }
         break;
-    case FLOW:
-        next = flow(run, in, c, done, r);
-        break;
-    case OPERATOR:
-        r->answer = done ? INFORM_PAUSE : r->answer;
-        break;
-    default:
-        break;
+    case FLOW:     next = flow(run, in, c, done, r); break;
+    case OPERATOR: r->answer = done ? INFORM_PAUSE : r->answer; break;
+    default:       break;
     }
     return finish(run, r, next);
 }
@@ -316,8 +299,7 @@ void inform_next(struct inform_run *run, const struct inform_program *p,
     }
 }
 
-int32_t inform_running(const struct inform_run *run, const struct inform_program *p,
-                       int32_t *line)
+int32_t inform_running(const struct inform_run *run, const struct inform_program *p, int32_t *line)
 {
     const int32_t pc = run->frame[run->depth].pc;
     int32_t job = 0;

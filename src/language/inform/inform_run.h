@@ -17,18 +17,18 @@
 #include "inform.h"
 
 enum {
-    INFORM_IDLE_MAX = 1000000   /* instructions without motion, input, output or wait */
+    INFORM_IDLE_MAX = 1000000 /* instructions without motion, input, output or wait */
 };
 
 /* What is in force at the start. */
 struct inform_start {
-    int32_t  job;               /* number of the first job */
-    double   vj;                /* [%] 0.01 .. 100 */
-    double   v;                 /* [mm/s] */
-    double   vr;                /* [deg/s] */
-    int32_t  level;             /* PL */
-    int32_t  tool, user;
-    uint32_t out;               /* digital outputs as they are: bit 0 is OT#(1) */
+    int32_t job;   /* number of the first job */
+    double vj;     /* [%] 0.01 .. 100 */
+    double v;      /* [mm/s] */
+    double vr;     /* [deg/s] */
+    int32_t level; /* PL */
+    int32_t tool, user;
+    uint32_t out; /* digital outputs as they are: bit 0 is OT#(1) */
 };
 
 struct inform_call {
@@ -38,57 +38,57 @@ struct inform_call {
 
 /* Plain bytes; goes into a state. */
 struct inform_run {
-    int32_t  depth;             /* calls inside each other */
+    int32_t depth; /* calls inside each other */
     struct inform_call frame[INFORM_CALLS + 1];
-    int32_t  whole[3][INFORM_VARIABLES];    /* B I D */
-    double   real[INFORM_VARIABLES];        /* R */
-    int64_t  moves;             /* requested so far */
-    int64_t  began;             /* [ns] of the WAIT or TIMER that is on; -1 none */
-    int32_t  idle;              /* instructions since the latest request or input */
-    uint32_t out;               /* as the program has set them so far, ahead of the motion */
-    double   speed[4];          /* by enum inform_speed; [0] is not used */
-    int32_t  rotary;            /* MOVL and MOVC without a speed take VR: 0 or 1 */
-    int32_t  level, tool, user;
-    int32_t  ended;             /* 0, or 1 */
-    enum inform_fault fault;    /* it stopped at */
+    int32_t whole[3][INFORM_VARIABLES]; /* B I D */
+    double real[INFORM_VARIABLES];      /* R */
+    int64_t moves;                      /* requested so far */
+    int64_t began;                      /* [ns] of the WAIT or TIMER that is on; -1 none */
+    int32_t idle;                       /* instructions since the latest request or input */
+    uint32_t out;    /* as the program has set them so far, ahead of the motion */
+    double speed[4]; /* by enum inform_speed; [0] is not used */
+    int32_t rotary;  /* MOVL and MOVC without a speed take VR: 0 or 1 */
+    int32_t level, tool, user;
+    int32_t ended;           /* 0, or 1 */
+    enum inform_fault fault; /* it stopped at */
 };
 
 /* What the program can see. */
 struct inform_inputs {
-    int64_t  now;               /* [ns] from 0, never less than before */
-    int64_t  reached;           /* moves */
-    uint32_t di;                /* bit 0 is IN#(1) */
-    double   ai[INFORM_ANALOGS];    /* [V] */
+    int64_t now;               /* [ns] from 0, never less than before */
+    int64_t reached;           /* moves */
+    uint32_t di;               /* bit 0 is IN#(1) */
+    double ai[INFORM_ANALOGS]; /* [V] */
 };
 
 enum inform_answer {
-    INFORM_MOVE,                /* go to a point */
-    INFORM_DOUT,                /* digital output `index` becomes `on`, after a move */
-    INFORM_AOUT,                /* analog output `index` becomes `volt`, after a move */
-    INFORM_REACH,               /* needs reached = after; ask again */
-    INFORM_WAIT,                /* WAIT, TIMER: ask again */
-    INFORM_BUSY,                /* so many instructions are done: ask again next cycle */
-    INFORM_PAUSE,               /* stop until the operator goes on; then ask again */
-    INFORM_END,                 /* all moves are reached, nothing follows */
-    INFORM_FAULT                /* stopped: `fault` */
+    INFORM_MOVE,  /* go to a point */
+    INFORM_DOUT,  /* digital output `index` becomes `on`, after a move */
+    INFORM_AOUT,  /* analog output `index` becomes `volt`, after a move */
+    INFORM_REACH, /* needs reached = after; ask again */
+    INFORM_WAIT,  /* WAIT, TIMER: ask again */
+    INFORM_BUSY,  /* so many instructions are done: ask again next cycle */
+    INFORM_PAUSE, /* stop until the operator goes on; then ask again */
+    INFORM_END,   /* all moves are reached, nothing follows */
+    INFORM_FAULT  /* stopped: `fault` */
 };
 
 struct inform_request {
     enum inform_answer answer;
-    int32_t line;               /* of the program */
-    int64_t after;              /* MOVE: its own number; else the latest move before */
+    int32_t line;  /* of the program */
+    int64_t after; /* MOVE: its own number; else the latest move before */
     /* MOVE */
     enum inform_path path;
-    int32_t point, via;         /* numbers; via of CIRCLE only */
-    enum inform_speed tag;      /* VJ, V or VR */
-    double  speed;
-    int32_t level;              /* PL; 0: stop at the point */
-    double  corner;             /* CR [mm]; 0: by level */
-    int32_t tool, user;         /* those of the point, or in force */
+    int32_t point, via;    /* numbers; via of CIRCLE only */
+    enum inform_speed tag; /* VJ, V or VR */
+    double speed;
+    int32_t level;      /* PL; 0: stop at the point */
+    double corner;      /* CR [mm]; 0: by level */
+    int32_t tool, user; /* those of the point, or in force */
     /* DOUT, AOUT */
-    int32_t index;              /* from 0 */
+    int32_t index; /* from 0 */
     int32_t on;
-    double  volt;               /* [V] -10 .. 10 */
+    double volt; /* [V] -10 .. 10 */
     /* FAULT */
     enum inform_fault fault;
 };
@@ -102,7 +102,6 @@ void inform_next(struct inform_run *run, const struct inform_program *p,
                  struct inform_request *r);
 
 /* Job that runs, line of the next instruction: for display. */
-int32_t inform_running(const struct inform_run *run, const struct inform_program *p,
-                       int32_t *line);
+int32_t inform_running(const struct inform_run *run, const struct inform_program *p, int32_t *line);
 
 #endif

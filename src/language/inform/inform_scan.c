@@ -141,8 +141,8 @@ struct inform_piece inform_scan_word(struct inform_scan *s)
         return p;
     }
     p.at = s->at;
-    while (s->at < s->end && (letter(s->text[s->at]) || digit(s->text[s->at])
-                              || s->text[s->at] == '_')) {
+    while (s->at < s->end
+           && (letter(s->text[s->at]) || digit(s->text[s->at]) || s->text[s->at] == '_')) {
         s->at++;
     }
     p.length = s->at - p.at;
@@ -155,8 +155,9 @@ int inform_scan_name(struct inform_scan *s, int32_t most, struct inform_piece *n
         return inform_scan_unexpected(s);
     }
     name->at = s->at;
-    while (s->at < s->end && (letter(s->text[s->at]) || digit(s->text[s->at])
-                              || s->text[s->at] == '_' || s->text[s->at] == '-')) {
+    while (s->at < s->end
+           && (letter(s->text[s->at]) || digit(s->text[s->at]) || s->text[s->at] == '_'
+               || s->text[s->at] == '-')) {
         s->at++;
     }
     name->length = s->at - name->at;

@@ -9,17 +9,19 @@
 
 struct inform_scan {
     const char *text;
-    int32_t size;           /* [byte] */
-    int32_t next;           /* where the next line begins */
-    int32_t line;           /* number of this line, from 1 */
-    int32_t begin, end;     /* this line without blanks around it, comment and line end */
-    int32_t at;             /* what has not been read yet */
-    bool    name;           /* the line begins with //NAME, which is read */
+    int32_t size;       /* [byte] */
+    int32_t next;       /* where the next line begins */
+    int32_t line;       /* number of this line, from 1 */
+    int32_t begin, end; /* this line without blanks around it, comment and line end */
+    int32_t at;         /* what has not been read yet */
+    bool name;          /* the line begins with //NAME, which is read */
     struct inform_report *r;
 };
 
 /* Some text of the line. */
-struct inform_piece { int32_t at, length; };
+struct inform_piece {
+    int32_t at, length;
+};
 
 /* Begin; -1: too long. */
 int inform_scan_begin(struct inform_scan *s, const char *text, int64_t size,

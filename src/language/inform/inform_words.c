@@ -12,8 +12,21 @@ enum {
 
 /* What follows a word. */
 enum form {
-    MOVE, SPEED, LEVEL, FRAME, OUTPUT, ARITHMETIC, STEP, WAIT, TIMER, JUMP, CONDITION, END, LABEL,
-    BLOCK, NOTHING
+    MOVE,
+    SPEED,
+    LEVEL,
+    FRAME,
+    OUTPUT,
+    ARITHMETIC,
+    STEP,
+    WAIT,
+    TIMER,
+    JUMP,
+    CONDITION,
+    END,
+    LABEL,
+    BLOCK,
+    NOTHING
 };
 
 enum block { IF, ELSEIF, ELSE, ENDIF, LOOP, ENDLOOP, WHILE, ENDWHILE };
@@ -21,52 +34,51 @@ enum block { IF, ELSEIF, ELSE, ENDIF, LOOP, ENDLOOP, WHILE, ENDWHILE };
 /* A word: what follows it, what it becomes (a path, an instruction, a part of a block; of FRAME and
  * OUTPUT one of two), kinds of its operands. */
 struct word {
-    char     text[12];
-    uint8_t  form, what;
+    char text[12];
+    uint8_t form, what;
     uint16_t left, right;
 };
 
-static const struct word WORDS[] = {
-    { "MOVJ", MOVE, INFORM_JOINT, 0, 0 },
-    { "MOVL", MOVE, INFORM_LINE, 0, 0 },
-    { "MOVC", MOVE, INFORM_CIRCLE, 0, 0 },
-    { "SPEED", SPEED, 0, 0, 0 },
-    { "PL", LEVEL, 0, 0, 0 },
-    { "TOOL", FRAME, INFORM_OP_TOOL, 0, 0 },
-    { "USER", FRAME, INFORM_OP_USER, 0, 0 },
-    { "DOUT", OUTPUT, INFORM_OP_DOUT, 0, 0 },
-    { "AOUT", OUTPUT, INFORM_OP_AOUT, 0, 0 },
-    { "DIN", ARITHMETIC, INFORM_OP_SET, WHOLE, SIGNAL },
-    { "AIN", ARITHMETIC, INFORM_OP_SET, 1u << INFORM_R, 1u << INFORM_AI },
-    { "SET", ARITHMETIC, INFORM_OP_SET, VARIABLE, VALUE },
-    { "ADD", ARITHMETIC, INFORM_OP_ADD, VARIABLE, VALUE },
-    { "SUB", ARITHMETIC, INFORM_OP_SUB, VARIABLE, VALUE },
-    { "MUL", ARITHMETIC, INFORM_OP_MUL, VARIABLE, VALUE },
-    { "DIV", ARITHMETIC, INFORM_OP_DIV, VARIABLE, VALUE },
-    { "INC", STEP, INFORM_OP_ADD, 0, 0 },
-    { "DEC", STEP, INFORM_OP_SUB, 0, 0 },
-    { "WAIT", WAIT, 0, 0, 0 },
-    { "TIMER", TIMER, 0, 0, 0 },
-    { "JUMP", JUMP, INFORM_OP_JUMP, 0, 0 },
-    { "CALL", JUMP, INFORM_OP_CALL, 0, 0 },
-    { "RET", CONDITION, INFORM_OP_RET, 0, 0 },
-    { "PAUSE", CONDITION, INFORM_OP_PAUSE, 0, 0 },
-    { "END", END, 0, 0, 0 },
-    { "IF", BLOCK, IF, 0, 0 },
-    { "IFTHEN", BLOCK, IF, 0, 0 },
-    { "IFTHENEXP", BLOCK, IF, 0, 0 },
-    { "ELSEIF", BLOCK, ELSEIF, 0, 0 },
-    { "ELSEIFEXP", BLOCK, ELSEIF, 0, 0 },
-    { "ELSE", BLOCK, ELSE, 0, 0 },
-    { "ENDIF", BLOCK, ENDIF, 0, 0 },
-    { "LOOP", BLOCK, LOOP, 0, 0 },
-    { "ENDLOOP", BLOCK, ENDLOOP, 0, 0 },
-    { "WHILE", BLOCK, WHILE, 0, 0 },
-    { "WHILEEXP", BLOCK, WHILE, 0, 0 },
-    { "ENDWHILE", BLOCK, ENDWHILE, 0, 0 },
-    { "NOP", NOTHING, 0, 0, 0 },
-    { "LABEL", LABEL, 0, 0, 0 }
-};
+static const struct word WORDS[] = { { "MOVJ", MOVE, INFORM_JOINT, 0, 0 },
+                                     { "MOVL", MOVE, INFORM_LINE, 0, 0 },
+                                     { "MOVC", MOVE, INFORM_CIRCLE, 0, 0 },
+                                     { "SPEED", SPEED, 0, 0, 0 },
+                                     { "PL", LEVEL, 0, 0, 0 },
+                                     { "TOOL", FRAME, INFORM_OP_TOOL, 0, 0 },
+                                     { "USER", FRAME, INFORM_OP_USER, 0, 0 },
+                                     { "DOUT", OUTPUT, INFORM_OP_DOUT, 0, 0 },
+                                     { "AOUT", OUTPUT, INFORM_OP_AOUT, 0, 0 },
+                                     { "DIN", ARITHMETIC, INFORM_OP_SET, WHOLE, SIGNAL },
+                                     { "AIN", ARITHMETIC, INFORM_OP_SET, 1u << INFORM_R,
+                                       1u << INFORM_AI },
+                                     { "SET", ARITHMETIC, INFORM_OP_SET, VARIABLE, VALUE },
+                                     { "ADD", ARITHMETIC, INFORM_OP_ADD, VARIABLE, VALUE },
+                                     { "SUB", ARITHMETIC, INFORM_OP_SUB, VARIABLE, VALUE },
+                                     { "MUL", ARITHMETIC, INFORM_OP_MUL, VARIABLE, VALUE },
+                                     { "DIV", ARITHMETIC, INFORM_OP_DIV, VARIABLE, VALUE },
+                                     { "INC", STEP, INFORM_OP_ADD, 0, 0 },
+                                     { "DEC", STEP, INFORM_OP_SUB, 0, 0 },
+                                     { "WAIT", WAIT, 0, 0, 0 },
+                                     { "TIMER", TIMER, 0, 0, 0 },
+                                     { "JUMP", JUMP, INFORM_OP_JUMP, 0, 0 },
+                                     { "CALL", JUMP, INFORM_OP_CALL, 0, 0 },
+                                     { "RET", CONDITION, INFORM_OP_RET, 0, 0 },
+                                     { "PAUSE", CONDITION, INFORM_OP_PAUSE, 0, 0 },
+                                     { "END", END, 0, 0, 0 },
+                                     { "IF", BLOCK, IF, 0, 0 },
+                                     { "IFTHEN", BLOCK, IF, 0, 0 },
+                                     { "IFTHENEXP", BLOCK, IF, 0, 0 },
+                                     { "ELSEIF", BLOCK, ELSEIF, 0, 0 },
+                                     { "ELSEIFEXP", BLOCK, ELSEIF, 0, 0 },
+                                     { "ELSE", BLOCK, ELSE, 0, 0 },
+                                     { "ENDIF", BLOCK, ENDIF, 0, 0 },
+                                     { "LOOP", BLOCK, LOOP, 0, 0 },
+                                     { "ENDLOOP", BLOCK, ENDLOOP, 0, 0 },
+                                     { "WHILE", BLOCK, WHILE, 0, 0 },
+                                     { "WHILEEXP", BLOCK, WHILE, 0, 0 },
+                                     { "ENDWHILE", BLOCK, ENDWHILE, 0, 0 },
+                                     { "NOP", NOTHING, 0, 0, 0 },
+                                     { "LABEL", LABEL, 0, 0, 0 } };
 enum { WORD_COUNT = sizeof WORDS / sizeof WORDS[0] };
 
 struct inform_code *inform_reading_add(struct inform_reading *in, enum inform_op op)
@@ -78,10 +90,11 @@ struct inform_code *inform_reading_add(struct inform_reading *in, enum inform_op
         return NULL;
     }
     struct inform_code *c = &p->code[p->count++];
-    *c = (struct inform_code){
-        .op = op, .line = in->s.line, .level = INFORM_ANY, .time = -1,
-        .inside = inform_block_loop_inside(in)
-    };
+    *c = (struct inform_code){ .op = op,
+                               .line = in->s.line,
+                               .level = INFORM_ANY,
+                               .time = -1,
+                               .inside = inform_block_loop_inside(in) };
     return c;
 }
 
@@ -117,7 +130,8 @@ static int arithmetic(struct inform_reading *in, enum inform_op op, uint32_t lef
     inform_scan_over(s);
     const int32_t at = s->at;
     return inform_operand(in, right, &c->right)
-               ? -1 : check_constant(in, c, (struct inform_piece){ at, s->at - at });
+               ? -1
+               : check_constant(in, c, (struct inform_piece){ at, s->at - at });
 }
 
 /* INC, DEC: by one. */
@@ -158,7 +172,8 @@ static int output(struct inform_reading *in, bool digital)
         s->r->low = -INFORM_VOLT_MAX;
         s->r->high = INFORM_VOLT_MAX;
         return c->right.kind == INFORM_CONSTANT && fabs(c->right.number) > INFORM_VOLT_MAX
-                   ? inform_scan_fault(s, INFORM_BAD_VALUE, w) : 0;
+                   ? inform_scan_fault(s, INFORM_BAD_VALUE, w)
+                   : 0;
     }
     w = inform_scan_word(s);
     c->right = (struct inform_operand){ .kind = INFORM_CONSTANT };
@@ -193,7 +208,8 @@ static int frame(struct inform_reading *in, bool tool)
     }
     at.length = s->at - at.at;
     return (tool ? in->points->tool : in->points->user)[c->to].defined
-               ? 0 : inform_scan_fault(s, INFORM_BAD_FRAME, at);
+               ? 0
+               : inform_scan_fault(s, INFORM_BAD_FRAME, at);
 }
 
 /* PL=1 or PL 1 */
@@ -269,10 +285,12 @@ static int label(struct inform_reading *in)
         s->r->high = INFORM_LABELS;
         return inform_scan_fault_line(s, INFORM_BAD_TOO_MANY);
     }
-    p->label[p->labels++] = (struct inform_label){
-        .offset = name.at, .length = name.length, .job = p->jobs - 1, .to = p->count,
-        .line = s->line, .inside = inform_block_loop_inside(in)
-    };
+    p->label[p->labels++] = (struct inform_label){ .offset = name.at,
+                                                   .length = name.length,
+                                                   .job = p->jobs - 1,
+                                                   .to = p->count,
+                                                   .line = s->line,
+                                                   .inside = inform_block_loop_inside(in) };
     return 0;
 }
 
@@ -335,7 +353,7 @@ static int instruction(struct inform_reading *in, const struct word *w)
 static const struct word *first_word(struct inform_scan *s)
 {
     if (inform_scan_take(s, '*')) {
-        return &WORDS[WORD_COUNT - 1];      /* LABEL */
+        return &WORDS[WORD_COUNT - 1]; /* LABEL */
     }
     const struct inform_piece w = inform_scan_word(s);
     for (int i = 0; i < WORD_COUNT; i++) {

@@ -10,17 +10,20 @@
 #include "spline.h"
 
 static const char CENTRE_LETTERS[] = "IJK";
-static const int TURNS_MAX = 10000;         /* P of an arc */
+static const int TURNS_MAX = 10000; /* P of an arc */
 
 /* Start, end and centre rounded to 0.01 mm, or in inch to 0.001, as LinuxCNC allows for both. */
 static const struct path_tolerance POSTED = { 0.0283, 1e-3 };
-static const double COARSER = 2.54;         /* the last decimal in inch against that in mm */
+static const double COARSER = 2.54; /* the last decimal in inch against that in mm */
 
 struct kept_line block_line(const struct interpreter *in, const struct block *b,
                             const struct fault_report *r)
 {
-    return (struct kept_line){ .offset = r->offset, .file = in->file, .line = in->line,
-                               .at = b->tokens.at, .length = b->tokens.length };
+    return (struct kept_line){ .offset = r->offset,
+                               .file = in->file,
+                               .line = in->line,
+                               .at = b->tokens.at,
+                               .length = b->tokens.length };
 }
 
 enum fault block_at_line(const struct interpreter *in, const struct kept_line *l, enum fault f,
@@ -55,10 +58,11 @@ static void accept(struct interpreter *in, struct command *c)
 /* The fault of an arc or of a command, and what is known of it. */
 static enum fault of_path(enum path_status s)
 {
-    return s == PATH_NO_RADIUS ? FAULT_ARC_RADIUS
-         : s == PATH_MISSES_END ? FAULT_ARC_END
-         : s == PATH_SHORT_RADIUS ? FAULT_ARC_CHORD
-         : s == PATH_OPEN ? FAULT_ARC_CLOSED : FAULT_NONE;
+    return s == PATH_NO_RADIUS      ? FAULT_ARC_RADIUS
+           : s == PATH_MISSES_END   ? FAULT_ARC_END
+           : s == PATH_SHORT_RADIUS ? FAULT_ARC_CHORD
+           : s == PATH_OPEN         ? FAULT_ARC_CLOSED
+                                    : FAULT_NONE;
 }
 
 enum fault block_refusal(enum command_status s, const struct command_refusal *why,
@@ -70,9 +74,10 @@ enum fault block_refusal(enum command_status s, const struct command_refusal *wh
         r->limit = why->limit;
         r->feed = s == COMMAND_FAST ? why->feed * 60.0 : 0.0;
     }
-    return s == COMMAND_FAST ? FAULT_SPEED
-         : s == COMMAND_FAR ? FAULT_RANGE
-         : s == COMMAND_OUTSIDE ? FAULT_TRAVEL : FAULT_NONE;
+    return s == COMMAND_FAST      ? FAULT_SPEED
+           : s == COMMAND_FAR     ? FAULT_RANGE
+           : s == COMMAND_OUTSIDE ? FAULT_TRAVEL
+                                  : FAULT_NONE;
 }
 
 enum command_status block_move(struct command *c, const struct program *p, enum command_type type,
@@ -103,7 +108,7 @@ enum fault block_complete(struct command *c, const struct program *p, struct fau
 
 /* How an arc of the program is one of the machine. */
 struct shape {
-    double ratio;       /* of the radius */
+    double ratio; /* of the radius */
     bool ccw;
     struct path_tolerance tolerance;
 };
@@ -118,7 +123,7 @@ static enum fault arc_centre(const struct interpreter *in, const struct block *b
     const struct token *any = gcode_first(&b->g, letters);
     const struct token *normal = gcode_word(&b->g, CENTRE_LETTERS[in->plane]);
 
-    if (normal && normal->value != 0.0) {       /* posts write K0 in XY */
+    if (normal && normal->value != 0.0) { /* posts write K0 in XY */
         return tokens_at_word(r, FAULT_UNUSED, normal);
     }
     if (radius && any) {
@@ -157,12 +162,12 @@ static enum fault arc(const struct interpreter *in, const struct program *p, con
     double centre[2];
     bool mirrored;
 
-    if (!p->machine.axis[path_first(in->plane)] ||
-        !p->machine.axis[path_second(in->plane)]) {
+    if (!p->machine.axis[path_first(in->plane)] || !p->machine.axis[path_second(in->plane)]) {
         return tokens_at_line(r, FAULT_AXIS, &b->tokens);
     }
-    if (turns && (turns->value < 1.0 || turns->value > TURNS_MAX ||
-                  turns->value != round(turns->value))) {
+    if (turns
+        && (turns->value < 1.0 || turns->value > TURNS_MAX
+            || turns->value != round(turns->value))) {
         return tokens_at_word(r, FAULT_VALUE, turns);
     }
     if (!frame_circles(in, in->plane, &shape.ratio, &mirrored)) {
@@ -208,7 +213,7 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
     c->tolerance = in->tolerance;
     c->merge = in->merge;
     c->curve = in->tolerance > 0.0;
-    if (cutter_on(in)) {        /* a motion of the contour, not of the tool's centre */
+    if (cutter_on(in)) { /* a motion of the contour, not of the tool's centre */
         c->type = in->motion == 0 ? COMMAND_PTP : COMMAND_LINE;
         c->feed = feed;
         accept(in, c);
@@ -219,8 +224,9 @@ enum fault block_motion(struct interpreter *in, const struct program *p, const s
     if (in->motion == 0) {
         s = command_ptp(c, &p->machine, &p->limits, &why);
     } else {
-        const enum command_type type = c->path.arc ? command_arc_type(&c->path)
-                                     : c->path.cubic ? COMMAND_CUBIC : COMMAND_LINE;
+        const enum command_type type = c->path.arc     ? command_arc_type(&c->path)
+                                       : c->path.cubic ? COMMAND_CUBIC
+                                                       : COMMAND_LINE;
         tokens_at_line(r, FAULT_NONE, &b->tokens);
         s = block_move(c, p, type, feed, &why, r);
     }
@@ -241,15 +247,14 @@ enum fault block_straight(struct interpreter *in, const struct program *p, const
     struct command_refusal why;
     const enum command_status s =
         feed == 0.0 ? command_ptp(c, &p->machine, &p->limits, &why)
-        : exact ? command_move(c, &p->machine, &p->limits, COMMAND_LINE, feed, &why)
-                : block_move(c, p, COMMAND_LINE, feed, &why, r);
+        : exact     ? command_move(c, &p->machine, &p->limits, COMMAND_LINE, feed, &why)
+                    : block_move(c, p, COMMAND_LINE, feed, &why, r);
     accept(in, c);
     return block_refusal(s, &why, r);
 }
 
 enum fault block_curve(struct interpreter *in, const struct program *p, const double end[AXES],
-                       const double inner[2][3], double feed, double joined,
-                       struct fault_report *r)
+                       const double inner[2][3], double feed, double joined, struct fault_report *r)
 {
     struct command *c = block_command(in);
     struct command_refusal why;
@@ -286,8 +291,7 @@ enum fault block_home(struct interpreter *in, const struct program *p, const str
     enum fault f = frame_end(in, p, b, via, r);
 
     for (int i = 0; i < AXES; i++) {
-        const bool goes = all ? p->machine.axis[i]
-                              : gcode_word(&b->g, BLOCK_AXES[i]) != NULL;
+        const bool goes = all ? p->machine.axis[i] : gcode_word(&b->g, BLOCK_AXES[i]) != NULL;
         home[i] = goes ? park[i] : via[i];
     }
     if (f == FAULT_NONE) {
@@ -300,15 +304,14 @@ bool block_moves(const struct block *b)
 {
     const int code = b->g.code[GCODE_MOTION];
 
-    return gcode_first(&b->g, BLOCK_AXES "@^") ||
-           (code != GCODE_ABSENT && code != GCODE_NO_MOTION);
+    return gcode_first(&b->g, BLOCK_AXES "@^") || (code != GCODE_ABSENT && code != GCODE_NO_MOTION);
 }
 
 double block_seconds(const struct program *p, const struct token *w)
 {
     const bool scaled = p->least_increment > 0.0 && w->letter != 'P';
     return !p->fanuc || !w->whole ? w->value
-         : w->value / (scaled ? p->least_increment : 1.0) / 1000.0;
+                                  : w->value / (scaled ? p->least_increment : 1.0) / 1000.0;
 }
 
 enum fault block_dwell(struct interpreter *in, const struct program *p, const struct block *b,

@@ -5,7 +5,7 @@
 #include "gcode.h"
 #include "modes.h"
 
-#define BLOCK_DWELL_MAX 86400.0     /* [s] a day */
+#define BLOCK_DWELL_MAX 86400.0 /* [s] a day */
 
 /* The next command of the block, cleared but for its line; it counts once in->count is raised. */
 struct command *block_command(struct interpreter *in);

@@ -73,8 +73,7 @@ void contour_beside(const struct contour *s, bool end, double edge, double place
 
 bool contour_fits(const struct contour *s, double edge)
 {
-    return s->turn == 0.0 ||
-           el_min(s->radius[0], s->radius[1]) - s->turn * edge > SHORT;
+    return s->turn == 0.0 || el_min(s->radius[0], s->radius[1]) - s->turn * edge > SHORT;
 }
 
 /* Angle about the centre of an arc from one place on to another, along the arc; negative if
@@ -89,8 +88,8 @@ static double angle_along(const struct contour *s, const double a[2], const doub
 
 /* The two places where the ways of the centre beside two motions cross; false: nowhere. Two lines
  * have one, twice. */
-static bool line_circle(const double corner[2], const double left[2],
-                        double edge, const double centre[2], double radius, double place[2][2])
+static bool line_circle(const double corner[2], const double left[2], double edge,
+                        const double centre[2], double radius, double place[2][2])
 {
     const double along[2] = { left[1], -left[0] };
     const double to[2] = { centre[0] - corner[0], centre[1] - corner[1] };
@@ -104,8 +103,7 @@ static bool line_circle(const double corner[2], const double left[2],
     return rest >= 0.0;
 }
 
-static bool circles(const double a[2], double ra, const double b[2], double rb,
-                    double place[2][2])
+static bool circles(const double a[2], double ra, const double b[2], double rb, double place[2][2])
 {
     const double d = el_max(distance(a, b), SHORT);
     const double along[2] = { (b[0] - a[0]) / d, (b[1] - a[1]) / d };
@@ -144,8 +142,7 @@ static bool crossings(const struct contour *a, const struct contour *b, double e
 
 /* The crossing at which the tool meets the second motion while it goes along the first one: the
  * last one before its end. */
-static bool crossing(const struct contour *a, const struct contour *b, double edge,
-                     double meets[2])
+static bool crossing(const struct contour *a, const struct contour *b, double edge, double meets[2])
 {
     double place[2][2], end[2], back[2];
 
@@ -208,8 +205,8 @@ bool contour_path(const struct contour *s, const struct path *along, enum path_p
         return any || cross(way, s->first) > SHORT;
     }
     /* The arc of the contour, less what the corners take at its ends. */
-    const double sweep = fabs(along->sweep) - angle_along(s, s->start, from) -
-                         angle_along(s, to, s->end);
+    const double sweep =
+        fabs(along->sweep) - angle_along(s, s->start, from) - angle_along(s, to, s->end);
     if (any && sweep <= 0.0) {
         path_line(path, start, end);
         return true;
@@ -219,8 +216,8 @@ bool contour_path(const struct contour *s, const struct path *along, enum path_p
     }
     /* None if nothing is left: path_arc has then made a turn of nothing or less. */
     const int turns = 1 + (int)round((sweep - fabs(path->sweep)) / TAU);
-    return turns >= 1 && path_arc(path, plane, start, end, s->centre, s->turn > 0.0, turns,
-                                  &miss) == PATH_OK;
+    return turns >= 1
+           && path_arc(path, plane, start, end, s->centre, s->turn > 0.0, turns, &miss) == PATH_OK;
 }
 
 bool contour_entry(const struct contour *s, const struct path *along, enum path_plane plane,
@@ -236,6 +233,6 @@ bool contour_entry(const struct contour *s, const struct path *along, enum path_
     memcpy(end, along->end, sizeof end);
     end[a] = to[0];
     end[b] = to[1];
-    return radius > SHORT && isfinite(radius) &&
-           path_arc(path, plane, along->start, end, centre, s->turn > 0.0, 1, &miss) == PATH_OK;
+    return radius > SHORT && isfinite(radius)
+           && path_arc(path, plane, along->start, end, centre, s->turn > 0.0, 1, &miss) == PATH_OK;
 }

@@ -10,19 +10,19 @@
 
 /* A motion of the contour in the plane. */
 struct contour {
-    double start[2], end[2];    /* [mm] */
-    double first[2], last[2];   /* unit vectors to the left at both */
-    double turn;                /* 1 arc counter-clockwise, -1 clockwise, 0 line */
-    double centre[2];           /* [mm] */
-    double radius[2];           /* [mm] at the start and the end */
+    double start[2], end[2];  /* [mm] */
+    double first[2], last[2]; /* unit vectors to the left at both */
+    double turn;              /* 1 arc counter-clockwise, -1 clockwise, 0 line */
+    double centre[2];         /* [mm] */
+    double radius[2];         /* [mm] at the start and the end */
 };
 
 enum contour_corner {
-    CONTOUR_JOINED,     /* the centre goes from one motion straight to the next: slight corner */
-    CONTOUR_CONCAVE,    /* the same, and both are shorter than the contour */
-    CONTOUR_CONVEX,     /* it turns about the corner */
-    CONTOUR_BACK,       /* the contour turns back on itself */
-    CONTOUR_DEEP        /* the tool does not fit into the corner */
+    CONTOUR_JOINED,  /* the centre goes from one motion straight to the next: slight corner */
+    CONTOUR_CONCAVE, /* the same, and both are shorter than the contour */
+    CONTOUR_CONVEX,  /* it turns about the corner */
+    CONTOUR_BACK,    /* the contour turns back on itself */
+    CONTOUR_DEEP     /* the tool does not fit into the corner */
 };
 
 /* The motion of a path, which moves in the plane. */

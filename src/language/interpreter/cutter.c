@@ -62,9 +62,9 @@ static enum fault end_at(struct interpreter *in, const struct program *p, const 
     struct contour s;
 
     contour_of(&s, &along, k->plane);
-    const bool found =
-        k->enters && along.arc ? contour_entry(&s, &along, k->plane, to, &c->path)
-                               : contour_path(&s, &along, k->plane, k->from, to, back, &c->path);
+    const bool found = k->enters && along.arc
+                           ? contour_entry(&s, &along, k->plane, to, &c->path)
+                           : contour_path(&s, &along, k->plane, k->from, to, back, &c->path);
     if (!found) {
         return at_motion(in, k->enters ? FAULT_CUTTER_ENTRY : FAULT_CUTTER_SHORT, r);
     }
@@ -100,8 +100,8 @@ static enum fault turn_corner(struct interpreter *in, const struct program *p,
     c.set = c.clear = 0;
     if (c.type == COMMAND_PTP) {
         path_line(&c.path, start, end);
-    } else if (path_arc(&c.path, plane, start, end, centre, in->cutter.edge < 0.0, 1, &miss) !=
-               PATH_OK) {
+    } else if (path_arc(&c.path, plane, start, end, centre, in->cutter.edge < 0.0, 1, &miss)
+               != PATH_OK) {
         return FAULT_CUTTER_CORNER;
     }
     const enum fault f = block_complete(&c, p, r);
@@ -127,7 +127,7 @@ static enum fault corner(struct interpreter *in, const struct program *p, const 
         return kind == CONTOUR_BACK ? FAULT_CUTTER_BACK : FAULT_CUTTER_CORNER;
     }
     if (entry_arc && kind != CONTOUR_CONVEX) {
-        contour_beside(&a, true, k->edge, from);    /* smooth, or there is no such arc */
+        contour_beside(&a, true, k->edge, from); /* smooth, or there is no such arc */
         if (el_hypot(from[0] - to[0], from[1] - to[1]) > 1e-5) {
             return FAULT_CUTTER_ENTRY;
         }
@@ -252,7 +252,7 @@ static enum fault set_edge(struct interpreter *in, const struct block *b, struct
         }
     }
     in->cutter.side = code < 420 ? 1 : -1;
-    frame_circles(in, in->plane, &ratio, &mirrored);    /* left becomes right in a mirror */
+    frame_circles(in, in->plane, &ratio, &mirrored); /* left becomes right in a mirror */
     in->cutter.edge = (mirrored ? -0.5 : 0.5) * in->cutter.side * diameter;
     in->cutter.plane = in->plane;
     return FAULT_NONE;
@@ -261,9 +261,8 @@ static enum fault set_edge(struct interpreter *in, const struct block *b, struct
 /* What the block has that does not go with compensation, or NULL. */
 static const struct token *refused(const struct interpreter *in, const struct block *b)
 {
-    static const enum gcode_group groups[] = {
-        GCODE_SYSTEM, GCODE_TOOL, GCODE_SCALING, GCODE_ROTATION, GCODE_CHANGE
-    };
+    static const enum gcode_group groups[] = { GCODE_SYSTEM, GCODE_TOOL, GCODE_SCALING,
+                                               GCODE_ROTATION, GCODE_CHANGE };
     const int nonmodal = b->g.code[GCODE_NONMODAL], io = b->g.code[GCODE_IO];
 
     for (size_t i = 0; i < sizeof groups / sizeof *groups; i++) {
@@ -277,7 +276,7 @@ static const struct token *refused(const struct interpreter *in, const struct bl
     if (io == 660) {
         return b->g.by[GCODE_IO];
     }
-    if (in->motion > 30 && in->motion != GCODE_NO_MOTION) {     /* splines, probing, cycles */
+    if (in->motion > 30 && in->motion != GCODE_NO_MOTION) { /* splines, probing, cycles */
         return b->g.by[GCODE_MOTION] ? b->g.by[GCODE_MOTION] : gcode_first(&b->g, BLOCK_AXES);
     }
     return NULL;
@@ -291,8 +290,8 @@ enum fault cutter_block(struct interpreter *in, const struct program *p, const s
     const struct token *by = b->g.by[GCODE_CUTTER], *axis = gcode_first(&b->g, "XYZ");
     enum fault f = FAULT_NONE;
 
-    k->aside = k->aside && in->point[path_first(k->plane)] == k->from[0] &&
-               in->point[path_second(k->plane)] == k->from[1];
+    k->aside = k->aside && in->point[path_first(k->plane)] == k->from[0]
+               && in->point[path_second(k->plane)] == k->from[1];
     if (code == 400) {
         k->straight = k->straight || k->edge != 0.0;
         f = cutter_end(in, p, r);

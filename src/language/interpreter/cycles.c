@@ -9,10 +9,10 @@
 #include "frame.h"
 #include "switching.h"
 
-static const double RELIEF = 0.254;         /* [mm] back for a peck: 0.01 inch, as LinuxCNC */
-static const double REPEATS_MAX = 9999.0;   /* L */
-static const double PECKS_MAX = 10000.0;    /* of one hole */
-static const double SAME = 1e-9;            /* [mm] nearer places are one: rounding of offsets */
+static const double RELIEF = 0.254;       /* [mm] back for a peck: 0.01 inch, as LinuxCNC */
+static const double REPEATS_MAX = 9999.0; /* L */
+static const double PECKS_MAX = 10000.0;  /* of one hole */
+static const double SAME = 1e-9;          /* [mm] nearer places are one: rounding of offsets */
 
 /* The steps of each cycle above its hole, and the words it needs beside R and the depth:
  *
@@ -26,10 +26,14 @@ static const double SAME = 1e-9;            /* [mm] nearer places are one: round
  *     D rapid to the bottom     o rapid to the clear way, both where the tool is
  *     k feed to K
  */
-static const struct { int code; char steps[14], words[3]; } rows[] = {
-    { 730, "gc<p^", "Q" },   { 740, "xdrpUt", "" },  { 810, "d^", "" },      { 820, "dp^", "P" },
-    { 830, "gRc<p^", "Q" },  { 840, "xdrpUt", "" },  { 850, "du^", "" },     { 860, "dps^t", "P" },
-    { 870, "isDhtkdsioht", "I" },           { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
+static const struct {
+    int code;
+    char steps[14], words[3];
+} rows[] = {
+    { 730, "gc<p^", "Q" },  { 740, "xdrpUt", "" },  { 810, "d^", "" },
+    { 820, "dp^", "P" },    { 830, "gRc<p^", "Q" }, { 840, "xdrpUt", "" },
+    { 850, "du^", "" },     { 860, "dps^t", "P" },  { 870, "isDhtkdsioht", "I" },
+    { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
 };
 
 /* In front of those: rapid over the hole, rapid to R. */
@@ -64,8 +68,8 @@ static bool pecks(int code)
  * front of pecks. */
 static bool takes(int code, char letter)
 {
-    return strchr(rows[row_of(code)].words, letter) ||
-           (letter == 'P' && (cycles_taps(code) || pecks(code)));
+    return strchr(rows[row_of(code)].words, letter)
+           || (letter == 'P' && (cycles_taps(code) || pecks(code)));
 }
 
 void cycles_modes(struct interpreter *in, const struct block *b)
@@ -122,10 +126,10 @@ static enum fault keep_aside(struct interpreter *in, const struct block *b, bool
 {
     struct cycle *k = &in->cycle;
     const int plane[2] = { path_first(in->plane), path_second(in->plane) };
-    enum fault f = keep(b, kept, "IJK"[in->plane], b->scale, &k->bore, FAULT_CYCLE_ASIDE, r);
+    enum fault f = keep(b, kept, "IJK"[in->plane], b -> scale, &k -> bore, FAULT_CYCLE_ASIDE, r);
 
     for (int i = 0; i < 2 && f == FAULT_NONE; i++) {
-        f = keep(b, kept, "IJK"[plane[i]], b->scale, &k->aside[i], FAULT_CYCLE_ASIDE, r);
+        f = keep(b, kept, "IJK"[plane[i]], b -> scale, &k -> aside[i], FAULT_CYCLE_ASIDE, r);
     }
     if (b->g.by[GCODE_MOTION]) {
         tokens_note(r, FAULT_NOTE_ORIENT, b->g.by[GCODE_MOTION]);
@@ -133,8 +137,8 @@ static enum fault keep_aside(struct interpreter *in, const struct block *b, bool
     return f;
 }
 
-static enum fault keep_words(struct interpreter *in, const struct program *p,
-                             const struct block *b, bool kept, struct fault_report *r)
+static enum fault keep_words(struct interpreter *in, const struct program *p, const struct block *b,
+                             bool kept, struct fault_report *r)
 {
     struct cycle *k = &in->cycle;
     const struct token *q = gcode_word(&b->g, 'Q'), *wait = gcode_word(&b->g, 'P');
@@ -174,8 +178,8 @@ static enum fault keep_words(struct interpreter *in, const struct program *p,
 }
 
 /* The first hole and the heights. */
-static enum fault set_places(struct interpreter *in, const struct program *p,
-                             const struct block *b, bool series, struct fault_report *r)
+static enum fault set_places(struct interpreter *in, const struct program *p, const struct block *b,
+                             bool series, struct fault_report *r)
 {
     struct cycle *k = &in->cycle;
     const int n = (int)in->plane;
@@ -231,11 +235,12 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
     }
     if (!gcode_first(&b->g, "XYZ@^")) {
         extra = gcode_first(&b->g, "RLQ");
-        return named ? tokens_at_word(r, FAULT_NO_AXES, b->g.by[GCODE_MOTION])
-             : extra ? tokens_at_word(r, FAULT_UNUSED, extra) : FAULT_NONE;
+        return named   ? tokens_at_word(r, FAULT_NO_AXES, b->g.by[GCODE_MOTION])
+               : extra ? tokens_at_word(r, FAULT_UNUSED, extra)
+                       : FAULT_NONE;
     }
-    if ((takes(code, 'I') || (takes(code, 'P') && code != 820 && code != 890 && !pecks(code))) &&
-        (cycles_taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
+    if ((takes(code, 'I') || (takes(code, 'P') && code != 820 && code != 890 && !pecks(code)))
+        && (cycles_taps(code) ? turning != (code == 840 ? 1 : -1) : turning == 0)) {
         return tokens_at_line(r, FAULT_CYCLE_SPINDLE, &b->tokens);
     }
     if (in->words.feed_mode == 930) {
@@ -278,8 +283,11 @@ static enum fault shift(struct interpreter *in, const struct program *p, char st
     for (int i = 0; i < 2 && (step == 'i' || step == 'h'); i++) {
         place[plane[i]] = k->hole[plane[i]] + (step == 'i' ? k->aside[i] : 0.0);
     }
-    return go(in, p, place, step == 'D' ? k->bottom : step == 'o' ? k->clear
-                                                                  : place[in->plane], true, r);
+    return go(in, p, place,
+              step == 'D'   ? k->bottom
+              : step == 'o' ? k->clear
+                            : place[in->plane],
+              true, r);
 }
 
 /* One step of the list. */
@@ -290,56 +298,40 @@ static enum fault step(struct interpreter *in, const struct program *p, const ch
     const uint32_t fixed = OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED;
 
     switch (steps[k->step++ - STEP_FIRST]) {
-    case 'd':
-        return go(in, p, k->hole, k->bottom, false, r);
-    case 'u':
-        return go(in, p, k->hole, k->top, false, r);
-    case 'U':
-        return go(in, p, k->hole, k->clear, false, r);
-    case 'R':
-        return go(in, p, k->hole, k->top, true, r);
-    case '^':
-        return go(in, p, k->hole, k->clear, true, r);
+    case 'd': return go(in, p, k->hole, k->bottom, false, r);
+    case 'u': return go(in, p, k->hole, k->top, false, r);
+    case 'U': return go(in, p, k->hole, k->clear, false, r);
+    case 'R': return go(in, p, k->hole, k->top, true, r);
+    case '^': return go(in, p, k->hole, k->clear, true, r);
     case 'i':
     case 'h':
     case 'D':
-    case 'o':
-        return shift(in, p, steps[k->step - 1 - STEP_FIRST], r);
-    case 'k':
-        return go(in, p, k->hole, k->bored, false, r);
+    case 'o': return shift(in, p, steps[k->step - 1 - STEP_FIRST], r);
+    case 'k': return go(in, p, k->hole, k->bored, false, r);
     case 'g':
         k->pecked = el_max(k->pecked - k->peck, k->bottom);
-        if (k->pecked - k->bottom < SAME) {     /* the rest of the rounding is no peck */
+        if (k->pecked - k->bottom < SAME) { /* the rest of the rounding is no peck */
             k->pecked = k->bottom;
             k->step = STEP_FIRST + (int32_t)(strchr(steps, '<') - steps) + 1;
         }
         return go(in, p, k->hole, k->pecked, false, r);
-    case 'c':
-        return go(in, p, k->hole, el_min(k->pecked + RELIEF, k->top), true, r);
-    case '<':
-        k->step = STEP_FIRST;
-        return FAULT_NONE;
+    case 'c': return go(in, p, k->hole, el_min(k->pecked + RELIEF, k->top), true, r);
+    case '<': k->step = STEP_FIRST; return FAULT_NONE;
     case 'p':
         if (k->dwell > 0.0) {
             command_delay(block_command(in), in->point, k->dwell);
             in->count++;
         }
         return FAULT_NONE;
-    case 's':
-        turn(in, 0, k->overrides);
-        return FAULT_NONE;
-    case 'r':
-        turn(in, -k->turning, k->overrides | fixed);
-        return FAULT_NONE;
-    case 't':
-        turn(in, k->turning, k->overrides);
-        return FAULT_NONE;
+    case 's': turn(in, 0, k->overrides); return FAULT_NONE;
+    case 'r': turn(in, -k->turning, k->overrides | fixed); return FAULT_NONE;
+    case 't': turn(in, k->turning, k->overrides); return FAULT_NONE;
     case 'x':
         if ((k->overrides & fixed) != fixed) {
             turn(in, k->turning, k->overrides | fixed);
         }
         return FAULT_NONE;
-    default:        /* '!' */
+    default: /* '!' */
         block_command(in)->type = COMMAND_STOP;
         in->count++;
         return FAULT_NONE;
@@ -366,7 +358,7 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
     enum fault f = FAULT_NONE;
 
     while (k->running && in->count == 0 && f == FAULT_NONE) {
-        in->flow.again += k->repeats > 0;       /* as a line that is read again */
+        in->flow.again += k->repeats > 0; /* as a line that is read again */
         if (k->step == STEP_HOLE) {
             k->step++;
             frame_program(in, in->point, here);

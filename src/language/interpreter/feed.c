@@ -36,7 +36,7 @@ enum fault feed_set(struct interpreter *in, const struct program *p, const struc
     const struct token *f = gcode_word(&b->g, 'F');
 
     if (mode != GCODE_ABSENT && mode != in->words.feed_mode) {
-        in->words.feed_mode = mode;     /* an F of another unit says nothing in this one */
+        in->words.feed_mode = mode; /* an F of another unit says nothing in this one */
         in->words.per_turn = in->feed = 0.0;
     }
     if (!f) {
@@ -66,7 +66,8 @@ enum fault feed_of(const struct interpreter *in, const struct program *p, const 
     if (w->feed_mode == PER_MINUTE) {
         *feed = el_min(in->feed, p->limits.feed);
         return *feed == 0.0 ? tokens_at_line(r, FAULT_NO_FEED, &b->tokens)
-             : exact ? check(p, in->feed, exact, f, &b->tokens, r) : FAULT_NONE;
+               : exact      ? check(p, in->feed, exact, f, &b->tokens, r)
+                            : FAULT_NONE;
     }
     if (w->feed_mode == INVERSE_TIME ? !f : w->per_turn == 0.0) {
         return tokens_at_line(r, FAULT_NO_FEED, &b->tokens);

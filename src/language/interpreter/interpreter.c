@@ -20,7 +20,7 @@
 #include "uses.h"
 #include "waiting.h"
 
-static const double DWELL_LEAST = 1e-6, WAY_LEAST = 1e-9;   /* [s], [mm] */
+static const double DWELL_LEAST = 1e-6, WAY_LEAST = 1e-9; /* [s], [mm] */
 
 void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
                        const double origin[INTERPRETER_SYSTEMS][AXES])
@@ -62,8 +62,9 @@ static void set_measure(struct interpreter *in, struct block *b)
     }
     b->scale = in->inch ? 25.4 : 1.0;
     if (code[GCODE_PLANE] != GCODE_ABSENT) {
-        in->plane = code[GCODE_PLANE] == 170 ? PATH_XY
-                  : code[GCODE_PLANE] == 180 ? PATH_ZX : PATH_YZ;
+        in->plane = code[GCODE_PLANE] == 170   ? PATH_XY
+                    : code[GCODE_PLANE] == 180 ? PATH_ZX
+                                               : PATH_YZ;
     }
 }
 
@@ -122,8 +123,7 @@ static const struct token *shape_word(const struct block *b)
 }
 
 /* A point of a NURBS, its end, or what may not stand between its points. */
-static bool nurbs_asked(const struct interpreter *in, const struct block *b, bool words,
-                        bool axis)
+static bool nurbs_asked(const struct interpreter *in, const struct block *b, bool words, bool axis)
 {
     const int code = b->g.code[GCODE_MOTION];
 
@@ -190,7 +190,7 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
         return block_home(in, p, b, r);
     }
     if (b->g.code[GCODE_TOOL] == 431 || b->g.code[GCODE_TOOL] == 432) {
-        return FAULT_NONE;      /* these have taken the axis words */
+        return FAULT_NONE; /* these have taken the axis words */
     }
     if (tools_measured(b)) {
         return tools_measure(in, p, b, r);
@@ -211,16 +211,16 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
 /* G9: behind the motion of the block the axes rest, as by G4 P0. */
 static void rest_behind(struct interpreter *in, const struct block *b, int32_t before)
 {
-    if (b->g.code[GCODE_EXACT] != GCODE_ABSENT && in->count > before && !in->cycle.running &&
-        !in->nurbs.running) {
+    if (b->g.code[GCODE_EXACT] != GCODE_ABSENT && in->count > before && !in->cycle.running
+        && !in->nurbs.running) {
         command_delay(block_command(in), in->point, 0.0);
         in->count++;
     }
 }
 
 /* M98, M99 */
-static enum fault subprogram(struct interpreter *in, const struct program *p,
-                             const struct block *b, struct fault_report *r)
+static enum fault subprogram(struct interpreter *in, const struct program *p, const struct block *b,
+                             struct fault_report *r)
 {
     const struct token *number = gcode_word(&b->g, 'P'), *runs = gcode_word(&b->g, 'L');
     const int code = b->g.code[GCODE_STOP];
@@ -233,19 +233,19 @@ static enum fault subprogram(struct interpreter *in, const struct program *p,
     }
     tokens_at_word(r, FAULT_NO_SUB, number ? number : b->g.by[GCODE_STOP]);
     return code == 990 ? flow_return(in, r)
-         : !number ? FAULT_NO_SUB
-         : flow_subprogram(in, p, number->value, runs ? &runs->value : NULL, NULL, r);
+           : !number   ? FAULT_NO_SUB
+                       : flow_subprogram(in, p, number->value, runs ? &runs->value : NULL, NULL, r);
 }
 
 /* The axis words of the block lead somewhere. */
 static bool moves_axes(const struct block *b)
 {
     const int other = b->g.code[GCODE_NONMODAL], tool = b->g.code[GCODE_TOOL];
-    const bool moves = other == GCODE_ABSENT || other == 280 || other == 300 || other == 530 ||
-                       (other == 40 && moves_behind_dwell(b));
+    const bool moves = other == GCODE_ABSENT || other == 280 || other == 300 || other == 530
+                       || (other == 40 && moves_behind_dwell(b));
 
-    return moves && tool != 431 && tool != 432 && !frame_takes_axes(b) &&
-           gcode_first(&b->g, BLOCK_AXES "@^");
+    return moves && tool != 431 && tool != 432 && !frame_takes_axes(b)
+           && gcode_first(&b->g, BLOCK_AXES "@^");
 }
 
 /* G67, and behind a line that moves the call that G66 asks for. */
@@ -288,10 +288,10 @@ static void go_on(struct interpreter *in, const struct program *p, const struct 
     double end[AXES];
 
     in->motion = f == FAULT_NO_MOTION ? 10 : in->motion;
-    if (memcmp(before, in->point, sizeof end) == 0 && !frame_takes_axes(b) &&
-        (nonmodal == GCODE_ABSENT || nonmodal == 530 ||
-         (nonmodal == 40 && moves_behind_dwell(b))) &&
-        frame_end(in, p, b, end, &ignored) == FAULT_NONE) {
+    if (memcmp(before, in->point, sizeof end) == 0 && !frame_takes_axes(b)
+        && (nonmodal == GCODE_ABSENT || nonmodal == 530
+            || (nonmodal == 40 && moves_behind_dwell(b)))
+        && frame_end(in, p, b, end, &ignored) == FAULT_NONE) {
         memcpy(in->point, end, sizeof end);
     }
 }
@@ -306,7 +306,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     double before[AXES];
 
     ignored.notes = 0;
-    ignored.line = r->line;     /* where calls say they stand */
+    ignored.line = r->line; /* where calls say they stand */
     ignored.offset = r->offset;
     memcpy(ignored.file, r->file, FAULT_FILE);
     memcpy(before, in->point, sizeof before);
@@ -321,7 +321,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
     f = also(f, switching_block(in, p, b, f ? &ignored : r));
     f = also(f, saved_modes_block(in, b, f ? &ignored : r));
-    if (b->g.code[GCODE_SAVING] == 720) {       /* G codes of the line come behind it */
+    if (b->g.code[GCODE_SAVING] == 720) { /* G codes of the line come behind it */
         f = also(f, set_modes(in, b, f ? &ignored : r));
         f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
     }
@@ -342,8 +342,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
 }
 
 /* Go on with a cycle, or read and execute one line. */
-static enum fault next_line(struct interpreter *in, const struct program *p,
-                            struct fault_report *r)
+static enum fault next_line(struct interpreter *in, const struct program *p, struct fault_report *r)
 {
     struct block b;
 
@@ -373,8 +372,9 @@ static enum fault next_line(struct interpreter *in, const struct program *p,
  * machine would never come to its next point. */
 static enum interpreter_result hand_out(struct interpreter *in, const struct command *c)
 {
-    const bool brief = c->type == COMMAND_DELAY ? c->dwell < DWELL_LEAST
-                     : c->type != COMMAND_STOP && c->path.length < WAY_LEAST;
+    const bool brief = c->type == COMMAND_DELAY
+                           ? c->dwell < DWELL_LEAST
+                           : c->type != COMMAND_STOP && c->path.length < WAY_LEAST;
 
     in->flow.idle = brief ? in->flow.idle : in->flow.again;
     return INTERPRETER_COMMAND;

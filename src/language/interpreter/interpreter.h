@@ -11,7 +11,10 @@
 /* WAIT: the next line needs something that only the machine can tell behind all commands so far (an
  * input, a probe); who has it clears `waits`. */
 enum interpreter_result {
-    INTERPRETER_COMMAND, INTERPRETER_WAIT, INTERPRETER_END, INTERPRETER_FAULT
+    INTERPRETER_COMMAND,
+    INTERPRETER_WAIT,
+    INTERPRETER_END,
+    INTERPRETER_FAULT
 };
 
 /* Begin at the first line, at rest in a point; G17 G21 G90 G91.1 G54 G61 M5 M9 in force. */

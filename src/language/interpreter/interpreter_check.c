@@ -7,9 +7,9 @@
 
 /* A check on its way. */
 struct check {
-    enum fault latest;      /* of an axis, since the last motion without a fault */
+    enum fault latest; /* of an axis, since the last motion without a fault */
     int32_t axis;
-    bool flow;              /* an O word was wrong: the ends of blocks do not count any more */
+    bool flow; /* an O word was wrong: the ends of blocks do not count any more */
 };
 
 static bool of_axis(enum fault f)
@@ -26,8 +26,9 @@ static bool follows(struct check *k, const struct fault_list *all, const struct 
     bool again = false;
 
     for (int i = 0; i < all->count; i++) {
-        again = again || (all->of[i].offset == r->offset &&
-                          memcmp(all->of[i].file, r->file, FAULT_FILE) == 0);
+        again = again
+                || (all->of[i].offset == r->offset
+                    && memcmp(all->of[i].file, r->file, FAULT_FILE) == 0);
     }
     k->latest = of_axis(r->fault) ? r->fault : k->latest;
     k->axis = r->axis;
@@ -72,8 +73,7 @@ static bool take(struct check *k, struct fault_list *all, const struct fault_rep
 }
 
 /* Read on until `room` faults are known. */
-static void check(struct interpreter *in, const struct program *p, int room,
-                  struct fault_list *all)
+static void check(struct interpreter *in, const struct program *p, int room, struct fault_list *all)
 {
     const int64_t most = p->check_again > 0 ? p->check_again : CHECK_AGAIN;
     struct check k = { FAULT_NONE, 0, false };

@@ -12,9 +12,9 @@
 /* Between a curve and the commands made of it, and that within which these follow each other
  * without a rest. [mm] */
 static const double AWAY = 1e-4, JOINED = 1e-3;
-static const double SHORTEST = 1.0 / 4096.0;    /* of a span: shorter pieces are as they are */
+static const double SHORTEST = 1.0 / 4096.0; /* of a span: shorter pieces are as they are */
 
-enum { PROBES = 5 };        /* places at which a piece is held against the curve */
+enum { PROBES = 5 }; /* places at which a piece is held against the curve */
 
 /* Knot of a number: 0 for the first ones, then whole numbers, the last ones at the end. */
 static double knot(const struct nurbs *n, int32_t j)
@@ -70,8 +70,8 @@ static double piece(const struct nurbs *n, double to, double end[3], double inne
         double there[3], slope[3], square = 0.0;
         curve(n, n->span, n->from + t * size, there, slope);
         for (int k = 0; k < 3; k++) {
-            const double away = u * u * u * begin[k] + 3.0 * u * u * t * inner[0][k] +
-                                3.0 * u * t * t * inner[1][k] + t * t * t * end[k] - there[k];
+            const double away = u * u * u * begin[k] + 3.0 * u * u * t * inner[0][k]
+                                + 3.0 * u * t * t * inner[1][k] + t * t * t * end[k] - there[k];
             square += away * away;
         }
         most = el_max(most, sqrt(square));
@@ -114,10 +114,9 @@ static enum fault make(struct interpreter *in, const struct program *p, double *
         const double away = piece(n, *to, end, inner);
         const bool shortest = *to - n->from <= SHORTEST;
         if (away <= AWAY || shortest) {
-            const bool line = straight(in->point, end, (const double (*)[3])inner);
-            const enum fault f =
-                block_curve(in, p, end, line ? NULL : (const double (*)[3])inner, n->feed,
-                            JOINED, r);
+            const bool line = straight(in->point, end, (const double(*)[3])inner);
+            const enum fault f = block_curve(in, p, end, line ? NULL : (const double(*)[3])inner,
+                                             n->feed, JOINED, r);
             if (f != FAULT_CUSP || shortest) {
                 return f;
             }
@@ -199,8 +198,8 @@ static enum fault begin(struct interpreter *in, const struct block *b, double we
 }
 
 /* A control point: both axes of the plane, as coordinates that go on from the one before. */
-static enum fault add_point(struct interpreter *in, const struct program *p,
-                            const struct block *b, double weight, struct fault_report *r)
+static enum fault add_point(struct interpreter *in, const struct program *p, const struct block *b,
+                            double weight, struct fault_report *r)
 {
     struct nurbs *n = &in->nurbs;
     double here[AXES], end[AXES];
@@ -215,8 +214,7 @@ static enum fault add_point(struct interpreter *in, const struct program *p,
     return f;
 }
 
-static enum fault end_block(struct interpreter *in, const struct block *b,
-                            struct fault_report *r)
+static enum fault end_block(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     struct nurbs *n = &in->nurbs;
     const struct token *by = b->g.by[GCODE_MOTION];
@@ -236,8 +234,7 @@ static enum fault end_block(struct interpreter *in, const struct block *b,
 
 /* The words of a line of G5.2: what it may not have, and a point with both its axes or none. */
 static enum fault words_of(const struct interpreter *in, const struct program *p,
-                           const struct block *b, const struct token *other,
-                           struct fault_report *r)
+                           const struct block *b, const struct token *other, struct fault_report *r)
 {
     const struct token *weight = gcode_word(&b->g, 'P');
     const bool one = gcode_word(&b->g, "XYZ"[path_first(in->plane)]),
@@ -256,8 +253,8 @@ static enum fault words_of(const struct interpreter *in, const struct program *p
 }
 
 /* A line of G5.2 whose words are right: the first begins the curve, each with a point adds it. */
-static enum fault take_line(struct interpreter *in, const struct program *p,
-                            const struct block *b, struct fault_report *r)
+static enum fault take_line(struct interpreter *in, const struct program *p, const struct block *b,
+                            struct fault_report *r)
 {
     struct nurbs *n = &in->nurbs;
     const struct token *weight = gcode_word(&b->g, 'P');
@@ -305,8 +302,8 @@ enum fault nurbs_between(struct interpreter *in, const struct block *b, struct f
 {
     const int other = b->g.code[GCODE_NONMODAL], stop = b->g.code[GCODE_STOP];
     const bool home = other == 280 || other == 300;
-    const bool over = b->g.code[GCODE_MOTION] != 53 &&
-                      (stop == 20 || stop == 300 || (stop == 990 && in->flow.level == 0));
+    const bool over = b->g.code[GCODE_MOTION] != 53
+                      && (stop == 20 || stop == 300 || (stop == 990 && in->flow.level == 0));
 
     if (in->nurbs.count == 0 || !(home || over)) {
         return FAULT_NONE;

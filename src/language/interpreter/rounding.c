@@ -21,8 +21,8 @@ static enum fault at_motion(const struct interpreter *in, enum fault f, struct f
 /* A line or an arc that stays in the plane. */
 static bool in_plane(const struct command *c, enum path_plane plane)
 {
-    bool stays = c->type != COMMAND_PTP && !c->path.cubic &&
-                 (!c->path.arc || c->path.plane == plane);
+    bool stays =
+        c->type != COMMAND_PTP && !c->path.cubic && (!c->path.arc || c->path.plane == plane);
 
     for (int i = 0; i < AXES; i++) {
         const bool free = i == path_first(plane) || i == path_second(plane);
@@ -79,8 +79,8 @@ static bool piece_of(const struct rounding *k, const struct contour *a, const st
     double other[2];
 
     if (k->chamfer) {
-        return chamfer_at(a, a->end, k->size, -1.0, q->from) &&
-               chamfer_at(b, a->end, k->size, 1.0, q->to);
+        return chamfer_at(a, a->end, k->size, -1.0, q->from)
+               && chamfer_at(b, a->end, k->size, 1.0, q->to);
     }
     if (!contour_fits(a, edge) || !contour_fits(b, edge)) {
         return false;
@@ -126,15 +126,15 @@ static enum fault join(struct interpreter *in, const struct program *p, struct f
     }
     contour_of(&a, &held.path, k->plane);
     contour_of(&b, &next.path, k->plane);
-    const double angle =
-        el_atan2(a.last[0] * b.first[1] - a.last[1] * b.first[0],
-                 a.last[0] * b.first[0] + a.last[1] * b.first[1]);
+    const double angle = el_atan2(a.last[0] * b.first[1] - a.last[1] * b.first[0],
+                                  a.last[0] * b.first[0] + a.last[1] * b.first[1]);
     const bool smooth = fabs(angle * k->size) < SMOOTH;
     const enum path_plane n = k->plane;
-    if (!smooth && (!piece_of(k, &a, &b, angle, &q) ||
-                    !contour_path(&a, &k->held.path, n, a.start, q.from, false, &held.path) ||
-                    !contour_path(&b, &second.path, n, q.to, b.end, false, &next.path) ||
-                    !between(k, &q, &corner.path))) {
+    if (!smooth
+        && (!piece_of(k, &a, &b, angle, &q)
+            || !contour_path(&a, &k->held.path, n, a.start, q.from, false, &held.path)
+            || !contour_path(&b, &second.path, n, q.to, b.end, false, &next.path)
+            || !between(k, &q, &corner.path))) {
         return at_motion(in, FAULT_ROUND_SHORT, r);
     }
     corner.set = corner.clear = corner.analog.set = 0;

@@ -8,14 +8,27 @@
 static struct saved_modes modes_now(const struct interpreter *in)
 {
     const struct switches *s = &in->switches;
-    struct saved_modes m = {
-        .kept = true, .plane = in->plane, .inch = in->inch, .incremental = in->incremental,
-        .absolute_centre = in->absolute_centre, .blend = in->blend, .tolerance = in->tolerance,
-        .merge = in->merge, .system = in->system, .feed = in->feed,
-        .feed_mode = in->words.feed_mode, .per_turn = in->words.per_turn, .to_r = in->cycle.to_r,
-        .side = in->cutter.side, .speed = s->speed, .by_radius = s->by_radius, .pass = s->pass,
-        .most = s->most, .turning = s->turning, .coolant = s->coolant, .overrides = s->overrides
-    };
+    struct saved_modes m = { .kept = true,
+                             .plane = in->plane,
+                             .inch = in->inch,
+                             .incremental = in->incremental,
+                             .absolute_centre = in->absolute_centre,
+                             .blend = in->blend,
+                             .tolerance = in->tolerance,
+                             .merge = in->merge,
+                             .system = in->system,
+                             .feed = in->feed,
+                             .feed_mode = in->words.feed_mode,
+                             .per_turn = in->words.per_turn,
+                             .to_r = in->cycle.to_r,
+                             .side = in->cutter.side,
+                             .speed = s->speed,
+                             .by_radius = s->by_radius,
+                             .pass = s->pass,
+                             .most = s->most,
+                             .turning = s->turning,
+                             .coolant = s->coolant,
+                             .overrides = s->overrides };
     memcpy(m.length, in->tools.length, sizeof m.length);
     return m;
 }
@@ -27,8 +40,8 @@ static bool possible(const struct interpreter *in, const struct saved_modes *m)
     const bool moved = m->system != in->system || m->plane != in->plane;
     const bool length = memcmp(m->length, in->tools.length, sizeof m->length) != 0;
 
-    return m->side == in->cutter.side && !(framed && moved) &&
-           !(cutter_on(in) && (moved || length));
+    return m->side == in->cutter.side && !(framed && moved)
+           && !(cutter_on(in) && (moved || length));
 }
 
 static enum fault restore(struct interpreter *in, const struct saved_modes *m,
@@ -63,8 +76,7 @@ static enum fault restore(struct interpreter *in, const struct saved_modes *m,
     return FAULT_NONE;
 }
 
-enum fault saved_modes_block(struct interpreter *in, const struct block *b,
-                             struct fault_report *r)
+enum fault saved_modes_block(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     struct saved_modes *m = &in->saved[in->flow.level];
     const int code = b->g.code[GCODE_SAVING];

@@ -6,8 +6,7 @@
 #include "modes.h"
 
 /* Execute them. Makes a command if something is to be switched. */
-enum fault saved_modes_block(struct interpreter *in, const struct block *b,
-                             struct fault_report *r);
+enum fault saved_modes_block(struct interpreter *in, const struct block *b, struct fault_report *r);
 
 /* A call that had M73 has ended: its caller's modes are in force again. */
 enum fault saved_modes_return(struct interpreter *in, struct fault_report *r);

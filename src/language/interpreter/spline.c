@@ -48,6 +48,6 @@ enum fault spline_path(struct interpreter *in, const struct program *p, const st
         }
     }
     w->spline = cubic;
-    const enum path_status s = path_cubic(path, in->point, end, (const double (*)[3])inner);
+    const enum path_status s = path_cubic(path, in->point, end, (const double(*)[3])inner);
     return s == PATH_OK ? FAULT_NONE : tokens_at_line(r, FAULT_CUSP, &b->tokens);
 }

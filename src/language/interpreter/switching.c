@@ -7,7 +7,7 @@
 #include "frame.h"
 #include "queue.h"
 
-static const double METRE = 1000.0, FOOT = 304.8;       /* [mm] of S with G96 */
+static const double METRE = 1000.0, FOOT = 304.8; /* [mm] of S with G96 */
 
 /* What G96 asks for now: about the program's zero, along X of the machine. */
 static struct outputs_surface surface_of(const struct interpreter *in)
@@ -100,17 +100,23 @@ static enum fault outputs(struct interpreter *in, const struct block *b, struct 
     const int code = b->g.code[GCODE_IO];
 
     return code == GCODE_ABSENT || code == 660 ? FAULT_NONE
-         : code >= 670 ? analog(in, b, now, r) : digital(in, b, now, r);
+           : code >= 670                       ? analog(in, b, now, r)
+                                               : digital(in, b, now, r);
 }
 
 /* M48 .. M53; P0 undoes what the code alone does. */
 static enum fault overrides(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
-    static const struct { int code; uint32_t on, off; } rows[] = {
+    static const struct {
+        int code;
+        uint32_t on, off;
+    } rows[] = {
         { 480, 0, OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED },
         { 490, OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED, 0 },
-        { 500, 0, OUTPUTS_FEED_FIXED }, { 510, 0, OUTPUTS_SPEED_FIXED },
-        { 520, OUTPUTS_ADAPTIVE, 0 },   { 530, 0, OUTPUTS_HOLD_OFF },
+        { 500, 0, OUTPUTS_FEED_FIXED },
+        { 510, 0, OUTPUTS_SPEED_FIXED },
+        { 520, OUTPUTS_ADAPTIVE, 0 },
+        { 530, 0, OUTPUTS_HOLD_OFF },
     };
     const struct token *p = gcode_word(&b->g, 'P');
     const bool any = b->g.code[GCODE_OVERRIDE] != GCODE_ABSENT;
@@ -139,9 +145,10 @@ static enum fault overrides(struct interpreter *in, const struct block *b, struc
 static enum fault spindle(struct interpreter *in, const struct program *p, const struct block *b,
                           struct fault_report *r)
 {
-    static const struct { char letter; double most; } rows[] = {
-        { 'R', 360.0 }, { 'P', 2.0 }, { 'Q', 86400.0 }
-    };
+    static const struct {
+        char letter;
+        double most;
+    } rows[] = { { 'R', 360.0 }, { 'P', 2.0 }, { 'Q', 86400.0 } };
     const int code = b->g.code[GCODE_SPINDLE];
 
     for (size_t i = 0; code == 190 && i < sizeof rows / sizeof *rows; i++) {
@@ -190,15 +197,14 @@ static enum fault speed(struct interpreter *in, const struct block *b, struct fa
 /* Whether two states of what is switched differ for the machine. */
 static bool differ(const struct switches *a, const struct switches *b)
 {
-    return a->coolant != b->coolant || a->overrides != b->overrides ||
-           switches_spindle(a) != switches_spindle(b);
+    return a->coolant != b->coolant || a->overrides != b->overrides
+           || switches_spindle(a) != switches_spindle(b);
 }
 
 static bool differs(const struct interpreter *in, const struct switches *before)
 {
     const struct outputs_surface pass = surface_of(in), told = in->switches.told;
-    return differ(&in->switches, before) || pass.speed != told.speed ||
-           pass.centre != told.centre;
+    return differ(&in->switches, before) || pass.speed != told.speed || pass.centre != told.centre;
 }
 
 void switching_differs(struct interpreter *in, const struct switches *before)
@@ -212,10 +218,15 @@ void switching_differs(struct interpreter *in, const struct switches *before)
 static void tell(const struct block *b, struct fault_report *r)
 {
     const struct gcode *g = &b->g;
-    const struct token *speed = g->by[GCODE_SPINDLE] ? g->by[GCODE_SPINDLE]
-                              : g->by[GCODE_SURFACE] ? g->by[GCODE_SURFACE] : gcode_word(g, 'S');
-    const struct { enum fault what; const struct token *word; } rows[] = {
-        { FAULT_NOTE_SPINDLE, speed }, { FAULT_NOTE_COOLANT, g->by[GCODE_COOLANT] },
+    const struct token *speed = g->by[GCODE_SPINDLE]   ? g->by[GCODE_SPINDLE]
+                                : g->by[GCODE_SURFACE] ? g->by[GCODE_SURFACE]
+                                                       : gcode_word(g, 'S');
+    const struct {
+        enum fault what;
+        const struct token *word;
+    } rows[] = {
+        { FAULT_NOTE_SPINDLE, speed },
+        { FAULT_NOTE_COOLANT, g->by[GCODE_COOLANT] },
         { FAULT_NOTE_OVERRIDE, g->by[GCODE_OVERRIDE] },
         { FAULT_NOTE_MERGE, g->code[GCODE_PATH] == 640 ? gcode_word(g, 'Q') : NULL },
     };
@@ -246,8 +257,8 @@ enum fault switching_block(struct interpreter *in, const struct program *p, cons
         return f;
     }
     if (coolant != GCODE_ABSENT) {
-        s->coolant = coolant == 90 ? 0
-                   : s->coolant | (coolant == 70 ? OUTPUTS_MIST : OUTPUTS_FLOOD);
+        s->coolant =
+            coolant == 90 ? 0 : s->coolant | (coolant == 70 ? OUTPUTS_MIST : OUTPUTS_FLOOD);
     }
     if (now.set || now.clear || now.analog.set || differs(in, &before)) {
         switching_make(in, now.set, now.clear);

@@ -3,61 +3,97 @@
 #include <stddef.h>
 #include <string.h>
 
-#define P GCODE_BIT('P')
-#define L GCODE_BIT('L')
-#define R GCODE_BIT('R')
-#define Q GCODE_BIT('Q')
-#define H GCODE_BIT('H')
-#define D GCODE_BIT('D')
-#define E GCODE_BIT('E')
-#define I GCODE_BIT('I')
-#define J GCODE_BIT('J')
-#define K GCODE_BIT('K')
-#define POLAR (GCODE_BIT('@') | GCODE_BIT('^'))
-#define CORNER (GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
+#define P          GCODE_BIT('P')
+#define L          GCODE_BIT('L')
+#define R          GCODE_BIT('R')
+#define Q          GCODE_BIT('Q')
+#define H          GCODE_BIT('H')
+#define D          GCODE_BIT('D')
+#define E          GCODE_BIT('E')
+#define I          GCODE_BIT('I')
+#define J          GCODE_BIT('J')
+#define K          GCODE_BIT('K')
+#define POLAR      (GCODE_BIT('@') | GCODE_BIT('^'))
+#define CORNER     (GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
 #define AXIS_WORDS ((uint32_t)1 << GCODE_LETTERS)
 
 /* The codes beside those of motion that take words: group, code, letters. */
-#define CODES(X)                                                                                 \
-    X(NONMODAL, 40, P)      X(NONMODAL, 100, P | L | R | AXIS_WORDS)                             \
-    X(NONMODAL, 280, AXIS_WORDS)        X(NONMODAL, 300, AXIS_WORDS)                             \
-    X(NONMODAL, 520, AXIS_WORDS)        X(NONMODAL, 920, AXIS_WORDS)                             \
-    X(SCALING, 510, P | I | J | K | AXIS_WORDS)     X(ROTATION, 680, R | AXIS_WORDS)             \
-    X(STOP, 980, P | L)     X(USER, GCODE_USER_FIRST, P | Q)                                     \
-    X(IO, 620, P)           X(IO, 630, P)           X(IO, 640, P)           X(IO, 650, P)        \
-    X(IO, 660, P | L | E | Q)           X(IO, 670, E | Q)       X(IO, 680, E | Q)                \
-    X(TOOL, 430, H)         X(TOOL, 431, AXIS_WORDS)            X(TOOL, 432, H | AXIS_WORDS)     \
-    X(CHANGE, 610, Q)       X(SPINDLE, 190, R | P | Q)          X(SURFACE, 960, D)               \
-    X(OVERRIDE, 500, P)     X(OVERRIDE, 510, P)     X(OVERRIDE, 520, P)     X(OVERRIDE, 530, P)  \
-    X(SYSTEM, GCODE_MORE, P)            X(SYSTEM, GCODE_MORE_HAAS, P)                            \
-    X(PATH, 640, P | Q)                                                                          \
-    X(CUTTER, 410, D)       X(CUTTER, 420, D)       X(CUTTER, 411, D)       X(CUTTER, 421, D)
+#define CODES(X) \
+    X(NONMODAL, 40, P) \
+    X(NONMODAL, 100, P | L | R | AXIS_WORDS) \
+    X(NONMODAL, 280, AXIS_WORDS) \
+    X(NONMODAL, 300, AXIS_WORDS) \
+    X(NONMODAL, 520, AXIS_WORDS) \
+    X(NONMODAL, 920, AXIS_WORDS) \
+    X(SCALING, 510, P | I | J | K | AXIS_WORDS) \
+    X(ROTATION, 680, R | AXIS_WORDS) \
+    X(STOP, 980, P | L) \
+    X(USER, GCODE_USER_FIRST, P | Q) \
+    X(IO, 620, P) \
+    X(IO, 630, P) \
+    X(IO, 640, P) \
+    X(IO, 650, P) \
+    X(IO, 660, P | L | E | Q) \
+    X(IO, 670, E | Q) \
+    X(IO, 680, E | Q) \
+    X(TOOL, 430, H) \
+    X(TOOL, 431, AXIS_WORDS) \
+    X(TOOL, 432, H | AXIS_WORDS) \
+    X(CHANGE, 610, Q) \
+    X(SPINDLE, 190, R | P | Q) \
+    X(SURFACE, 960, D) \
+    X(OVERRIDE, 500, P) \
+    X(OVERRIDE, 510, P) \
+    X(OVERRIDE, 520, P) \
+    X(OVERRIDE, 530, P) \
+    X(SYSTEM, GCODE_MORE, P) \
+    X(SYSTEM, GCODE_MORE_HAAS, P) \
+    X(PATH, 640, P | Q) \
+    X(CUTTER, 410, D) \
+    X(CUTTER, 420, D) \
+    X(CUTTER, 411, D) \
+    X(CUTTER, 421, D)
 
 /* What the codes of motion take beside axis words, while no other code takes those. */
-#define MOVES(X)                                                                                 \
-    X(MOTION, 0, POLAR)     X(MOTION, 10, POLAR)                                                 \
-    X(MOTION, 20, POLAR | I | J | K | R | P)        X(MOTION, 30, POLAR | I | J | K | R | P)     \
-    X(MOTION, 52, P | L)                X(MOTION, 53, 0)                                         \
-    X(MOTION, 331, POLAR | I | K)                                                                \
-    X(MOTION, 50, I | J | P | Q)        X(MOTION, 51, I | J)                                     \
-    X(MOTION, 730, POLAR | R | L | Q)   X(MOTION, 740, POLAR | R | L | P)                        \
-    X(MOTION, 810, POLAR | R | L)       X(MOTION, 820, POLAR | R | L | P)                        \
-    X(MOTION, 830, POLAR | R | L | Q)   X(MOTION, 840, POLAR | R | L | P)                        \
-    X(MOTION, 850, POLAR | R | L)       X(MOTION, 860, POLAR | R | L | P)                        \
-    X(MOTION, 870, POLAR | R | L | I | J | K)                                                    \
-    X(MOTION, 880, POLAR | R | L | P)   X(MOTION, 890, POLAR | R | L | P)
+#define MOVES(X) \
+    X(MOTION, 0, POLAR) \
+    X(MOTION, 10, POLAR) \
+    X(MOTION, 20, POLAR | I | J | K | R | P) \
+    X(MOTION, 30, POLAR | I | J | K | R | P) \
+    X(MOTION, 52, P | L) \
+    X(MOTION, 53, 0) \
+    X(MOTION, 331, POLAR | I | K) \
+    X(MOTION, 50, I | J | P | Q) \
+    X(MOTION, 51, I | J) \
+    X(MOTION, 730, POLAR | R | L | Q) \
+    X(MOTION, 740, POLAR | R | L | P) \
+    X(MOTION, 810, POLAR | R | L) \
+    X(MOTION, 820, POLAR | R | L | P) \
+    X(MOTION, 830, POLAR | R | L | Q) \
+    X(MOTION, 840, POLAR | R | L | P) \
+    X(MOTION, 850, POLAR | R | L) \
+    X(MOTION, 860, POLAR | R | L | P) \
+    X(MOTION, 870, POLAR | R | L | I | J | K) \
+    X(MOTION, 880, POLAR | R | L | P) \
+    X(MOTION, 890, POLAR | R | L | P)
 
 /* What some take besides on Fanuc's controls. */
-#define FANUC(X)                                                                                 \
-    X(MOTION, 730, P)       X(MOTION, 830, P)                                                    \
-    X(MOTION, 10, CORNER)   X(MOTION, 20, CORNER)   X(MOTION, 30, CORNER)
+#define FANUC(X) \
+    X(MOTION, 730, P) \
+    X(MOTION, 830, P) \
+    X(MOTION, 10, CORNER) \
+    X(MOTION, 20, CORNER) \
+    X(MOTION, 30, CORNER)
 
-#define ROW(group, code, takes) { GCODE_##group, code, takes },
-#define GROUP(group, code, takes) | (uint32_t)1 << GCODE_##group
+#define ROW(group, code, takes)     { GCODE_##group, code, takes },
+#define GROUP(group, code, takes)   | (uint32_t)1 << GCODE_##group
 #define LETTERS(group, code, takes) | (takes)
-static const struct row { enum gcode_group group; int code; uint32_t takes; }
-    rows[] = { CODES(ROW) }, moves[] = { MOVES(ROW) }, fanuc[] = { FANUC(ROW) };
-static const uint32_t OWNERS = 0 CODES(GROUP);      /* groups that have rows */
+static const struct row {
+    enum gcode_group group;
+    int code;
+    uint32_t takes;
+} rows[] = { CODES(ROW) }, moves[] = { MOVES(ROW) }, fanuc[] = { FANUC(ROW) };
+static const uint32_t OWNERS = 0 CODES(GROUP); /* groups that have rows */
 static const uint32_t OWNED = (0 CODES(LETTERS) MOVES(LETTERS) FANUC(LETTERS)) & ~AXIS_WORDS;
 
 /* Which word a code gave that takes each letter, the axis words at the end. */
@@ -144,7 +180,7 @@ enum fault uses_check(const struct interpreter *in, const struct block *b, struc
     struct owners o;
 
     if (!(g->groups & OWNERS) && !(g->letters & OWNED)) {
-        return FAULT_NONE;      /* as most lines are */
+        return FAULT_NONE; /* as most lines are */
     }
     const enum fault f = share(g, &o, r);
     const struct token *axes = o.of[GCODE_LETTERS];

@@ -15,8 +15,8 @@ static void widen(const struct bow *w, double s0, const double p0[AXES], double 
     for (int k = 0; k < AXES; k++) {
         low[k] = el_min(low[k], el_min(p0[k], p1[k]));
         high[k] = el_max(high[k], el_max(p0[k], p1[k]));
-        inside = inside && el_min(p0[k], p1[k]) - strays >= low[k] - BOW_NEAR &&
-                 el_max(p0[k], p1[k]) + strays <= high[k] + BOW_NEAR;
+        inside = inside && el_min(p0[k], p1[k]) - strays >= low[k] - BOW_NEAR
+                 && el_max(p0[k], p1[k]) + strays <= high[k] + BOW_NEAR;
     }
     if (!inside && s1 - s0 > BOW_NEAR) {
         const double s = 0.5 * (s0 + s1);

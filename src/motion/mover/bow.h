@@ -8,9 +8,9 @@
 #define BOW_NEAR 1e-6
 
 struct bow {
-    void (*place)(const void *curve, double s, double place[AXES]);     /* [mm] */
+    void (*place)(const void *curve, double s, double place[AXES]); /* [mm] */
     const void *curve;
-    double bend;        /* [1/mm] most of the second derivative of an axis */
+    double bend; /* [1/mm] most of the second derivative of an axis */
 };
 
 /* Widen bounds by the part between two places; by up to BOW_NEAR less. */

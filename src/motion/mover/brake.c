@@ -36,7 +36,7 @@ void brake_limit(struct brake *b, double speed, double even)
         all[n++] = (struct brake_step){ speed, even };
     }
     for (; from < b->count; from++) {
-        if (b->step[from].even > all[n - 1].even) {     /* else the step before says more */
+        if (b->step[from].even > all[n - 1].even) { /* else the step before says more */
             all[n++] = b->step[from];
         }
     }
@@ -56,7 +56,7 @@ static double braked(const struct brake_step *s, double way, double dec)
 
 void brake_back(struct brake *b, double way, double dec)
 {
-    double least = INFINITY;    /* [mm/s] what steps allow that are no longer even here */
+    double least = INFINITY; /* [mm/s] what steps allow that are no longer even here */
     int32_t n = 0, from = 0;
 
     for (; from < b->count && b->step[from].even <= way; from++) {

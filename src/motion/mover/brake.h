@@ -14,12 +14,12 @@
 enum { BRAKE_STEPS = 4 };
 
 struct brake_step {
-    double speed;   /* [mm/s] */
-    double even;    /* [mm] */
+    double speed; /* [mm/s] */
+    double even;  /* [mm] */
 };
 
 struct brake {
-    struct brake_step step[BRAKE_STEPS];    /* both ascending */
+    struct brake_step step[BRAKE_STEPS]; /* both ascending */
     int32_t count;
 };
 
@@ -35,9 +35,9 @@ void brake_back(struct brake *b, double way, double dec);
 
 /* What is allowed on a piece of the way. */
 struct brake_piece {
-    double end;     /* [mm] */
-    double top;     /* [mm/s] most speed on it; INFINITY: what can be braked to `leave` */
-    double leave;   /* [mm/s] most speed at its end */
+    double end;   /* [mm] */
+    double top;   /* [mm/s] most speed on it; INFINITY: what can be braked to `leave` */
+    double leave; /* [mm/s] most speed at its end */
 };
 
 /* The piece that begins at s; the place is at `place`, beyond s. */

@@ -61,8 +61,8 @@ bool corner_make(struct corner *k, const struct path *a, const struct path *b, d
     }
     k->half = half;
     k->bend = 0.75 * d / half + BEND_CURVED * el_max(ka, kb);
-    k->twist = 1.5 * d / (half * half) + 4.0 * el_max(ka, kb) / half +
-               el_max(path_twist(a), path_twist(b));
+    k->twist = 1.5 * d / (half * half) + 4.0 * el_max(ka, kb) / half
+               + el_max(path_twist(a), path_twist(b));
     return true;
 }
 

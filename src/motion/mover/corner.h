@@ -16,9 +16,9 @@
 #include "path.h"
 
 struct corner {
-    double half;    /* [mm] 0: the paths meet as they are */
-    double bend;    /* [1/mm] bound of |P''| */
-    double twist;   /* [1/mm^2] bound of |P'''| */
+    double half;  /* [mm] 0: the paths meet as they are */
+    double bend;  /* [1/mm] bound of |P''| */
+    double twist; /* [1/mm^2] bound of |P'''| */
 };
 
 /* Largest curve that stays within a tolerance [mm] of both paths and takes no more than `room`

@@ -114,8 +114,8 @@ static bool starves(const struct curve *c, const struct curve_plan *m)
 /* The motion has come to a rest behind which pieces go on, but not to its goal. */
 static bool rests_between(const struct curve *c, const struct curve_plan *m)
 {
-    return m->pace.closed && pace_at_end(&m->pace) && m->joined < shape_count(&m->shape) &&
-           !curve_waits(c);
+    return m->pace.closed && pace_at_end(&m->pace) && m->joined < shape_count(&m->shape)
+           && !curve_waits(c);
 }
 
 /* Put the pace where the motion is; if its latest rest has been taken back, where that was. */
@@ -276,8 +276,8 @@ void curve_single(struct curve *c, struct curve_plan *m, bool on)
     c->halts = on && !curve_waits(c);
     if (!on && !curve_waits(c)) {
         c->goal = INFINITY;
-        m->pace.closed = m->part <= 0.0 && m->joined > 0 &&
-                         shape_piece(&m->shape, m->joined - 1)->rest;
+        m->pace.closed =
+            m->part <= 0.0 && m->joined > 0 && shape_piece(&m->shape, m->joined - 1)->rest;
     }
 }
 
@@ -339,8 +339,8 @@ bool curve_rests(const struct curve *c)
 
 bool curve_done(const struct curve *c, const struct curve_plan *m)
 {
-    return c->closed && m->pace.closed && pace_at_end(&m->pace) &&
-           m->joined == shape_count(&m->shape);
+    return c->closed && m->pace.closed && pace_at_end(&m->pace)
+           && m->joined == shape_count(&m->shape);
 }
 
 static void place_on_piece(const void *piece, double u, double place[AXES])
@@ -360,7 +360,7 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
     memcpy(high, c->point, sizeof c->point);
     resume(&at, m);
     const double stop = at.start + pace_stop_way(&m->pace);
-    for (double from = way_of(&at); pieces_known(m) > 0 && from < stop; ) {
+    for (double from = way_of(&at); pieces_known(m) > 0 && from < stop;) {
         const struct piece *p = find(&at, m, from);
         const double end = el_min(stop, at.base + p->length);
         struct piece_bounds b;

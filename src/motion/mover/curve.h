@@ -15,29 +15,29 @@
 
 /* What stands beside the mover. */
 struct curve_plan {
-    struct pace_limits limits;  /* limits of chains from now on */
-    bool   last;                /* no more commands come for now: none is waited for */
-    double end[AXES];           /* [mm] end of the latest command taken */
-    int32_t joined;             /* number of finished pieces of the shape that the pace has */
-    double joined_way;          /* [mm] their end on the chain */
-    double part;                /* [mm] length of the next one that the pace has, too */
-    double start;               /* [mm] where the pace begins, from the start of the chain */
+    struct pace_limits limits; /* limits of chains from now on */
+    bool last;                 /* no more commands come for now: none is waited for */
+    double end[AXES];          /* [mm] end of the latest command taken */
+    int32_t joined;            /* number of finished pieces of the shape that the pace has */
+    double joined_way;         /* [mm] their end on the chain */
+    double part;               /* [mm] length of the next one that the pace has, too */
+    double start;              /* [mm] where the pace begins, from the start of the chain */
     struct shape shape;
     struct pace pace;
 };
 
 struct curve {
-    struct pace_place place;    /* the motion since it rested last */
-    double  start;              /* [mm] where it rested, from the start of the chain */
-    bool    closed;             /* no further command joins */
-    bool    halts;              /* single block: a goal is to be chosen */
-    double  goal;               /* [mm] where a block begins, before which it rests; or INFINITY */
-    int32_t line;               /* line of the latest mark */
-    int32_t idle;               /* points since the ring has been empty */
-    int32_t begun;              /* number of marks of the shape that the tool has passed */
-    int32_t at;                 /* piece of the tool, from the first that the shape keeps */
-    double  base;               /* [mm] start of that piece on the chain */
-    double  point[AXES], velocity[AXES];    /* [mm], [mm/s] of the tool */
+    struct pace_place place; /* the motion since it rested last */
+    double start;            /* [mm] where it rested, from the start of the chain */
+    bool closed;             /* no further command joins */
+    bool halts;              /* single block: a goal is to be chosen */
+    double goal;             /* [mm] where a block begins, before which it rests; or INFINITY */
+    int32_t line;            /* line of the latest mark */
+    int32_t idle;            /* points since the ring has been empty */
+    int32_t begun;           /* number of marks of the shape that the tool has passed */
+    int32_t at;              /* piece of the tool, from the first that the shape keeps */
+    double base;             /* [mm] start of that piece on the chain */
+    double point[AXES], velocity[AXES]; /* [mm], [mm/s] of the tool */
 };
 
 /* Whether the first command of the ring begins a curve. */

@@ -94,8 +94,7 @@ double mix_left(const struct mix *x)
     return left;
 }
 
-void mix_extent(const struct mix *x, const double rest[AXES], double low[AXES],
-                double high[AXES])
+void mix_extent(const struct mix *x, const double rest[AXES], double low[AXES], double high[AXES])
 {
     memcpy(low, rest, AXES * sizeof *low);
     memcpy(high, rest, AXES * sizeof *high);

@@ -13,8 +13,8 @@ struct mix_move {
 };
 
 struct mix {
-    struct mix_move move[2];    /* the older first */
-    int32_t count;              /* number of commands under way */
+    struct mix_move move[2]; /* the older first */
+    int32_t count;           /* number of commands under way */
 };
 
 /* A command that lasts begins, at a speed under an override; not when two are under way. */
@@ -47,7 +47,6 @@ double mix_left(const struct mix *x);
 
 /* Bounds of the way from here to there, the sum of those of the commands; exact if there is one.
  * [mm] */
-void mix_extent(const struct mix *x, const double rest[AXES], double low[AXES],
-                double high[AXES]);
+void mix_extent(const struct mix *x, const double rest[AXES], double low[AXES], double high[AXES]);
 
 #endif

@@ -45,8 +45,7 @@ static double in_force(const struct mover *p, bool ptp)
 {
     const double panel = p->overrides & OUTPUTS_FEED_FIXED ? 1.0 : p->override[ptp];
 
-    return brakes(p) ? 0.0
-         : p->overrides & OUTPUTS_ADAPTIVE ? panel * p->adaptive : panel;
+    return brakes(p) ? 0.0 : p->overrides & OUTPUTS_ADAPTIVE ? panel * p->adaptive : panel;
 }
 
 bool mover_ordered(const struct mover *p)
@@ -86,22 +85,23 @@ bool mover_resting(const struct mover *p, const struct ring *r)
         return in_force(p, false) <= 0.0 && track_rests(&p->track);
     }
     if (p->motion == MOVER_CURVE) {
-        return curve_rests(&p->curve) &&
-               (in_force(p, false) <= 0.0 || p->confirming || mover_waits(p, r));
+        return curve_rests(&p->curve)
+               && (in_force(p, false) <= 0.0 || p->confirming || mover_waits(p, r));
     }
     if (mover_ordered(p)) {
         return axes_resting(&p->axes);
     }
-    return mix_rests(&p->mix, brakes(p)) &&
-           (p->mix.count > 0 || brakes(p) || p->confirming || mover_waits(p, r) ||
-            r->count == 0);
+    return mix_rests(&p->mix, brakes(p))
+           && (p->mix.count > 0 || brakes(p) || p->confirming || mover_waits(p, r)
+               || r->count == 0);
 }
 
 bool mover_moving(const struct mover *p)
 {
-    return p->motion == MOVER_CHAIN ? !track_rests(&p->track)
-         : p->motion == MOVER_CURVE ? !curve_rests(&p->curve)
-         : mover_ordered(p) ? !axes_resting(&p->axes) : mix_moves(&p->mix);
+    return p->motion == MOVER_CHAIN   ? !track_rests(&p->track)
+           : p->motion == MOVER_CURVE ? !curve_rests(&p->curve)
+           : mover_ordered(p)         ? !axes_resting(&p->axes)
+                                      : mix_moves(&p->mix);
 }
 
 /* A command of axes lasts as long as the last of them. */
@@ -233,18 +233,13 @@ void mover_place(const struct mover *p, const struct ring *r, double point[AXES]
                  double velocity[AXES])
 {
     switch (p->motion) {
-    case MOVER_CHAIN:
-        track_place(&p->track, r, point, velocity);
-        break;
+    case MOVER_CHAIN: track_place(&p->track, r, point, velocity); break;
     case MOVER_CURVE:
         memcpy(point, p->curve.point, sizeof p->curve.point);
         memcpy(velocity, p->curve.velocity, sizeof p->curve.velocity);
         break;
-    case MOVER_AXES:
-        place_of_axes(&p->axes, point, velocity);
-        break;
-    default:
-        mix_place(&p->mix, p->rest, point, velocity);
+    case MOVER_AXES: place_of_axes(&p->axes, point, velocity); break;
+    default:         mix_place(&p->mix, p->rest, point, velocity);
     }
 }
 
@@ -255,8 +250,8 @@ void mover_stop(struct mover *p, struct ring *r)
     mover_place(p, r, at, velocity);
     rest_at(p, at, mover_in_joints(p));
     p->hold = p->abort = p->leave = p->stopped = p->allowed = p->confirming = false;
-    p->untold = p->untold || p->outputs.spindle != 0.0 || p->outputs.coolant != 0 ||
-                p->outputs.asks;
+    p->untold =
+        p->untold || p->outputs.spindle != 0.0 || p->outputs.coolant != 0 || p->outputs.asks;
     p->outputs.asks = false;
     p->overrides = 0;
     p->outputs.spindle = 0.0;
@@ -312,8 +307,8 @@ void mover_leave(struct mover *p, const struct ring *r)
 static bool may_start(const struct mover *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
-    if (!next || p->motion != MOVER_MIX || brakes(p) || p->stopped || p->confirming ||
-        blocked(p, r)) {
+    if (!next || p->motion != MOVER_MIX || brakes(p) || p->stopped || p->confirming
+        || blocked(p, r)) {
         return false;
     }
     return p->mix.count == 0 || (mix_open(&p->mix) && command_blends(next));
@@ -333,15 +328,15 @@ static void begin(struct mover *p, const struct shape_mark *k)
 
 static void begin_command(struct mover *p, const struct command *c)
 {
-    const struct shape_mark k = {
-        .index = command_lasts(c) ? c->index : 0, .line = c->line, .set = c->set,
-        .clear = c->clear, .analog = c->analog
-    };
+    const struct shape_mark k = { .index = command_lasts(c) ? c->index : 0,
+                                  .line = c->line,
+                                  .set = c->set,
+                                  .clear = c->clear,
+                                  .analog = c->analog };
     begin(p, &k);
 }
 
-static void begin_axes(struct mover *p, const struct command *c,
-                       const struct axes_limits l[AXES])
+static void begin_axes(struct mover *p, const struct command *c, const struct axes_limits l[AXES])
 {
     axes_start(&p->axes, c->path.start, in_force(p, true));
     for (int i = 0; i < AXES; i++) {
@@ -411,7 +406,7 @@ static void end_ahead(struct mover *p, struct ring *r, const double place[AXES])
     rest_at(p, place, false);
     p->confirming = p->confirm;
     if (p->abort) {
-        mover_stop(p, r);       /* the ramp of the abort was that to its end */
+        mover_stop(p, r); /* the ramp of the abort was that to its end */
     }
 }
 
@@ -437,7 +432,7 @@ static double advance_chain(struct mover *p, struct ring *r, double dt)
     struct track *t = &p->track;
     const double left = track_advance(t, r, in_force(p, false), dt);
     if (left <= 0.0 || (t->smooth > 0.0 && !track_done(t))) {
-        return 0.0;         /* the tool has to come after */
+        return 0.0; /* the tool has to come after */
     }
     begin_chained(p, r);
     const struct command last = ring_peek(r, t->joined - 1)->command;
@@ -457,7 +452,7 @@ static double advance_commands(struct mover *p, bool startable, double dt)
 
     mix_shift(&p->mix, step);
     if (step < dt) {
-        old->t = event;     /* met exactly, whatever the sum rounds to */
+        old->t = event; /* met exactly, whatever the sum rounds to */
     }
     if (p->motion == MOVER_AXES) {
         axes_advance(&p->axes, step);

@@ -30,34 +30,34 @@ enum mover_motion { MOVER_MIX, MOVER_CHAIN, MOVER_AXES, MOVER_CURVE };
 struct mover_beside {
     struct ring *ring;
     struct track_mean *mean;
-    struct curve_plan *curve;   /* NULL: what asks for a curve becomes a chain */
+    struct curve_plan *curve; /* NULL: what asks for a curve becomes a chain */
 };
 
 struct mover {
-    enum mover_motion motion;   /* the motion under way, or the latest */
-    struct mix mix;             /* MOVER_MIX; in MOVER_AXES the command, none: by orders */
-    struct track track;         /* MOVER_CHAIN */
-    struct curve curve;         /* MOVER_CURVE */
-    struct axes axes;           /* MOVER_AXES */
-    double  rest[AXES];         /* [mm] where nothing is under way */
-    bool    joints;             /* `rest` is a place of joints */
-    int32_t pulses[AXES];       /* [pulses] position of the latest point */
-    double  override[2];        /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
-    double  adaptive;           /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
-    uint32_t overrides;         /* enum outputs_overrides */
-    bool    hold;               /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
-    bool    leave;              /* ramp to rest, then drop the command under way */
-    bool    abort;              /* ramp to rest, then drop everything */
-    bool    stopped;            /* M0, M1: at rest until mover_continue */
-    bool    single;             /* each block waits for mover_continue */
-    bool    allowed;            /* the next block may begin nevertheless */
-    int32_t block;              /* line of the latest block */
-    bool    confirm;            /* in-position check: a motion that ends at rest waits for it */
-    bool    confirming;         /* one waits now */
-    bool    untold;             /* outputs or line have changed since the latest point */
+    enum mover_motion motion; /* the motion under way, or the latest */
+    struct mix mix;           /* MOVER_MIX; in MOVER_AXES the command, none: by orders */
+    struct track track;       /* MOVER_CHAIN */
+    struct curve curve;       /* MOVER_CURVE */
+    struct axes axes;         /* MOVER_AXES */
+    double rest[AXES];        /* [mm] where nothing is under way */
+    bool joints;              /* `rest` is a place of joints */
+    int32_t pulses[AXES];     /* [pulses] position of the latest point */
+    double override[2];       /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
+    double adaptive;          /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
+    uint32_t overrides;       /* enum outputs_overrides */
+    bool hold;                /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
+    bool leave;               /* ramp to rest, then drop the command under way */
+    bool abort;               /* ramp to rest, then drop everything */
+    bool stopped;             /* M0, M1: at rest until mover_continue */
+    bool single;              /* each block waits for mover_continue */
+    bool allowed;             /* the next block may begin nevertheless */
+    int32_t block;            /* line of the latest block */
+    bool confirm;             /* in-position check: a motion that ends at rest waits for it */
+    bool confirming;          /* one waits now */
+    bool untold;              /* outputs or line have changed since the latest point */
     struct outputs outputs;
-    struct outputs_surface surface;     /* if it has a speed, outputs.spindle is the most */
-    int32_t started, line;      /* index and source line of the latest command begun */
+    struct outputs_surface surface; /* if it has a speed, outputs.spindle is the most */
+    int32_t started, line;          /* index and source line of the latest command begun */
 };
 
 /* At rest at the origin, pulses 0. */

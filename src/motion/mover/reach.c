@@ -8,19 +8,19 @@
 
 /* The ramp at a time after now. */
 struct instant {
-    double t;                               /* [s] */
-    double joint[AXES];                     /* [mm] */
-    bool   reached;
-    struct scurve_start move[2];            /* along each move */
+    double t;           /* [s] */
+    double joint[AXES]; /* [mm] */
+    bool reached;
+    struct scurve_start move[2]; /* along each move */
 };
 
 struct ramp_view {
-    struct mover ramp;                      /* the ramp, whose clocks are at `at` */
-    double at;                              /* [s] */
-    double dt;                              /* [s] time from point to point */
-    double acc[AXES];                       /* [mm/s^2] highest acceleration of independent axes */
-    double from[AXES];                      /* [pulses] position of the latest point */
-    double near[AXES];                      /* [mm] joints there, if there are kinematics */
+    struct mover ramp; /* the ramp, whose clocks are at `at` */
+    double at;         /* [s] */
+    double dt;         /* [s] time from point to point */
+    double acc[AXES];  /* [mm/s^2] highest acceleration of independent axes */
+    double from[AXES]; /* [pulses] position of the latest point */
+    double near[AXES]; /* [mm] joints there, if there are kinematics */
     const struct ring *ring;
     const struct mechanism *machine;
 };
@@ -70,12 +70,13 @@ static bool between(const struct ramp_view *v, const struct instant *a, const st
     for (int k = 0; k < AXES; k++) {
         double strays = 0.125 * v->acc[k] * dt * dt;
         for (int i = 0; i < v->ramp.mix.count && paths; i++) {
-            strays += move_strays(&v->ramp.mix.move[i].command.path, &a->move[i], &b->move[i], dt,
-                                  k);
+            strays +=
+                move_strays(&v->ramp.mix.move[i].command.path, &a->move[i], &b->move[i], dt, k);
         }
         if (v->machine->kinematics && paths) {
-            strays = 0.5 * el_max(0.0, v->machine->joint[k].speed * dt -
-                                       fabs(b->joint[k] - a->joint[k]));
+            strays =
+                0.5
+                * el_max(0.0, v->machine->joint[k].speed * dt - fabs(b->joint[k] - a->joint[k]));
         }
         low[k] = el_min(a->joint[k], b->joint[k]) - strays;
         high[k] = el_max(a->joint[k], b->joint[k]) + strays;
@@ -127,9 +128,9 @@ static void widen(const struct path *p, double from, double to, double margin, d
 
 /* Way of a chain from the tool to its rest. */
 struct way {
-    const struct track *t;      /* the chain, brought to rest */
+    const struct track *t; /* the chain, brought to rest */
     const struct ring *ring;
-    double from, to;            /* [mm] on the chain */
+    double from, to; /* [mm] on the chain */
 };
 
 static const struct path *path_of(const struct way *w, int32_t i)
@@ -153,9 +154,8 @@ static void box_of_chain(const struct way *w, double low[AXES], double high[AXES
     for (int32_t i = first; i < w->t->joined && begins(w, i, base); i++) {
         const struct path *p = path_of(w, i);
         const double half = track_half(w->t, w->ring, i), next = track_half(w->t, w->ring, i + 1);
-        const bool bent = path_bend(p) > 0.0 ||
-                          (half > 0.0 && path_bend(path_of(w, i - 1)) > 0.0) ||
-                          (next > 0.0 && path_bend(path_of(w, i + 1)) > 0.0);
+        const bool bent = path_bend(p) > 0.0 || (half > 0.0 && path_bend(path_of(w, i - 1)) > 0.0)
+                          || (next > 0.0 && path_bend(path_of(w, i + 1)) > 0.0);
         widen(p, el_max(0.0, w->from - base - next), el_min(p->length, w->to - base + half),
               bent ? ring_peek(w->ring, i)->command.tolerance : 0.0, low, high);
         base += p->length;
@@ -215,7 +215,7 @@ static int beyond_on_way(const struct way *w, const struct ramp_view *v)
         step = el_min(step, ring_peek(w->ring, i)->command.cap * v->dt);
     }
     memcpy(joint, v->near, sizeof joint);
-    for (double at = w->from; at < w->to; ) {
+    for (double at = w->from; at < w->to;) {
         at = el_min(at + step, w->to);
         track_go(&tool, w->ring, at);
         track_place(&tool, w->ring, place, velocity);

@@ -46,7 +46,7 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
     n->body = bend_speed(&n->command, bend, path_twist(&n->command.path));
     n->corner = *k;
     n->turn = n->command.cap;
-    n->enter.count = n->leave.count = 0;    /* until it is planned */
+    n->enter.count = n->leave.count = 0; /* until it is planned */
     if (t->joined > 0) {
         const struct command *before = &ring_peek(r, t->joined - 1)->command;
         n->turn = el_min(bend_speed(&n->command, k->bend, k->twist),
@@ -71,8 +71,8 @@ static bool in_time(const struct track *t, const struct ring *r, const struct co
     const struct command *last = &ring_peek(r, t->joined - 1)->command;
     const struct command *next = &ring_peek(r, t->joined)->command;
     const double way = t->end - (t->base + t->s), bend = path_bend(&next->path);
-    const double body = el_min(bend_speed(next, bend, path_twist(&next->path)),
-                               command_speed(next, override));
+    const double body =
+        el_min(bend_speed(next, bend, path_twist(&next->path)), command_speed(next, override));
     double turn = el_min(bend_speed(next, k->bend, k->twist), bend_speed(last, k->bend, k->twist));
 
     turn = el_min(turn, el_min(command_speed(next, override), command_speed(last, override)));
@@ -92,8 +92,8 @@ static void join(struct track *t, struct ring *r, double override)
         }
         const double room = 0.5 * el_min(a->path.length, b->path.length);
         if (!corner_make(&k, &a->path, &b->path, el_min(a->tolerance, b->tolerance), room,
-                         t->smooth > 0.0) ||
-            !in_time(t, r, &k, override)) {
+                         t->smooth > 0.0)
+            || !in_time(t, r, &k, override)) {
             return;
         }
         add(t, r, &k);
@@ -184,8 +184,8 @@ static struct piece next_piece(const struct track *t, const struct ring *r, doub
     const struct ring_entry *n = ring_peek(r, t->at);
     const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
     const struct ramp_limits ramp = ramp_of(r, t->at, t->turning);
-    const struct brake_piece b = brake_next(t->turning ? &n->enter : &n->leave, t->s,
-                                            border(t, r), ramp.dec);
+    const struct brake_piece b =
+        brake_next(t->turning ? &n->enter : &n->leave, t->s, border(t, r), ramp.dec);
     struct piece p = { b.end, el_min(most, b.top), b.leave, ramp.acc, ramp.dec };
 
     for (int32_t i = 0; i < t->caps; i++) {
@@ -222,14 +222,14 @@ static double slow_down(struct track *t, const struct piece *p, double leave, bo
     const double to = v > p->top && fits ? p->top : el_min(p->top, leave);
     double dec = p->dec, done;
 
-    if (!fits && way > 0.0) {   /* rounding has taken some of the way */
+    if (!fits && way > 0.0) { /* rounding has taken some of the way */
         dec = el_min(el_max(dec, (v * v - leave * leave) / (2.0 * way)), (1.0 + ROUNDING) * dec);
     }
-    if (to >= v) {      /* no way but rounding */
+    if (to >= v) { /* no way but rounding */
         t->s = p->end;
         return dt;
     }
-    const double there = v * v - 2.0 * dec * way;       /* square of the speed at the end */
+    const double there = v * v - 2.0 * dec * way; /* square of the speed at the end */
     const bool all = there >= to * to;
     const double used = glide(t, -dec, all ? sqrt(there) : to, way, dt, &done);
     if (all && used < dt) {
@@ -244,8 +244,9 @@ static double drive(struct track *t, const struct piece *p, double dt)
 {
     const double way = p->end - t->s, v = t->v;
     double done, leave = el_min(p->leave, sqrt(v * v + 2.0 * p->acc * way));
-    const double peak = sqrt(el_max(0.0, (2.0 * p->acc * p->dec * way + p->dec * v * v +
-                                          p->acc * leave * leave) / (p->acc + p->dec)));
+    const double peak =
+        sqrt(el_max(0.0, (2.0 * p->acc * p->dec * way + p->dec * v * v + p->acc * leave * leave)
+                             / (p->acc + p->dec)));
 
     if (v > p->top || peak < v) {
         return slow_down(t, p, leave, peak >= v, dt);
@@ -283,7 +284,7 @@ static void keep_limit(struct track *t, double speed)
             t->cap[n++] = *c;
         }
     }
-    if (n == TRACK_CAPS) {      /* two become one that holds for both */
+    if (n == TRACK_CAPS) { /* two become one that holds for both */
         n--;
         t->cap[n - 1].speed = el_min(t->cap[n - 1].speed, t->cap[n].speed);
         t->cap[n - 1].until = el_max(t->cap[n - 1].until, t->cap[n].until);
@@ -310,8 +311,8 @@ static void cross(struct track *t, const struct ring *r, double override)
 
 bool track_at_end(const struct track *t, const struct ring *r)
 {
-    return t->at == t->joined - 1 && !t->turning &&
-           t->s >= ring_peek(r, t->at)->command.path.length;
+    return t->at == t->joined - 1 && !t->turning
+           && t->s >= ring_peek(r, t->at)->command.path.length;
 }
 
 double track_advance(struct track *t, struct ring *r, double override, double dt)
@@ -322,8 +323,9 @@ double track_advance(struct track *t, struct ring *r, double override, double dt
             t->v = 0.0;
             return dt;
         }
-        if (override > 0.0 && (override != t->override ||
-                               PLAN_SHARE * (t->joined - t->planned) > t->planned - t->at)) {
+        if (override > 0.0
+            && (override != t->override
+                || PLAN_SHARE * (t->joined - t->planned) > t->planned - t->at)) {
             plan(t, r, override);
         }
         struct piece p = next_piece(t, r, override);
@@ -353,7 +355,7 @@ void track_close(struct track *t, const struct ring *r)
         if (t->v * t->v <= 2.0 * dec * (end - (t->base + t->s))) {
             t->joined = i + 1;
             t->end = end;
-            t->override = -1.0;     /* plan anew */
+            t->override = -1.0; /* plan anew */
             return;
         }
     }

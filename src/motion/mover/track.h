@@ -18,47 +18,47 @@
 #include "ring.h"
 
 enum {
-    TRACK_MEAN = 2048,      /* frames of the mean, and one more */
+    TRACK_MEAN = 2048, /* frames of the mean, and one more */
     TRACK_CAPS = 8
 };
 
 /* A limit left behind that still holds for some way: the tool is behind the planned motion. */
 struct track_cap {
-    double speed;           /* [mm/s] */
-    double until;           /* [mm] on the chain */
+    double speed; /* [mm/s] */
+    double until; /* [mm] on the chain */
 };
 
 struct track_mean {
-    double sample[TRACK_MEAN];  /* [mm] way at the latest points */
+    double sample[TRACK_MEAN]; /* [mm] way at the latest points */
 };
 
 struct track {
-    bool    closed;         /* no further command joins */
-    int32_t started;        /* index of its first command */
-    int32_t joined;         /* commands from the head of the ring that are in the chain */
-    int32_t planned;        /* how many of these the latest plan of the speeds knows */
-    double  override;       /* override of that plan */
-    double  dec;            /* [mm/s^2] least deceleration of the commands not left behind */
-    double  smooth;         /* [s] time of the mean; 0 none */
-    double  end;            /* [mm] end of the joined commands on the chain */
+    bool closed;     /* no further command joins */
+    int32_t started; /* index of its first command */
+    int32_t joined;  /* commands from the head of the ring that are in the chain */
+    int32_t planned; /* how many of these the latest plan of the speeds knows */
+    double override; /* override of that plan */
+    double dec;      /* [mm/s^2] least deceleration of the commands not left behind */
+    double smooth;   /* [s] time of the mean; 0 none */
+    double end;      /* [mm] end of the joined commands on the chain */
 
-    int32_t at;             /* command of the planned motion, from the head */
-    bool    turning;        /* it is in the corner at that command's start */
-    double  base;           /* [mm] start of that command on the chain */
-    double  s, v;           /* [mm] place of the planned motion from there, [mm/s] */
+    int32_t at;   /* command of the planned motion, from the head */
+    bool turning; /* it is in the corner at that command's start */
+    double base;  /* [mm] start of that command on the chain */
+    double s, v;  /* [mm] place of the planned motion from there, [mm/s] */
     struct track_cap cap[TRACK_CAPS];
     int32_t caps;
 
-    int32_t taps, next;     /* samples of the mean, 0 before the first; place of the next */
-    int32_t still;          /* samples since the planned motion moved */
-    double  sum, zero;      /* [mm] sum of the samples, each counted from `zero` */
+    int32_t taps, next; /* samples of the mean, 0 before the first; place of the next */
+    int32_t still;      /* samples since the planned motion moved */
+    double sum, zero;   /* [mm] sum of the samples, each counted from `zero` */
 
-    int32_t out;            /* command of the tool, from the head */
-    int32_t begun;          /* number of commands of which track_begun has told */
-    double  out_base;       /* [mm] start of the tool's command on the chain */
-    double  out_s, out_v;   /* [mm] place of the tool from there, [mm/s] */
-    double  way;            /* [mm] the tool on the chain: base + s of the planned motion once it
-                             * is there, which out_base + out_s need not round to */
+    int32_t out;         /* command of the tool, from the head */
+    int32_t begun;       /* number of commands of which track_begun has told */
+    double out_base;     /* [mm] start of the tool's command on the chain */
+    double out_s, out_v; /* [mm] place of the tool from there, [mm/s] */
+    double way;          /* [mm] the tool on the chain: base + s of the planned motion once it
+                          * is there, which out_base + out_s need not round to */
 };
 
 /* Whether the first command of the ring begins a chain. */

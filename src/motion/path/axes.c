@@ -60,8 +60,7 @@ static void make(struct axes_axis *x, const struct scurve_start *at, double spee
 /* The axis moves as ordered, or on if it is only to come to rest: that way is positive. */
 static double side_of(const struct axes_axis *x, const struct scurve_start *at, double speed)
 {
-    const double way = speed == 0.0 ? at->v
-                     : x->order == AXES_GO ? x->goal - at->s : x->goal;
+    const double way = speed == 0.0 ? at->v : x->order == AXES_GO ? x->goal - at->s : x->goal;
     return (way != 0.0 ? way : at->v != 0.0 ? at->v : at->a) < 0.0 ? -1.0 : 1.0;
 }
 
@@ -70,11 +69,11 @@ static void replan(const struct axes *a, struct axes_axis *x)
 {
     struct scurve_start at = state(x);
     const double speed = speed_of(a, x);
-    struct scurve_limits l = { speed > 0.0 ? speed : x->limits.cap, x->limits.acc,
-                               x->limits.dec, x->limits.jerk };
+    struct scurve_limits l = { speed > 0.0 ? speed : x->limits.cap, x->limits.acc, x->limits.dec,
+                               x->limits.jerk };
 
     if (l.speed <= 0.0) {
-        return;     /* the axis never had an order */
+        return; /* the axis never had an order */
     }
     x->side = side_of(x, &at, speed);
     at.s *= x->side;
@@ -83,7 +82,7 @@ static void replan(const struct axes *a, struct axes_axis *x)
     x->t = 0.0;
     make(x, &at, speed, &l);
     if (l.acc != l.dec && scurve_slowest(&x->plan) < 0.0) {
-        l.acc = l.dec = el_min(l.acc, l.dec);     /* the axis turns round */
+        l.acc = l.dec = el_min(l.acc, l.dec); /* the axis turns round */
         make(x, &at, speed, &l);
     }
 }
@@ -160,9 +159,9 @@ void axes_reach(const struct axes *a, int axis, double *low, double *high, doubl
 
     *acc = 0.0;
     for (int i = 0; i < x->plan.count; i++) {
-        const struct scurve_phase *h = &x->plan.phase[i];   /* it may pass a peak of speed, a = 0 */
-        fastest = el_max(fastest,
-                         fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
+        const struct scurve_phase *h = &x->plan.phase[i]; /* it may pass a peak of speed, a = 0 */
+        fastest =
+            el_max(fastest, fabs(h->v) + (h->j != 0.0 ? h->a * h->a / fabs(2.0 * h->j) : 0.0));
         *acc = el_max(*acc, el_max(fabs(h->a + h->j * (begin - h->t)),
                                    fabs(h->a + h->j * (h->end - h->t))));
         begin = h->end;
@@ -192,8 +191,8 @@ bool axes_resting(const struct axes *a)
 bool axes_done(const struct axes *a, int axis)
 {
     const struct axes_axis *x = &a->axis[axis];
-    return axes_rests(a, axis) && x->order != AXES_RUN &&
-           (x->order == AXES_STAND || x->side * x->plan.s1 == x->goal);
+    return axes_rests(a, axis) && x->order != AXES_RUN
+           && (x->order == AXES_STAND || x->side * x->plan.s1 == x->goal);
 }
 
 double axes_left(const struct axes *a)

@@ -15,21 +15,21 @@
 #include "ramp.h"
 
 struct axes_limits {
-    double speed;       /* [mm/s] at ratio 1 */
-    double cap;         /* [mm/s] highest speed any ratio may bring */
-    double acc, dec;    /* [mm/s^2] */
-    double jerk;        /* [mm/s^3] */
+    double speed;    /* [mm/s] at ratio 1 */
+    double cap;      /* [mm/s] highest speed any ratio may bring */
+    double acc, dec; /* [mm/s^2] */
+    double jerk;     /* [mm/s^3] */
 };
 
 enum axes_order { AXES_STAND, AXES_RUN, AXES_GO };
 
 struct axes_axis {
     enum axes_order order;
-    double goal;        /* [mm/s] signed speed to run at, or [mm] place to go to */
+    double goal; /* [mm/s] signed speed to run at, or [mm] place to go to */
     struct axes_limits limits;
-    double side;        /* +1, or -1: the plan is in coordinates of the opposite sign */
+    double side; /* +1, or -1: the plan is in coordinates of the opposite sign */
     struct scurve plan;
-    double t;           /* [s] since the plan began */
+    double t; /* [s] since the plan began */
 };
 
 struct axes {

@@ -2,6 +2,6 @@
 #ifndef AXIS_COUNT_H
 #define AXIS_COUNT_H
 
-enum { AXES = 6 };              /* X Y Z U V W, or joints 1 .. 6 */
+enum { AXES = 6 }; /* X Y Z U V W, or joints 1 .. 6 */
 
 #endif

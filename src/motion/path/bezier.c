@@ -9,9 +9,9 @@
  * that is shorter than this part of the length ends it. */
 static const double AGREE = 1e-14;
 static const double NEWTON = 1e-15;
-static const double SLACK = 1e-3;       /* part by which a bound may be above what is reached */
-static const double BEND_MAX = 1e4;     /* [1/mm] curvature from which on a curve is refused */
-static const double TOO_MUCH = 1e9;     /* [1/mm], [1/mm^2] more need not be known better */
+static const double SLACK = 1e-3;   /* part by which a bound may be above what is reached */
+static const double BEND_MAX = 1e4; /* [1/mm] curvature from which on a curve is refused */
+static const double TOO_MUCH = 1e9; /* [1/mm], [1/mm^2] more need not be known better */
 
 enum { HALVINGS = 40, STEPS = 60 };
 
@@ -77,8 +77,9 @@ static double speed(const struct hodograph *h, double t)
 /* Integral of |B'| by 10 points of Gauss and Legendre. */
 static double gauss(const struct hodograph *h, double t0, double t1)
 {
-    static const double X[5] = { 0.14887433898163122, 0.43339539412924719, 0.67940956829902441,
-                                 0.86506336668898451, 0.97390652851717172 };
+    static const double X
+    [5] = { 0.14887433898163122, 0.43339539412924719, 0.67940956829902441, 0.86506336668898451,
+            0.97390652851717172 };
     static const double W[5] = { 0.29552422471475287, 0.26926671930999636, 0.21908636251598204,
                                  0.14945134915058059, 0.06667134430868814 };
     const double middle = 0.5 * (t0 + t1), half = 0.5 * (t1 - t0);
@@ -187,7 +188,7 @@ static double bound(const struct hodograph *h, int what)
         return most / least;
     }
     double c[2][3], sum[3];
-    for (int n = 0; n < 4; n++) {   /* B' x B'' has degree 3 */
+    for (int n = 0; n < 4; n++) { /* B' x B'' has degree 3 */
         memset(c, 0, sizeof c);
         if (n < 3) {
             cross(h->d[n], h->e[0], c[0]);
@@ -201,8 +202,9 @@ static double bound(const struct hodograph *h, int what)
         most = el_max(most, sqrt(dot(sum, sum)));
     }
     const double k = most / (least * least * least);
-    return what == CURVATURE ? k
-         : twist(h, k, sqrt(el_max(dot(h->e[0], h->e[0]), dot(h->e[1], h->e[1]))), least);
+    return what == CURVATURE
+               ? k
+               : twist(h, k, sqrt(el_max(dot(h->e[0], h->e[0]), dot(h->e[1], h->e[1]))), least);
 }
 
 /* Raise *top to a bound of the part from t0 to t1; *reached is the most that was seen so far. */
@@ -268,8 +270,8 @@ static double place(const struct bezier *b, const double start[3], const double 
                     double t)
 {
     const double u = 1.0 - t;
-    return u * u * (u * start[i] + 3.0 * t * b->inner[0][i]) +
-           t * t * (3.0 * u * b->inner[1][i] + t * end[i]);
+    return u * u * (u * start[i] + 3.0 * t * b->inner[0][i])
+           + t * t * (3.0 * u * b->inner[1][i] + t * end[i]);
 }
 
 static double within(const struct bezier *b, const struct hodograph *h, double length, double s)
@@ -277,8 +279,8 @@ static double within(const struct bezier *b, const struct hodograph *h, double l
     return s >= length ? 1.0 : s <= 0.0 ? 0.0 : parameter(b, h, length, s);
 }
 
-void bezier_frame(const struct bezier *b, const double start[3], const double end[3],
-                  double length, double s, double point[3], double slope[3], double bend[3])
+void bezier_frame(const struct bezier *b, const double start[3], const double end[3], double length,
+                  double s, double point[3], double slope[3], double bend[3])
 {
     struct hodograph h;
 
@@ -336,7 +338,7 @@ void bezier_extent(const struct bezier *b, const double start[3], const double e
     const double p = h.d[2][axis] - 2.0 * h.d[1][axis] + r;
     const double under = q * q - 4.0 * p * r;
     const double half = -0.5 * (q + copysign(sqrt(el_max(0.0, under)), q));
-    const double root[2] = { half / p, r / half };      /* neither loses digits */
+    const double root[2] = { half / p, r / half }; /* neither loses digits */
     for (int k = 0; k < 2 && under >= 0.0; k++) {
         if (root[k] > t0 && root[k] < t1) {
             const double x = place(b, start, end, axis, root[k]);

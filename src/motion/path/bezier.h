@@ -13,10 +13,10 @@
 enum { BEZIER_PARTS = 6 };
 
 struct bezier {
-    double inner[2][3];                 /* [mm] */
-    double upto[BEZIER_PARTS - 1];      /* [mm] length as far as t = 1/6, 2/6, .. */
-    double bend;                        /* [1/mm] largest curvature, at most 0.1 % more */
-    double twist;                       /* [1/mm^2] bound of |P'''|, P(s) by the length s */
+    double inner[2][3];            /* [mm] */
+    double upto[BEZIER_PARTS - 1]; /* [mm] length as far as t = 1/6, 2/6, .. */
+    double bend;                   /* [1/mm] largest curvature, at most 0.1 % more */
+    double twist;                  /* [1/mm^2] bound of |P'''|, P(s) by the length s */
 };
 
 /* Complete a curve whose inner points are set; its length [mm] into *length. False: it has a point
@@ -28,8 +28,8 @@ void bezier_at(const struct bezier *b, const double start[3], const double end[3
                double s, double point[3], double slope[3]);
 
 /* Point, direction and second derivative by the length [1/mm] at a length s of all. */
-void bezier_frame(const struct bezier *b, const double start[3], const double end[3],
-                  double length, double s, double point[3], double slope[3], double bend[3]);
+void bezier_frame(const struct bezier *b, const double start[3], const double end[3], double length,
+                  double s, double point[3], double slope[3], double bend[3]);
 
 /* Bounds of the curvature [1/mm] and of |P'''| [1/mm^2] between two lengths. */
 void bezier_most(const struct bezier *b, const double start[3], const double end[3], double length,

@@ -76,8 +76,8 @@ static void set_speed(struct command *c, const struct mechanism *m, const struct
 }
 
 enum command_status command_move(struct command *c, const struct mechanism *m,
-                                 const struct motion_limits *l, enum command_type type,
-                                 double feed, struct command_refusal *r)
+                                 const struct motion_limits *l, enum command_type type, double feed,
+                                 struct command_refusal *r)
 {
     struct mechanism_way w;
     int joint;
@@ -152,8 +152,9 @@ bool command_lasts(const struct command *c)
 
 bool command_blends(const struct command *c)
 {
-    return !c->probes && ((c->type >= COMMAND_LINE && c->type <= COMMAND_CCW_HELIX) ||
-                          c->type == COMMAND_CUBIC);
+    return !c->probes
+           && ((c->type >= COMMAND_LINE && c->type <= COMMAND_CCW_HELIX)
+               || c->type == COMMAND_CUBIC);
 }
 
 double command_speed(const struct command *c, double override)

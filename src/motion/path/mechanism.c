@@ -53,8 +53,7 @@ void mechanism_pulses(const struct mechanism *m, const double joint[AXES], int32
     }
 }
 
-static void cartesian_way(const struct mechanism *m, const struct path *p,
-                          struct mechanism_way *w)
+static void cartesian_way(const struct mechanism *m, const struct path *p, struct mechanism_way *w)
 {
     w->reached = true;
     for (int i = 0; i < AXES; i++) {
@@ -85,12 +84,11 @@ static double vertex(double a, double b, double c)
     return fabs(slope) < fabs(bend) ? b - 0.5 * slope * slope / bend : b;
 }
 
-static void kinematic_way(const struct mechanism *m, const struct path *p,
-                          struct mechanism_way *w)
+static void kinematic_way(const struct mechanism *m, const struct path *p, struct mechanism_way *w)
 {
     const double turn = p->arc ? el_max(1.0, fabs(p->sweep)) : p->cubic ? TAU : 1.0;
     const int64_t places = (int64_t)ceil(MECHANISM_PLACES * turn);
-    double low[AXES], high[AXES], place[AXES], slope[AXES];     /* low, high: of rates */
+    double low[AXES], high[AXES], place[AXES], slope[AXES]; /* low, high: of rates */
     struct trio t = { 0 };
 
     w->reached = isfinite(p->length);
@@ -99,8 +97,8 @@ static void kinematic_way(const struct mechanism *m, const struct path *p,
         memmove(t.rate[0], t.rate[1], 2 * sizeof t.rate[0]);
         memcpy(t.joint[2], k == 0 ? m->near : t.joint[1], sizeof t.joint[2]);
         path_at(p, (double)k / (double)places * p->length, place, slope);
-        w->reached = m->kinematics->joints(m->geometry, place, t.joint[2]) &&
-                     m->kinematics->rates(m->geometry, t.joint[2], slope, t.rate[2]);
+        w->reached = m->kinematics->joints(m->geometry, place, t.joint[2])
+                     && m->kinematics->rates(m->geometry, t.joint[2], slope, t.rate[2]);
         for (int i = 0; i < AXES && w->reached; i++) {
             if (k == 0) {
                 w->low[i] = w->high[i] = t.joint[2][i];
@@ -109,8 +107,7 @@ static void kinematic_way(const struct mechanism *m, const struct path *p,
             include(w->low, w->high, i, t.joint[2][i]);
             include(low, high, i, t.rate[2][i]);
             if (k >= 2) {
-                include(w->low, w->high, i,
-                        vertex(t.joint[0][i], t.joint[1][i], t.joint[2][i]));
+                include(w->low, w->high, i, vertex(t.joint[0][i], t.joint[1][i], t.joint[2][i]));
                 include(low, high, i, vertex(t.rate[0][i], t.rate[1][i], t.rate[2][i]));
             }
         }
@@ -138,7 +135,8 @@ static bool bounded(const struct joint *j)
 static int beyond(const struct joint *j, double from, double low, double high)
 {
     return high > el_max(round(j->high * j->scale), from) ? 1
-         : low < el_min(round(j->low * j->scale), from) ? -1 : 0;
+           : low < el_min(round(j->low * j->scale), from) ? -1
+                                                          : 0;
 }
 
 int mechanism_beyond(const struct mechanism *m, const double from[AXES], const double low[AXES],

@@ -16,12 +16,12 @@
 #include "path.h"
 
 struct joint {
-    bool   used;            /* false: it gets no pulses */
-    bool   bounded;         /* low and high are its range */
-    double scale;           /* [pulses/mm] */
-    double speed;           /* [mm/s] highest */
-    double acc, jerk;       /* [mm/s^2], [mm/s^3] highest along a path; 0: the ramps' alone */
-    double low, high;       /* [mm] range */
+    bool used;        /* false: it gets no pulses */
+    bool bounded;     /* low and high are its range */
+    double scale;     /* [pulses/mm] */
+    double speed;     /* [mm/s] highest */
+    double acc, jerk; /* [mm/s^2], [mm/s^3] highest along a path; 0: the ramps' alone */
+    double low, high; /* [mm] range */
 };
 
 /* Functions of a mechanism whose joints are not the coordinates of the tool. */
@@ -38,11 +38,11 @@ struct kinematics {
 };
 
 struct mechanism {
-    bool axis[AXES];        /* the coordinate of the tool may be commanded */
+    bool axis[AXES]; /* the coordinate of the tool may be commanded */
     struct joint joint[AXES];
-    const struct kinematics *kinematics;    /* NULL: joints are coordinates */
-    const void *geometry;                   /* what its functions know of the mechanism */
-    const double *near;     /* [mm] joints: the branch of a path is the one near these */
+    const struct kinematics *kinematics; /* NULL: joints are coordinates */
+    const void *geometry;                /* what its functions know of the mechanism */
+    const double *near; /* [mm] joints: the branch of a path is the one near these */
 };
 
 /* Joints of a place, joint[] nearby before. False: out of reach. */
@@ -63,9 +63,9 @@ void mechanism_pulses(const struct mechanism *m, const double joint[AXES], int32
 
 /* What a path asks of the joints. */
 struct mechanism_way {
-    bool   reached;             /* every place of it can be reached, and none is singular */
-    double share[AXES];         /* highest |d(joint)/ds| */
-    double low[AXES], high[AXES];   /* extent of the joints [mm] */
+    bool reached;                 /* every place of it can be reached, and none is singular */
+    double share[AXES];           /* highest |d(joint)/ds| */
+    double low[AXES], high[AXES]; /* extent of the joints [mm] */
 };
 
 /* Without kinematics it is exact. With them it is found at places no further apart than

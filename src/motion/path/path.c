@@ -10,7 +10,7 @@ static const double TAU = 6.283185307179586;
 
 /* An arc may miss its end by so much if nothing else is said: rounding at 3 decimals of a mm. */
 static const struct path_tolerance TIGHT = { 0.005, 1e-3 };
-static const double MISS_MAX = 100.0;       /* times the least: more is refused at any radius */
+static const double MISS_MAX = 100.0; /* times the least: more is refused at any radius */
 
 /* An end nearer to the start than this angle means a full circle: 0.1 um at a radius of 100 mm,
  * less than a pulse, so no program can mean the tiny arc. [rad] */
@@ -98,7 +98,7 @@ enum path_status path_arc_within(struct path *p, enum path_plane plane, const do
     p->radius = r0;
     p->growth = r1 - r0;
     p->angle = el_atan2(sb, sa);
-    double turn = el_atan2(sa * eb - sb * ea, sa * ea + sb * eb);  /* -pi..pi, ccw positive */
+    double turn = el_atan2(sa * eb - sb * ea, sa * ea + sb * eb); /* -pi..pi, ccw positive */
     if (!ccw) {
         turn = -turn;
     }
@@ -111,7 +111,7 @@ enum path_status path_arc_within(struct path *p, enum path_plane plane, const do
     p->sweep = ccw ? turn : -turn;
     const double way[3] = { (r0 + 0.5 * p->growth) * p->sweep, p->growth, end[n] - start[n] };
     p->length = norm3(way);
-    return p->length > 0.0 ? PATH_OK : PATH_NO_RADIUS;     /* 0: its square underflows */
+    return p->length > 0.0 ? PATH_OK : PATH_NO_RADIUS; /* 0: its square underflows */
 }
 
 enum path_status path_tilted(struct path *p, const double start[AXES], const double end[AXES],
@@ -150,7 +150,7 @@ enum path_status path_tilted_by_point(const double start[3], const double via[3]
     }
     cross(x, y, n);
     const double xx = dot(x, x), yy = dot(y, y), nn = dot(n, n), twice = sqrt(nn);
-    if (!(twice > 1e-12 * (xx + yy))) {     /* flatter than rounding: radius unknown */
+    if (!(twice > 1e-12 * (xx + yy))) { /* flatter than rounding: radius unknown */
         return PATH_OPEN;
     }
     /* The middle lies at (|x|^2 (y x n) + |y|^2 (n x x)) / (2 |n|^2) from the start. */
@@ -169,8 +169,8 @@ enum path_status path_tilted_by_point(const double start[3], const double via[3]
 }
 
 enum path_status path_centre_by_radius(enum path_plane plane, const double start[AXES],
-                                       const double end[AXES], double r, bool ccw,
-                                       double tolerance, double centre[2], double *half)
+                                       const double end[AXES], double r, bool ccw, double tolerance,
+                                       double centre[2], double *half)
 {
     const int a = path_first(plane), b = path_second(plane);
     const double da = end[a] - start[a], db = end[b] - start[b];
@@ -196,16 +196,16 @@ enum path_status path_centre_by_radius(enum path_plane plane, const double start
 }
 
 enum path_status path_centre_by_point(enum path_plane plane, const double start[AXES],
-                                      const double via[2], const double end[AXES],
-                                      double centre[2], bool *ccw)
+                                      const double via[2], const double end[AXES], double centre[2],
+                                      bool *ccw)
 {
     const double xa = via[0] - start[path_first(plane)], xb = via[1] - start[path_second(plane)];
     const double ya = end[path_first(plane)] - start[path_first(plane)];
     const double yb = end[path_second(plane)] - start[path_second(plane)];
-    const double cross = xa * yb - xb * ya;     /* twice the area of the triangle */
+    const double cross = xa * yb - xb * ya; /* twice the area of the triangle */
     const double xx = xa * xa + xb * xb, yy = ya * ya + yb * yb;
 
-    if (!(fabs(cross) > 1e-12 * (xx + yy))) {   /* flatter than rounding: radius unknown */
+    if (!(fabs(cross) > 1e-12 * (xx + yy))) { /* flatter than rounding: radius unknown */
         return PATH_OPEN;
     }
     centre[0] = start[path_first(plane)] + (xx * yb - yy * xb) / (2.0 * cross);
@@ -267,7 +267,7 @@ static void tilted_at(const struct path *p, double part, double point[AXES], dou
 void path_at(const struct path *p, double s, double point[AXES], double slope[AXES])
 {
     const double part = p->length > 0.0 ? s / p->length : 1.0;
-    const double per = p->length > 0.0 ? 1.0 / p->length : 0.0;     /* d(part)/ds [1/mm] */
+    const double per = p->length > 0.0 ? 1.0 / p->length : 0.0; /* d(part)/ds [1/mm] */
 
     for (int i = 0; i < AXES; i++) {
         const double way = p->end[i] - p->start[i];
@@ -318,7 +318,7 @@ double path_bend(const struct path *p)
     if (!p->arc) {
         return p->cubic ? p->bezier.bend : 0.0;
     }
-    const double per = p->sweep / p->length;    /* [rad/mm] */
+    const double per = p->sweep / p->length; /* [rad/mm] */
     return el_max(p->radius, p->radius + p->growth) * per * per;
 }
 
@@ -381,12 +381,10 @@ static double straight_at(const struct path *p, int axis, double s)
 {
     const double part = p->length > 0.0 ? s / p->length : 1.0;
 
-    return part >= 1.0 ? p->end[axis]
-                       : p->start[axis] + (p->end[axis] - p->start[axis]) * part;
+    return part >= 1.0 ? p->end[axis] : p->start[axis] + (p->end[axis] - p->start[axis]) * part;
 }
 
-void path_extent(const struct path *p, int axis, double from, double to, double *low,
-                 double *high)
+void path_extent(const struct path *p, int axis, double from, double to, double *low, double *high)
 {
     double a[AXES], b[AXES], slope[AXES];
 

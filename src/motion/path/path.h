@@ -19,32 +19,32 @@ enum path_plane { PATH_YZ, PATH_ZX, PATH_XY, PATH_TILTED };
 /* Why there is no arc. */
 enum path_status {
     PATH_OK,
-    PATH_NO_RADIUS,     /* radius zero */
-    PATH_MISSES_END,    /* start and end have different distances from the centre */
-    PATH_SHORT_RADIUS,  /* radius smaller than half the distance start - end */
-    PATH_CUSP,          /* a curve turns on the spot */
-    PATH_OPEN           /* R form with end = start, or three points on one line */
+    PATH_NO_RADIUS,    /* radius zero */
+    PATH_MISSES_END,   /* start and end have different distances from the centre */
+    PATH_SHORT_RADIUS, /* radius smaller than half the distance start - end */
+    PATH_CUSP,         /* a curve turns on the spot */
+    PATH_OPEN          /* R form with end = start, or three points on one line */
 };
 
 struct path {
-    bool   arc;
-    bool   cubic;                   /* neither of them: a line */
+    bool arc;
+    bool cubic; /* neither of them: a line */
     enum path_plane plane;
-    double start[AXES], end[AXES];  /* [mm] */
+    double start[AXES], end[AXES]; /* [mm] */
     union {
-        struct {                            /* an arc: */
-            double centre[2];               /* [mm] in the plane's first and second axis */
-            double middle[3], normal[3];    /* a tilted arc: centre [mm], unit vector */
-            double radius;                  /* [mm] at the start */
-            double growth;                  /* [mm] radius at the end - radius at the start;
-                                             * rounding of the program makes it, and keeps start
-                                             * and end exact */
-            double angle;                   /* [rad] where it starts, seen from the normal's end */
-            double sweep;                   /* [rad] counter-clockwise positive */
+        struct {                         /* an arc: */
+            double centre[2];            /* [mm] in the plane's first and second axis */
+            double middle[3], normal[3]; /* a tilted arc: centre [mm], unit vector */
+            double radius;               /* [mm] at the start */
+            double growth;               /* [mm] radius at the end - radius at the start;
+                                          * rounding of the program makes it, and keeps start
+                                          * and end exact */
+            double angle;                /* [rad] where it starts, seen from the normal's end */
+            double sweep;                /* [rad] counter-clockwise positive */
         };
-        struct bezier bezier;               /* a cubic */
+        struct bezier bezier; /* a cubic */
     };
-    double length;                  /* [mm] */
+    double length; /* [mm] */
 };
 
 /* First and second axis of a plane: XY, YZ, ZX, not of a tilted one. */
@@ -56,7 +56,7 @@ void path_line(struct path *p, const double start[AXES], const double end[AXES])
 /* How far an arc may miss its end: `least` whatever the radius, and up to 100 times that `share` of
  * the larger radius. The radius then changes evenly along the arc. */
 struct path_tolerance {
-    double least;       /* [mm] */
+    double least; /* [mm] */
     double share;
 };
 
@@ -86,13 +86,13 @@ enum path_status path_tilted_by_point(const double start[3], const double via[3]
  * half the distance by a tolerance [mm] makes half a circle.
  * *half is half the distance from start to end [mm]. */
 enum path_status path_centre_by_radius(enum path_plane plane, const double start[AXES],
-                                       const double end[AXES], double r, bool ccw,
-                                       double tolerance, double centre[2], double *half);
+                                       const double end[AXES], double r, bool ccw, double tolerance,
+                                       double centre[2], double *half);
 
 /* Centre and direction of the arc start - via - end. */
 enum path_status path_centre_by_point(enum path_plane plane, const double start[AXES],
-                                      const double via[2], const double end[AXES],
-                                      double centre[2], bool *ccw);
+                                      const double via[2], const double end[AXES], double centre[2],
+                                      bool *ccw);
 
 /* Curve of Bezier with two inner control points; a line if it is one. PATH_CUSP: it turns on the
  * spot, or at a radius below 0.1 um. */
@@ -112,7 +112,6 @@ double path_bend(const struct path *p);
 double path_twist(const struct path *p);
 
 /* Smallest and largest coordinate of one axis between two arc lengths, the exact ones. [mm] */
-void path_extent(const struct path *p, int axis, double from, double to, double *low,
-                 double *high);
+void path_extent(const struct path *p, int axis, double from, double to, double *low, double *high);
 
 #endif

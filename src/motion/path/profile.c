@@ -30,7 +30,7 @@ static void plan_trapezoid(struct profile *p, const struct profile_limits *l)
 {
     const double v = p->v0, acc = l->ramp.acc, dec = l->ramp.dec;
     const double way = el_max(0.0, p->length - p->s0);
-    const double brake = v * v / (2.0 * dec);   /* way to rest from now */
+    const double brake = v * v / (2.0 * dec); /* way to rest from now */
 
     memset(p->time, 0, sizeof p->time);
     memset(p->acc, 0, sizeof p->acc);

@@ -16,21 +16,21 @@
 enum { PROFILE_PHASES = 3 };
 
 struct profile {
-    double s0, v0;                  /* [mm], [mm/s] where the plan begins */
-    double length;                  /* [mm] end of the path */
-    double time[PROFILE_PHASES];    /* [s] duration of each phase */
-    double acc[PROFILE_PHASES];     /* [mm/s^2] of a trapezoid */
-    double t;                       /* [s] since the plan began */
-    double tail;                    /* [s] when the deceleration that ends at length begins */
-    double total;                   /* [s] */
-    bool   ends;                    /* true: total is the end of the path; false: rest before it */
-    bool   smooth;                  /* ramps are S-shaped, as below */
+    double s0, v0;               /* [mm], [mm/s] where the plan begins */
+    double length;               /* [mm] end of the path */
+    double time[PROFILE_PHASES]; /* [s] duration of each phase */
+    double acc[PROFILE_PHASES];  /* [mm/s^2] of a trapezoid */
+    double t;                    /* [s] since the plan began */
+    double tail;                 /* [s] when the deceleration that ends at length begins */
+    double total;                /* [s] */
+    bool ends;                   /* true: total is the end of the path; false: rest before it */
+    bool smooth;                 /* ramps are S-shaped, as below */
     struct ramp rise, fall;
 };
 
 struct profile_limits {
-    double speed;               /* [mm/s] target; 0 brings the motion to rest on the path */
-    struct ramp_limits ramp;    /* both jerks 0: a trapezoid */
+    double speed;            /* [mm/s] target; 0 brings the motion to rest on the path */
+    struct ramp_limits ramp; /* both jerks 0: a trapezoid */
 };
 
 /* Plan from a start (0 <= s <= length, v >= 0) to rest at length, or at once if the target is 0.

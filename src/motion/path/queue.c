@@ -11,7 +11,7 @@ double outputs_spindle(const struct outputs_surface *s, double most, double x)
     if (s->speed == 0.0) {
         return most;
     }
-    const double speed = s->speed / (TURN * fabs(x - s->centre)) * 60.0;    /* no bound at X0 */
+    const double speed = s->speed / (TURN * fabs(x - s->centre)) * 60.0; /* no bound at X0 */
     return copysign(el_min(speed, fabs(most)), most);
 }
 

@@ -41,8 +41,7 @@ static struct scurve_limits limits(const struct scurve_start *from, double speed
     return (struct scurve_limits){ el_max(fabs(from->v), speed) + 1.0, l->acc, l->dec, jerk };
 }
 
-void ramp_plan(struct ramp *r, struct scurve_start from, double speed,
-               const struct ramp_limits *l)
+void ramp_plan(struct ramp *r, struct scurve_start from, double speed, const struct ramp_limits *l)
 {
     from = begin(from, l);
     r->ease.total = 0.0;
@@ -67,7 +66,7 @@ double ramp_way(struct scurve_start from, double speed, const struct ramp_limits
     if (turns(&from, speed, l)) {
         const double eased = ramp_eased(&from, l), jerk = jerk_of(l, from.a > 0.0);
         const double t = fabs(from.a) / jerk;
-        way = t * (from.v + t * from.a / 3.0);      /* jerk -a/t: a t^2/2 - a t^2/6 */
+        way = t * (from.v + t * from.a / 3.0); /* jerk -a/t: a t^2/2 - a t^2/6 */
         from = (struct scurve_start){ 0.0, eased, 0.0 };
     }
     const bool up = from.a > 0.0 || (from.a == 0.0 && speed > from.v);
@@ -101,8 +100,7 @@ struct ramp_rule ramp_to(const struct ramp_rule *r, double speed)
     return (struct ramp_rule){ .acc = acc, .jerk = acc / (0.5 * r->share * r->time) };
 }
 
-struct ramp_limits ramp_both(const struct ramp_rule *up, const struct ramp_rule *down,
-                             double speed)
+struct ramp_limits ramp_both(const struct ramp_rule *up, const struct ramp_rule *down, double speed)
 {
     const struct ramp_rule acc = ramp_to(up, speed), dec = ramp_to(down, speed);
     return (struct ramp_limits){ acc.acc, dec.acc, acc.jerk, dec.jerk };

@@ -13,16 +13,16 @@
 /* Acceleration and deceleration, both > 0, each with its own jerk; a jerk of 0 means unlimited (a
  * trapezium), else the ramp is S-shaped. */
 struct ramp_limits {
-    double acc, dec;            /* [mm/s^2] */
-    double acc_jerk, dec_jerk;  /* [mm/s^3] */
+    double acc, dec;           /* [mm/s^2] */
+    double acc_jerk, dec_jerk; /* [mm/s^3] */
 };
 
 /* What one change of speed keeps to, given by numbers, or by the time it takes. */
 struct ramp_rule {
-    double acc;             /* [mm/s^2] */
-    double jerk;            /* [mm/s^3]; 0 unlimited */
-    double time;            /* [s] > 0: from rest to any speed; acc and jerk follow from it */
-    double share;           /* 0..1 part of it in which the acceleration changes; 0: at once */
+    double acc;   /* [mm/s^2] */
+    double jerk;  /* [mm/s^3]; 0 unlimited */
+    double time;  /* [s] > 0: from rest to any speed; acc and jerk follow from it */
+    double share; /* 0..1 part of it in which the acceleration changes; 0: at once */
 };
 
 /* A rule by numbers that does for a speed [mm/s] what this one does; its own time is 0. */
@@ -34,13 +34,12 @@ struct ramp_limits ramp_both(const struct ramp_rule *up, const struct ramp_rule 
 
 struct ramp {
     struct scurve ease, change;
-    double total;               /* [s] */
-    double s1;                  /* [mm] where it ends */
+    double total; /* [s] */
+    double s1;    /* [mm] where it ends */
 };
 
 /* Fastest ramp from a start to a speed >= 0. */
-void ramp_plan(struct ramp *r, struct scurve_start from, double speed,
-               const struct ramp_limits *l);
+void ramp_plan(struct ramp *r, struct scurve_start from, double speed, const struct ramp_limits *l);
 
 /* Way of that ramp, without planning it. [mm] */
 double ramp_way(struct scurve_start from, double speed, const struct ramp_limits *l);

@@ -14,8 +14,8 @@ _Static_assert(SCURVE_PHASES == SCURVE_LEG_BRAKES + SCURVE_LEG_PHASES, "brake, t
 
 /* The phases of a plan before they are put together. */
 struct parts {
-    double t[PHASES];       /* [s] durations */
-    double j[PHASES];       /* [mm/s^3] */
+    double t[PHASES]; /* [s] durations */
+    double j[PHASES]; /* [mm/s^3] */
 };
 
 /* The parts from this one on are counted back from the end: what rounding leaves over lies before
@@ -49,7 +49,7 @@ static enum scurve_status assemble(struct scurve *p, const struct scurve_start *
 {
     struct scurve_phase f = { .s = from->s, .v = from->v, .a = from->a };
     struct scurve_phase b = { .s = p->s1, .v = p->v1 };
-    double end[PHASES + 1] = { 0 };     /* of the part before */
+    double end[PHASES + 1] = { 0 }; /* of the part before */
     int n = 0;
 
     for (int i = 0; i < PHASES; i++) {
@@ -92,7 +92,7 @@ static enum scurve_status usable(const struct scurve_start *from, double s1, dou
 {
     /* Any number times 0 is 0, but infinity and not-a-number are not. */
     const double sum = 0.0 * from->s + 0.0 * from->v + 0.0 * from->a + 0.0 * s1 + 0.0 * v1
-                     + 0.0 * l->speed + 0.0 * l->acc + 0.0 * l->dec + 0.0 * l->jerk;
+                       + 0.0 * l->speed + 0.0 * l->acc + 0.0 * l->dec + 0.0 * l->jerk;
     if (!(sum == 0.0)) {
         return SCURVE_NOT_FINITE;
     }
@@ -107,8 +107,8 @@ static struct scurve_leg leg_of(const struct scurve_start *from, double way, dou
                                 const struct scurve_limits *l)
 {
     const double u = 1.0 / l->jerk;
-    return (struct scurve_leg){ from->v * u, from->a * u, way * u, v1 * u,
-                                l->acc * u, l->dec * u, l->speed * u };
+    return (struct scurve_leg){ from->v * u, from->a * u, way * u,     v1 * u,
+                                l->acc * u,  l->dec * u,  l->speed * u };
 }
 
 /* Jerks of the parts, of a leg seen in direction sign. */
@@ -122,8 +122,8 @@ static void set_jerks(struct parts *q, double sign, double jerk)
     }
 }
 
-enum scurve_status scurve_plan_through(struct scurve *p, const struct scurve_start *from,
-                                       double s1, double v1, const struct scurve_limits *l)
+enum scurve_status scurve_plan_through(struct scurve *p, const struct scurve_start *from, double s1,
+                                       double v1, const struct scurve_limits *l)
 {
     enum scurve_status status = usable(from, s1, v1, l);
     if (status == SCURVE_OK && fabs(v1) > l->speed) {
@@ -222,7 +222,7 @@ double scurve_slowest(const struct scurve *p)
     double least = p->v1, s, v, a, begin = 0.0;
     for (int i = 0; i < p->count; i++) {
         const struct scurve_phase *f = &p->phase[i];
-        const double turn = f->j != 0.0 ? f->t - f->a / f->j : begin;   /* where a = 0 */
+        const double turn = f->j != 0.0 ? f->t - f->a / f->j : begin; /* where a = 0 */
         follow(f, begin - f->t, &s, &v, &a);
         least = el_min(least, v);
         if (turn > begin && turn < f->end) {

@@ -19,34 +19,34 @@ enum { SCURVE_PHASES = 9 };
 
 enum scurve_status {
     SCURVE_OK = 0,
-    SCURVE_NOT_FINITE = -1,     /* a start, target or limit is infinite or not a number */
-    SCURVE_LIMITS = -2,         /* a limit is not above 0 */
-    SCURVE_TARGET = -3,         /* the target speed is beyond the speed limit */
-    SCURVE_RANGE = -4           /* the numbers lie so far apart that the result overflows */
+    SCURVE_NOT_FINITE = -1, /* a start, target or limit is infinite or not a number */
+    SCURVE_LIMITS = -2,     /* a limit is not above 0 */
+    SCURVE_TARGET = -3,     /* the target speed is beyond the speed limit */
+    SCURVE_RANGE = -4       /* the numbers lie so far apart that the result overflows */
 };
 
 struct scurve_limits {
-    double speed;       /* [mm/s] */
-    double acc, dec;    /* [mm/s^2] greatest acceleration, greatest deceleration */
-    double jerk;        /* [mm/s^3] */
+    double speed;    /* [mm/s] */
+    double acc, dec; /* [mm/s^2] greatest acceleration, greatest deceleration */
+    double jerk;     /* [mm/s^3] */
 };
 
 struct scurve_start {
-    double s, v, a;     /* [mm], [mm/s], [mm/s^2] */
+    double s, v, a; /* [mm], [mm/s], [mm/s^2] */
 };
 
 /* Constant jerk until `end`; s, v, a are those at the moment t, one of the phase's two ends. */
 struct scurve_phase {
-    double end, t;      /* [s] since the plan began */
-    double s, v, a;     /* [mm], [mm/s], [mm/s^2] */
-    double j;           /* [mm/s^3] */
+    double end, t;  /* [s] since the plan began */
+    double s, v, a; /* [mm], [mm/s], [mm/s^2] */
+    double j;       /* [mm/s^3] */
 };
 
 struct scurve {
     struct scurve_phase phase[SCURVE_PHASES];
-    int32_t count;      /* phases in use, each longer than 0 */
-    double total;       /* [s] */
-    double s1, v1;      /* [mm], [mm/s] at the end and for ever after; a is 0 there */
+    int32_t count; /* phases in use, each longer than 0 */
+    double total;  /* [s] */
+    double s1, v1; /* [mm], [mm/s] at the end and for ever after; a is 0 there */
 };
 
 /* Plan the fastest way to rest at s1. Any start is allowed. One above the speed limit, or bound to
@@ -57,8 +57,8 @@ enum scurve_status scurve_plan(struct scurve *p, const struct scurve_start *from
 
 /* Plan the fastest way past s1 with speed v1 (-speed .. speed) and a = 0. Every target can be
  * reached, but one nearer than scurve_way() may need a run-up backwards: see scurve_slowest(). */
-enum scurve_status scurve_plan_through(struct scurve *p, const struct scurve_start *from,
-                                       double s1, double v1, const struct scurve_limits *l);
+enum scurve_status scurve_plan_through(struct scurve *p, const struct scurve_start *from, double s1,
+                                       double v1, const struct scurve_limits *l);
 
 /* Plan the fastest way to speed v1 with a = 0, wherever that is: p->s1. For hold (v1 = 0) and
  * override. Neither start nor target need be within the speed limit. */

@@ -71,7 +71,7 @@ void scurve_leg_brake(struct scurve_leg *l, int speed, double jerk[SCURVE_LEG_BR
             slow_down(&seen, more);
             advance(l, -sign, more[0]);
             advance(l, 0.0, more[1]);
-            jerk[0] = more[0] > 0.0 ? -sign : jerk[0];  /* 0 if a came down from the other edge */
+            jerk[0] = more[0] > 0.0 ? -sign : jerk[0]; /* 0 if a came down from the other edge */
             t[0] += more[0];
             t[1] = more[1];
             break;
@@ -110,7 +110,7 @@ double scurve_leg_speed(const struct scurve_leg *l, double t[SCURVE_LEG_PHASES],
     const double start = a * (a * a / 3.0 - l->v);
     double noise, x = scurve_leg_peak(l->v1 - base, l->acc, &t[1]);
     if (lacking(l, &noise) <= noise) {
-        x = a;      /* on the last phase: v1 - base would leave sqrt(noise) instead */
+        x = a; /* on the last phase: v1 - base would leave sqrt(noise) instead */
         t[1] = noise = 0.0;
     }
     const double half = x + t[1] / 2.0;
@@ -118,6 +118,6 @@ double scurve_leg_speed(const struct scurve_leg *l, double t[SCURVE_LEG_PHASES],
     t[2] = x;
     t[3] = t[4] = t[5] = t[6] = 0.0;
     *rounding = ROUNDING * (fabs(l->v * a) + fabs(start) + sum * half)
-              + (noise > 0.0 ? sum * noise / x : 0.0);
+                + (noise > 0.0 ? sum * noise / x : 0.0);
     return start + (base + l->v1) * half;
 }

@@ -9,10 +9,10 @@
 enum { SCURVE_LEG_PHASES = 7, SCURVE_LEG_BRAKES = 2 };
 
 struct scurve_leg {
-    double v, a;        /* [s^2], [s] start */
-    double way, v1;     /* [s^3], [s^2] target, reached with a = 0 */
-    double acc, dec;    /* [s] -dec <= a <= acc */
-    double top;         /* [s^2] -top <= v <= top */
+    double v, a;     /* [s^2], [s] start */
+    double way, v1;  /* [s^3], [s^2] target, reached with a = 0 */
+    double acc, dec; /* [s] -dec <= a <= acc */
+    double top;      /* [s^2] -top <= v <= top */
 };
 
 /* Jerk, as a multiple of the leg's own, of the phases that the functions below give times of. */

@@ -63,12 +63,12 @@ static double root(const double c[4], double low, double guess, double high)
 }
 
 struct pulses {
-    double base, v1, acc, dec;      /* [s^2], [s^2], [s], [s] as above */
-    double way;                     /* [s^3] way' as above */
+    double base, v1, acc, dec; /* [s^2], [s^2], [s], [s] as above */
+    double way;                /* [s^3] way' as above */
 };
 
 struct shape {
-    double x, hold_acc, cruise, y, hold_dec;    /* [s] */
+    double x, hold_acc, cruise, y, hold_dec; /* [s] */
 };
 
 struct range {
@@ -97,7 +97,7 @@ static struct shape triangles(const struct pulses *p, struct range range)
 {
     const double d = p->v1 - p->base;
     const double c[4] = { -d * d, -4.0 * p->way, 4.0 * (p->base + p->v1), 0.0 };
-    const double rest = el_cbrt(4.0 * p->way);     /* the root if base = v1 = 0 */
+    const double rest = el_cbrt(4.0 * p->way); /* the root if base = v1 = 0 */
     const double u = root(c, range.low, rest, range.high);
     const double skew = u > 0.0 ? d / u : 0.0;
     return (struct shape){ .x = (u + skew) / 2.0, .y = (u - skew) / 2.0 };
@@ -108,8 +108,8 @@ static struct shape triangles(const struct pulses *p, struct range range)
  *         + (flat + free) (free - flat + m^2) - 2 m way = 0 */
 static double held(double flat, double free, double m, double way, struct range z)
 {
-    const double c[4] = { (flat + free) * (free - flat + m * m) - 2.0 * m * way,
-                          4.0 * m * free, 2.0 * free + m * m, 2.0 * m };
+    const double c[4] = { (flat + free) * (free - flat + m * m) - 2.0 * m * way, 4.0 * m * free,
+                          2.0 * free + m * m, 2.0 * m };
     /* The root if flat = free = 0: z^2 + m z = sqrt(2 m way). */
     const double q = sqrt(el_max(0.0, -c[0])), rest = q / (m / 2.0 + sqrt(m * m / 4.0 + q));
     return root(c, z.low, rest, z.high);
@@ -134,11 +134,12 @@ static struct shape both_held(const struct pulses *p)
 {
     const double a = p->acc, d = p->dec;
     const double q = (2.0 * p->way + p->base * (p->base / a - a) + p->v1 * (p->v1 / d - d))
-                   / (1.0 / a + 1.0 / d);
+                     / (1.0 / a + 1.0 / d);
     const double half = a * d / 2.0;
     const double w = q / (half + sqrt(el_max(0.0, half * half + q)));
-    return (struct shape){ .x = a, .hold_acc = (w - p->base) / a - a,
-                           .y = d, .hold_dec = (w - p->v1) / d - d };
+    return (struct shape){
+        .x = a, .hold_acc = (w - p->base) / a - a, .y = d, .hold_dec = (w - p->v1) / d - d
+    };
 }
 
 /* The peak x >= 0: w rises with T from `low` to top, the cases change at two corners. */
@@ -177,8 +178,7 @@ static int sag_held(const struct pulses *p, struct range x, struct shape *s)
     /* d way/dT = x^2 + dec x/2 + base: its smaller zero is a local maximum. */
     const double root = p->dec * p->dec - 16.0 * p->base;
     const double top = -(p->dec + sqrt(el_max(0.0, root))) / 4.0;
-    if (root > 0.0 && top > x.low && top < x.high
-        && way_of(p, p->base + top * top, 1) >= p->way) {
+    if (root > 0.0 && top > x.low && top < x.high && way_of(p, p->base + top * top, 1) >= p->way) {
         x.high = top;
     } else if (way_of(p, p->base + x.high * x.high, 1) < p->way) {
         return 0;
@@ -208,7 +208,7 @@ static int sag_free(const struct pulses *p, struct range u, struct shape *s)
 /* The peak stays below 0: x from a < 0 to 0, w falls with T to base. */
 static int sagging(const struct pulses *p, double a, struct shape *s)
 {
-    const double loss = p->base - p->v1, held_to = p->dec * p->dec - loss;   /* x^2 where y = dec */
+    const double loss = p->base - p->v1, held_to = p->dec * p->dec - loss; /* x^2 where y = dec */
     double low = a;
     if (a * a > held_to) {
         const double high = held_to > 0.0 ? -sqrt(held_to) : 0.0;

@@ -80,8 +80,8 @@ static double feed_limit(const struct pace_cell *c, double override)
 /* Most x at the end of cell i, if so many cells are known. */
 static double end_limit(const struct pace *p, int32_t i, int32_t known, double override)
 {
-    return i + 1 < known
-        ? el_min(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most) : 0.0;
+    return i + 1 < known ? el_min(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most)
+                         : 0.0;
 }
 
 /* Plan from the end backwards. Once a cell that is not new comes out as it was, those before it
@@ -112,9 +112,9 @@ static void plan(struct pace *p, double override)
 
 /* A stretch of constant acceleration. */
 struct stretch {
-    double acc;     /* [mm/s^2] */
-    double way;     /* [mm] */
-    double x;       /* [mm^2/s^2] at its end */
+    double acc; /* [mm/s^2] */
+    double way; /* [mm] */
+    double x;   /* [mm^2/s^2] at its end */
 };
 
 /* The stretch to the end of the cell, with at most x1 there. */
@@ -133,7 +133,8 @@ static struct stretch halt(const struct pace_cell *c, double left, double x)
     const double to = c->bend * x > SLIGHT ? 0.5 * x : 0.0;
 
     return acc < 0.0 && x - to < -2.0 * acc * left
-        ? (struct stretch){ acc, (x - to) / (-2.0 * acc), to } : across(acc, left, x, INFINITY);
+               ? (struct stretch){ acc, (x - to) / (-2.0 * acc), to }
+               : across(acc, left, x, INFINITY);
 }
 
 /* A line that x keeps below: its value now, and how much it falls each mm. */
@@ -162,8 +163,8 @@ static struct stretch hurry(const struct pace_cell *c, double left, double x, do
         }
     }
     return acc > 0.0 && x + 2.0 * acc * left > until
-        ? (struct stretch){ acc, (until - x) / (2.0 * acc), until }
-        : across(acc, left, x, x1);
+               ? (struct stretch){ acc, (until - x) / (2.0 * acc), until }
+               : across(acc, left, x, x1);
 }
 
 /* What comes next where the limits allow more than the feed: up or down to it, along it, and down
@@ -181,8 +182,8 @@ static struct stretch next_feed(const struct pace_cell *c, double left, double x
         if (x > line) {
             way = steeper > 0.0 ? el_max(way, (x - line) / steeper) : left;
         }
-        return way < s.way
-            ? (struct stretch){ s.acc, way, el_min(most, x1 + slope * (left - way)) } : s;
+        return way < s.way ? (struct stretch){ s.acc, way, el_min(most, x1 + slope * (left - way)) }
+                           : s;
     }
     if (x >= goal * (1.0 - SAME)) {
         if (line <= most * (1.0 + SAME)) {
@@ -266,8 +267,8 @@ static double length_at(const struct pace *p, int32_t i)
 static double advance(struct pace *p, double override, double dt)
 {
     cross(p);
-    if (override > 0.0 && (override != p->override ||
-                           PLAN_SHARE * (p->count - p->at.planned) > p->at.planned)) {
+    if (override > 0.0
+        && (override != p->override || PLAN_SHARE * (p->count - p->at.planned) > p->at.planned)) {
         plan(p, override);
     }
     while (dt > 0.0 && !pace_at_end(p)) {
@@ -276,8 +277,8 @@ static double advance(struct pace *p, double override, double dt)
             p->at.gain = 0.0;
             return 0.0;
         }
-        const struct stretch s = override > 0.0 ? next(p, x, override)
-                                                : halt(cell_peek(p, 0), p->at.left, x);
+        const struct stretch s =
+            override > 0.0 ? next(p, x, override) : halt(cell_peek(p, 0), p->at.left, x);
         dt -= drive(p, &s, dt);
         cross(p);
     }
@@ -286,8 +287,7 @@ static double advance(struct pace *p, double override, double dt)
 
 double pace_advance(struct pace *p, double override, double dt)
 {
-    const double left = p->smooth ? pace_smooth_advance(p, override, dt)
-                                  : advance(p, override, dt);
+    const double left = p->smooth ? pace_smooth_advance(p, override, dt) : advance(p, override, dt);
 
     if (p->count > 0) {
         const double way = p->at.base + (length_at(p, 0) - p->at.left);
@@ -343,7 +343,7 @@ void pace_put(struct pace *p, const struct pace_place *place)
     p->at = *place;
     p->at.planned = planned;
     p->count += crossed;
-    if (p->at.way <= 0.0 && p->count > 0) {     /* no cell was known, or the first has grown */
+    if (p->at.way <= 0.0 && p->count > 0) { /* no cell was known, or the first has grown */
         p->at.left = length_at(p, 0);
     }
 }

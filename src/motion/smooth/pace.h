@@ -21,34 +21,34 @@ enum { PACE_CELLS = 1024, PACE_KEPT = 256 };
 
 /* Where the motion is. */
 struct pace_place {
-    int32_t head;           /* its cell */
-    int32_t planned;        /* cells from there on that the latest plan knows */
-    double  base;           /* [mm] start of that cell, from the start of the chain */
-    double  left;           /* [mm] to the end of that cell */
-    double  way;            /* [mm] since the start of the chain */
-    double  rate, gain, twitch;     /* [mm/s], [mm/s^2], [mm/s^3] derivatives of the way */
+    int32_t head;              /* its cell */
+    int32_t planned;           /* cells from there on that the latest plan knows */
+    double base;               /* [mm] start of that cell, from the start of the chain */
+    double left;               /* [mm] to the end of that cell */
+    double way;                /* [mm] since the start of the chain */
+    double rate, gain, twitch; /* [mm/s], [mm/s^2], [mm/s^3] derivatives of the way */
 
     /* with limited jerk */
-    double  here;           /* [mm] from the start of the chain */
-    struct pace_state state;        /* speed between two steps */
-    struct pace_step step;  /* the step under way, if there is one */
-    double  spent, origin, goal;    /* [s] since its start; [mm] its start and end on the chain */
-    double  asked;          /* the latest override */
+    double here;                /* [mm] from the start of the chain */
+    struct pace_state state;    /* speed between two steps */
+    struct pace_step step;      /* the step under way, if there is one */
+    double spent, origin, goal; /* [s] since its start; [mm] its start and end on the chain */
+    double asked;               /* the latest override */
 };
 
 struct pace {
     struct pace_limits limits;
-    bool    smooth;         /* jerk is limited: boxes and plans, else cells */
-    int32_t reach;          /* boxes of the latest plan, if there was no room for all; else 0 */
-    int32_t held;           /* index of the plan in force */
-    bool    pending;        /* the other one will be, as soon as the motion can turn into it */
+    bool smooth;   /* jerk is limited: boxes and plans, else cells */
+    int32_t reach; /* boxes of the latest plan, if there was no room for all; else 0 */
+    int32_t held;  /* index of the plan in force */
+    bool pending;  /* the other one will be, as soon as the motion can turn into it */
     struct pace_place at;
-    int32_t count;          /* cells from that of the motion on */
-    bool    closed;         /* no further piece joins */
-    double  override;       /* the one of the latest plan */
-    double  end;            /* [mm] end of the pieces, from the start of the chain */
+    int32_t count;   /* cells from that of the motion on */
+    bool closed;     /* no further piece joins */
+    double override; /* the one of the latest plan */
+    double end;      /* [mm] end of the pieces, from the start of the chain */
     union pace_element ring[PACE_CELLS];
-    struct pace_plan plan[2];       /* with limited jerk */
+    struct pace_plan plan[2]; /* with limited jerk */
 };
 
 /* Back to an earlier place, from which fewer than PACE_KEPT cells have been crossed. */

@@ -131,8 +131,8 @@ static void add_row(struct pace_box *g, const struct range r[3], double acc, dou
 static void path_rule(struct pace_box *g, const struct piece *p, const struct piece_bounds *b)
 {
     const double acc = 1.0 / el_min(p->ramp.acc, p->ramp.dec);
-    const double jerk = el_max(inverse(p->ramp.acc_jerk, p->ramp.acc),
-                               inverse(p->ramp.dec_jerk, p->ramp.dec));
+    const double jerk =
+        el_max(inverse(p->ramp.acc_jerk, p->ramp.acc), inverse(p->ramp.dec_jerk, p->ramp.dec));
     struct pace_pull way;
     const double across = pace_pull_path(&way, p, g->length, b);
     struct range along[3], all[3] = { { 0.0, 0.0 } };
@@ -278,8 +278,7 @@ double pace_step_top(struct pace_state from, double c, double s)
 {
     const struct pace_state to = pace_step_to(from, c, s);
 
-    return from.b > 0.0 && to.b < 0.0 ? from.x - from.b * from.b / (2.0 * c)
-                                      : larger(from.x, to.x);
+    return from.b > 0.0 && to.b < 0.0 ? from.x - from.b * from.b / (2.0 * c) : larger(from.x, to.x);
 }
 
 /* Most of f + slope u + curve u^2 / 2 over a step. */
@@ -322,12 +321,13 @@ bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, 
         const struct range of_c = scaled(r->jerk[0], 0.5 * c), of_b = scaled(r->jerk[1], 1.5);
         const double acc = 0.5 * extent(r->acc[0]) * b + extent(r->acc[1]) * x;
         const double jerk = size(of_c) + size(of_b) * b + extent(r->jerk[2]) * x;
-        if (acc > 1.0 && most_of(scaled(r->acc[0], 0.5), wide(r->acc[1]), none, from, c, s)
-                         > 1.0 + ROUNDING) {
+        if (acc > 1.0
+            && most_of(scaled(r->acc[0], 0.5), wide(r->acc[1]), none, from, c, s)
+                   > 1.0 + ROUNDING) {
             return false;
         }
-        if (v * jerk > 1.0 && v * most_of(of_b, wide(r->jerk[2]), of_c, from, c, s)
-                              > 1.0 + ROUNDING) {
+        if (v * jerk > 1.0
+            && v * most_of(of_b, wide(r->jerk[2]), of_c, from, c, s) > 1.0 + ROUNDING) {
             return false;
         }
     }

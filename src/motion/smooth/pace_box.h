@@ -16,23 +16,23 @@ struct pace_bound {
 
 /* A limit of an axis, or of the path: bounds over what is allowed. */
 struct pace_row {
-    struct pace_bound acc[2];   /* r' [s^2/mm], r'' [s^2/mm^2] over the acceleration */
-    struct pace_bound jerk[3];  /* r' [s^3/mm], r'' [s^3/mm^2], r''' [s^3/mm^3] over the jerk */
+    struct pace_bound acc[2];  /* r' [s^2/mm], r'' [s^2/mm^2] over the acceleration */
+    struct pace_bound jerk[3]; /* r' [s^3/mm], r'' [s^3/mm^2], r''' [s^3/mm^3] over the jerk */
 };
 
 struct pace_box {
-    double from, length;    /* [mm] of the chain's parameter */
-    double feed, cap;       /* [mm/s] du/dt: programmed, and most with any override and within the
-                             * limits */
-    double brisk;           /* [mm/s] speed up to which enough is left to change it */
-    double ideal;           /* [s] time of its parts at their own speeds */
+    double from, length; /* [mm] of the chain's parameter */
+    double feed, cap;    /* [mm/s] du/dt: programmed, and most with any override and within the
+                          * limits */
+    double brisk;        /* [mm/s] speed up to which enough is left to change it */
+    double ideal;        /* [s] time of its parts at their own speeds */
     int32_t rows;
     struct pace_row row[AXES];
 };
 
 /* Speed of the way and how it changes. */
 struct pace_state {
-    double x, b;            /* [mm^2/s^2], [mm/s^2] */
+    double x, b; /* [mm^2/s^2], [mm/s^2] */
 };
 
 /* Whether the axes have limits of their own. */

@@ -44,23 +44,26 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
     while (i < c->planes && c->plane[i][0] < g0) {
         i++;
     }
-    if ((g0 <= 0.0 && g1 <= 0.0) || (i < c->planes && c->plane[i][1] >= g1) ||
-        (i > 0 && i < c->planes && between(c->plane[i - 1], g, c->plane[i]))) {
+    if ((g0 <= 0.0 && g1 <= 0.0) || (i < c->planes && c->plane[i][1] >= g1)
+        || (i > 0 && i < c->planes && between(c->plane[i - 1], g, c->plane[i]))) {
         return;
     }
-    for (from = i; from > 0 && (c->plane[from - 1][1] <= g1 ||
-         (from > 1 && between(c->plane[from - 2], c->plane[from - 1], g))); from--) {
+    for (from = i; from > 0
+                   && (c->plane[from - 1][1] <= g1
+                       || (from > 1 && between(c->plane[from - 2], c->plane[from - 1], g)));
+         from--) {
     }
-    for (to = i; to < c->planes && (c->plane[to][0] <= g0 ||
-         (to + 1 < c->planes && between(g, c->plane[to], c->plane[to + 1]))); to++) {
+    for (to = i; to < c->planes
+                 && (c->plane[to][0] <= g0
+                     || (to + 1 < c->planes && between(g, c->plane[to], c->plane[to + 1])));
+         to++) {
     }
-    if (from == to && c->planes == PACE_PLANES) {       /* joined with a neighbour */
+    if (from == to && c->planes == PACE_PLANES) { /* joined with a neighbour */
         i = from < c->planes ? from : from - 1;
         add_plane(c, most(g0, c->plane[i][0]), most(g1, c->plane[i][1]));
         return;
     }
-    memmove(c->plane[from + 1], c->plane[to],
-            (size_t)(c->planes - to) * sizeof c->plane[0]);
+    memmove(c->plane[from + 1], c->plane[to], (size_t)(c->planes - to) * sizeof c->plane[0]);
     memcpy(c->plane[from], g, sizeof g);
     c->planes += from + 1 - to;
 }
@@ -68,9 +71,9 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
 /* A limit of an acceleration: at least -acc[0], at most acc[1]. */
 struct row {
     struct pace_pull pull;
-    double acc[2];      /* [mm/s^2] */
-    double rest;        /* share of acc that is left where q x is left out */
-    bool   bends;       /* q x counts */
+    double acc[2]; /* [mm/s^2] */
+    double rest;   /* share of acc that is left where q x is left out */
+    bool bends;    /* q x counts */
 };
 
 /* Adds the planes of a row (docs/theory/speed.md); |a| <= (x0 + x1) / (2 h). */
@@ -210,7 +213,7 @@ static struct ends along(const struct pace_cell *c, int32_t n, const double most
 
     for (int32_t i = -2; i < n; i++) {
         double room[2] = { 0.0, 0.0 }, rise;
-        if (i < 0) {    /* -foot / to .. (most - foot) / to */
+        if (i < 0) { /* -foot / to .. (most - foot) / to */
             rise = to[i + 2];
             room[0] = most[i + 2] - foot[i + 2];
             room[1] = -foot[i + 2];
@@ -263,7 +266,7 @@ struct pace_span pace_span(const struct pace_cell *c, double left, double x)
     const double gone = c->length - left;
     struct pace_span s = { -x / (2.0 * left), gone > 0.0 ? x / (2.0 * gone) : INFINITY };
 
-    if (c->planes == 0) {       /* straight, or the path's ramp */
+    if (c->planes == 0) { /* straight, or the path's ramp */
         return (struct pace_span){ -1.0 / c->down, 1.0 / c->up };
     }
     for (int32_t i = 0; i < c->planes; i++) {

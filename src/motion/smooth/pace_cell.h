@@ -14,28 +14,28 @@
 #include "piece.h"
 
 struct pace_limits {
-    double speed[AXES];     /* [mm/s] highest of each axis; 0: no limit */
-    double acc[AXES];       /* [mm/s^2] of each axis, > 0; or all 0: along the path and across it
-                             * within the ramp of the piece, each by itself */
-    double jerk[AXES];      /* [mm/s^3] of each axis, with acc; 0: no limit */
+    double speed[AXES]; /* [mm/s] highest of each axis; 0: no limit */
+    double acc[AXES];   /* [mm/s^2] of each axis, > 0; or all 0: along the path and across it
+                         * within the ramp of the piece, each by itself */
+    double jerk[AXES];  /* [mm/s^3] of each axis, with acc; 0: no limit */
 };
 
 enum {
-    PACE_PLANES = 11,       /* more are joined to fewer, a little inside */
-    PACE_SPLIT = 32         /* cells of a piece, at most */
+    PACE_PLANES = 11, /* more are joined to fewer, a little inside */
+    PACE_SPLIT = 32   /* cells of a piece, at most */
 };
 
 struct pace_cell {
-    double length;          /* [mm] */
-    double feed, cap;       /* [mm/s] du/dt: programmed, and most with any override */
-    double flat;            /* [mm^2/s^2] up to this x the limits allow a = 0 */
-    double bend;            /* [s^2/mm^2] bend x + up a <= 1 and bend x + down |a| <= 1 are */
-    double up, down;        /* [s^2/mm]   within the limits, too, anywhere in the cell */
-    double plane[PACE_PLANES][2];   /* [s^2/mm^2] g0, g1; for x0, x1 >= 0 */
+    double length;                /* [mm] */
+    double feed, cap;             /* [mm/s] du/dt: programmed, and most with any override */
+    double flat;                  /* [mm^2/s^2] up to this x the limits allow a = 0 */
+    double bend;                  /* [s^2/mm^2] bend x + up a <= 1 and bend x + down |a| <= 1 are */
+    double up, down;              /* [s^2/mm]   within the limits, too, anywhere in the cell */
+    double plane[PACE_PLANES][2]; /* [s^2/mm^2] g0, g1; for x0, x1 >= 0 */
     int32_t planes;
-    double most;            /* [mm^2/s^2] x at its start from which the rest can be driven */
-    double top;             /* feed below `flat`: x at the start of the line of steepest braking,
-                             * whatever the feed; else x at the end of a cell begun with `most` */
+    double most; /* [mm^2/s^2] x at its start from which the rest can be driven */
+    double top;  /* feed below `flat`: x at the start of the line of steepest braking,
+                  * whatever the feed; else x at the end of a cell begun with `most` */
 };
 
 /* A piece in up to PACE_SPLIT parts of equal length, one after another: as many as its turn and the
@@ -43,8 +43,8 @@ struct pace_cell {
 struct pace_part {
     const struct piece *piece;
     int32_t count, next;
-    double from, to;        /* [mm] the latest part of the piece */
-    struct piece_bounds bounds;     /* bounds over that part */
+    double from, to;            /* [mm] the latest part of the piece */
+    struct piece_bounds bounds; /* bounds over that part */
     struct piece_rest rest;
 };
 

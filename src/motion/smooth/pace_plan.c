@@ -100,8 +100,8 @@ bool pace_plan_steer(const struct pace_plan *p, const struct pace_road *r,
     *s = pace_box_stride(g, from, rest);
     if (node && node->at <= pace_road_end(r, spot->box)) {
         to = into(node, from, rest);
-        if (pace_step_to(from, to, rest).x <= node->state.x * (1.0 + SAME) &&
-            pace_box_keeps(g, from, to, rest)) {
+        if (pace_step_to(from, to, rest).x <= node->state.x * (1.0 + SAME)
+            && pace_box_keeps(g, from, to, rest)) {
             *s = rest;
             *c = to;
             return true;
@@ -157,7 +157,7 @@ bool pace_plan_safe(const struct pace_plan *p, const struct pace_road *r, struct
             if (share > 1.0 + SAME) {
                 return false;
             }
-            const double coarse = spot.node < PACE_NODES ? 1.0 : 0.0;   /* the last one lands */
+            const double coarse = spot.node < PACE_NODES ? 1.0 : 0.0; /* the last one lands */
             if (fabs(to.b - share * node->state.b) <= NEARLY * (coarse + fabs(node->state.b))) {
                 return true;
             }
@@ -182,9 +182,9 @@ bool pace_road_start(const struct pace_road *r, double at, int32_t box, double s
                     jerk = 0.0;
                 }
                 at_box += sign > 0.0 ? 1 : -1;
-            } while (at_box >= 0 && at_box < r->count &&
-                     (sign > 0.0 ? pace_road_box(r, at_box)->from < at + way
-                                 : pace_road_end(r, at_box) > at - way));
+            } while (at_box >= 0 && at_box < r->count
+                     && (sign > 0.0 ? pace_road_box(r, at_box)->from < at + way
+                                    : pace_road_end(r, at_box) > at - way));
             v = 0.5 * jerk * time * time;
             a = jerk * time;
             way = v * time / 3.0;
@@ -208,9 +208,9 @@ bool pace_road_lands(const struct pace_road *r, double at, int32_t box, struct p
 
     do {
         const struct pace_box *g = pace_road_box(r, i);
-        const double rest = i > box ? (end - g->from) / s.way : 1.0;    /* x is as rest^(4/3) */
-        if (s.c > pace_box_jerk(g, s.speed, -s.acc) * (1.0 + LANDS) ||
-            state.x * rest * el_cbrt(rest) > pace_road_top(r, g) * (1.0 + SAME)) {
+        const double rest = i > box ? (end - g->from) / s.way : 1.0; /* x is as rest^(4/3) */
+        if (s.c > pace_box_jerk(g, s.speed, -s.acc) * (1.0 + LANDS)
+            || state.x * rest * el_cbrt(rest) > pace_road_top(r, g) * (1.0 + SAME)) {
             return false;
         }
     } while (pace_road_end(r, i) < end - LANDS * s.way && ++i < r->count);
@@ -242,8 +242,8 @@ struct pace_step pace_road_hop(const struct pace_road *r, double at, int32_t box
 /* Whether a box takes a state. */
 static bool takes(const struct pace_road *r, const struct pace_box *g, struct pace_state s)
 {
-    return s.x <= pace_road_top(r, g) * (1.0 + NEARLY) &&
-           pace_box_acc(g, s) <= 1.0 + NEARLY && pace_box_twist(g, s) <= 1.0 + NEARLY;
+    return s.x <= pace_road_top(r, g) * (1.0 + NEARLY) && pace_box_acc(g, s) <= 1.0 + NEARLY
+           && pace_box_twist(g, s) <= 1.0 + NEARLY;
 }
 
 /* A share of a state that a box takes. */
@@ -360,11 +360,12 @@ bool pace_plan_make(struct pace_plan *p, const struct pace_road *r, double back_
             const int32_t behind = box + (pace_road_end(r, box) <= node.at);
             p->first++;
             const struct pace_state less = p->first < PACE_NODES
-                ? lower(p, r, node.at, behind, g, node.state) : fit(r, g, node.state);
+                                               ? lower(p, r, node.at, behind, g, node.state)
+                                               : fit(r, g, node.state);
             put(p, node.at, p->first < PACE_NODES ? ease(p, r, node.at, behind, less) : less);
         }
         if (!step_back(p, r, box, el_max(back_to, g->from))) {
-            p->node[p->first].state.x *= SHARE;     /* a share can be driven, too */
+            p->node[p->first].state.x *= SHARE; /* a share can be driven, too */
             p->node[p->first].state.b *= SHARE;
         }
     }

@@ -14,13 +14,13 @@
 enum { PACE_NODES = 2048 };
 
 struct pace_node {
-    double at;              /* [mm] of the chain */
+    double at; /* [mm] of the chain */
     struct pace_state state;
 };
 
 struct pace_plan {
-    double end;             /* [mm] where it comes to rest */
-    int32_t first;          /* index of the first node; the others follow */
+    double end;    /* [mm] where it comes to rest */
+    int32_t first; /* index of the first node; the others follow */
     struct pace_node node[PACE_NODES];
 };
 
@@ -34,14 +34,14 @@ union pace_element {
 struct pace_road {
     const union pace_element *ring;
     int32_t size, head, count;
-    double override;        /* of the feeds to be kept; < 0: only the limits are kept */
+    double override; /* of the feeds to be kept; < 0: only the limits are kept */
 };
 
 /* A place on the way of a plan. */
 struct pace_spot {
-    double at;              /* [mm] of the chain */
-    int32_t box;            /* from the head */
-    int32_t node;           /* the first one behind it; PACE_NODES none */
+    double at;    /* [mm] of the chain */
+    int32_t box;  /* from the head */
+    int32_t node; /* the first one behind it; PACE_NODES none */
     struct pace_state state;
 };
 

@@ -93,7 +93,7 @@ static void look_along(struct pace_pull *l, const struct piece *p, double length
     }
     if (p->kind == PIECE_CURVE) {
         s = twist(b, first);
-    } else if (p->kind == PIECE_ARC && p->path.plane != PATH_TILTED) {     /* of a spiral */
+    } else if (p->kind == PIECE_ARC && p->path.plane != PATH_TILTED) { /* of a spiral */
         const double turns = p->path.growth * p->path.sweep / (p->path.length * p->path.length);
         s.high = turns * turns / el_min(l->p[0], l->p[1]);
         s.low = -s.high;
@@ -119,11 +119,12 @@ static double most_across(const struct pace_pull *along, double length,
         for (int e = 0; e < 2; e++) {
             end[e][i] = b->bend[e][first + i] - k[e] * b->slope[e][first + i];
         }
-        strays[i] = 0.25 * (length * (spread(of(b, 3, first + i)) + most * spread(r2)) +
-                            grows * (length * size(r2) + spread(of(b, 1, first + i))));
+        strays[i] = 0.25
+                    * (length * (spread(of(b, 3, first + i)) + most * spread(r2))
+                       + grows * (length * size(r2) + spread(of(b, 1, first + i))));
     }
-    return el_min(b->most[1], sqrt(el_max(dot(end[0], end[0]), dot(end[1], end[1]))) +
-                              sqrt(dot(strays, strays)));
+    return el_min(b->most[1], sqrt(el_max(dot(end[0], end[0]), dot(end[1], end[1])))
+                                  + sqrt(dot(strays, strays)));
 }
 
 double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,

@@ -15,9 +15,9 @@
 #include "piece.h"
 
 struct pace_pull {
-    double p[2], q[2];      /* at both ends; q [1/mm] */
-    double sag, stray;      /* p and q leave their chords by at most that */
-    double most[3];         /* bounds of |p|, |q| [1/mm], |s| [1/mm^2] */
+    double p[2], q[2]; /* at both ends; q [1/mm] */
+    double sag, stray; /* p and q leave their chords by at most that */
+    double most[3];    /* bounds of |p|, |q| [1/mm], |s| [1/mm^2] */
 };
 
 /* The pull of an axis that moves, over a part of a piece with this length [mm] and these bounds. */

@@ -47,8 +47,7 @@ static const struct pace_plan *held(const struct ride *r)
  * be at the end of one box, and no plan would lead on. */
 static void append(struct pace *p, const struct pace_box *g)
 {
-    if (p->count == 0 || p->at.planned == p->count ||
-        !pace_box_join(box_at(p, p->count - 1), g)) {
+    if (p->count == 0 || p->at.planned == p->count || !pace_box_join(box_at(p, p->count - 1), g)) {
         *box_at(p, p->count++) = *g;
     }
     const struct pace_box *last = box_at(p, p->count - 1);
@@ -63,7 +62,7 @@ bool pace_smooth_join(struct pace *p, const struct piece *piece)
     if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
         return false;
     }
-    for (pace_part_first(&part, piece); pace_part_next(&part); ) {
+    for (pace_part_first(&part, piece); pace_part_next(&part);) {
         pace_box_make(&g, piece, &p->limits, p->end, part.to - part.from, &part.bounds);
         append(p, &g);
     }
@@ -109,14 +108,14 @@ static bool good(const struct ride *r, const struct pace_road *to, struct pace_s
 {
     const struct pace_state end = pace_step_to(spot.state, c, s);
 
-    if (pace_step_top(spot.state, c, s) >
-        pace_road_top(to, pace_road_box(to, spot.box)) * (1.0 + SAME) ||
-        !pace_box_keeps(pace_road_box(to, spot.box), spot.state, c, s)) {
+    if (pace_step_top(spot.state, c, s)
+            > pace_road_top(to, pace_road_box(to, spot.box)) * (1.0 + SAME)
+        || !pace_box_keeps(pace_road_box(to, spot.box), spot.state, c, s)) {
         return false;
     }
     pace_plan_pass(held(r), to, &spot, s, end);
-    return (may_land && pace_road_lands(to, spot.at, spot.box, end)) ||
-           pace_plan_safe(held(r), to, spot);
+    return (may_land && pace_road_lands(to, spot.at, spot.box, end))
+           || pace_plan_safe(held(r), to, spot);
 }
 
 static void go(struct ride *r, const struct pace_road *to, struct pace_spot spot, double c,
@@ -174,7 +173,7 @@ static void brake(struct ride *r)
         land(r);
         return;
     }
-    if (!steers) {      /* a state from outside, beyond all limits */
+    if (!steers) { /* a state from outside, beyond all limits */
         go(r, &hard, spot, 0.0, stride);
         return;
     }
@@ -208,8 +207,8 @@ static void hurry(struct ride *r, double override)
     }
     const struct pace_node *node = spot.node < PACE_NODES ? &plan->node[spot.node] : NULL;
     const struct pace_state to = pace_step_to(spot.state, steer, s);
-    if (node && (s <= stride || spot.state.b == 0.0) && spot.at + s >= node->at - SAME * s &&
-        to.x >= node->state.x * (1.0 - SAME)) {
+    if (node && (s <= stride || spot.state.b == 0.0) && spot.at + s >= node->at - SAME * s
+        && to.x >= node->state.x * (1.0 - SAME)) {
         go(r, &soft, spot, steer, s);
         return;
     }
@@ -218,8 +217,7 @@ static void hurry(struct ride *r, double override)
         brake(r);
         return;
     }
-    go(r, &soft, spot,
-       turns && c > steer ? halve(r, &soft, &spot, steer, c, s, false) : steer, s);
+    go(r, &soft, spot, turns && c > steer ? halve(r, &soft, &spot, steer, c, s, false) : steer, s);
 }
 
 static void choose(struct ride *r, double override)
@@ -302,7 +300,7 @@ static void plan(struct pace *p, double override)
     struct pace_road to = road(&r, override);
 
     while (!pace_plan_make(&p->plan[1 - p->held], &to, p->at.here) && to.count > 1) {
-        to.count = (to.count + 1) / 2;      /* so far ahead is enough */
+        to.count = (to.count + 1) / 2; /* so far ahead is enough */
     }
     p->at.planned = to.count;
     p->reach = to.count < p->count ? to.count : 0;
@@ -324,10 +322,10 @@ static bool wants_plan(const struct pace *p, double override)
     const int32_t new = p->count - p->at.planned;
     const bool rests = p->at.step.kind == PACE_NO_STEP && p->at.state.x <= 0.0;
 
-    return override > 0.0 && p->count > 0 &&
-           (override != p->override || (rests && new > 0) ||
-            (PLAN_SHARE * new > p->at.planned &&
-             (p->reach == 0 || PLAN_SHARE * p->at.planned < (PLAN_SHARE - 1) * p->reach)));
+    return override > 0.0 && p->count > 0
+           && (override != p->override || (rests && new > 0)
+               || (PLAN_SHARE * new > p->at.planned
+                   && (p->reach == 0 || PLAN_SHARE * p->at.planned < (PLAN_SHARE - 1) * p->reach)));
 }
 
 double pace_smooth_advance(struct pace *p, double override, double dt)
@@ -433,7 +431,7 @@ bool pace_smooth_end(struct pace *p, double way)
         g->length = length;
         p->count = count;
         p->end = end;
-        p->override = -1.0;     /* plan anew */
+        p->override = -1.0; /* plan anew */
         p->pending = false;
     }
     p->at.planned = p->at.planned < p->count ? p->at.planned : p->count;

@@ -28,8 +28,9 @@ static double time_of(double v0, double a0, double v1, double a1, double c, doub
 struct pace_step pace_step_bent(struct pace_state from, double c, double s)
 {
     const struct pace_state to = pace_step_to(from, c, s);
-    struct pace_step step = { .kind = PACE_BENT, .way = s, .speed = sqrt(from.x),
-                              .acc = 0.5 * from.b, .c = c, .to = to };
+    struct pace_step step = {
+        .kind = PACE_BENT, .way = s, .speed = sqrt(from.x), .acc = 0.5 * from.b, .c = c, .to = to
+    };
 
     step.time = time_of(step.speed, step.acc, sqrt(el_max(0.0, to.x)), 0.5 * to.b, c, s);
     return step;
@@ -39,7 +40,10 @@ struct pace_step pace_step_start(double jerk, double time)
 {
     const double v = 0.5 * jerk * time * time;
 
-    return (struct pace_step){ .kind = PACE_JERK, .way = v * time / 3.0, .time = time, .c = jerk,
+    return (struct pace_step){ .kind = PACE_JERK,
+                               .way = v * time / 3.0,
+                               .time = time,
+                               .c = jerk,
                                .to = { v * v, 2.0 * jerk * time } };
 }
 
@@ -47,15 +51,16 @@ struct pace_step pace_step_land(struct pace_state from)
 {
     const double v = sqrt(from.x), a = 0.5 * from.b, time = -2.0 * v / a;
 
-    return (struct pace_step){ .kind = PACE_JERK, .way = v * time / 3.0, .time = time, .speed = v,
-                               .acc = a, .c = -a / time };
+    return (struct pace_step){
+        .kind = PACE_JERK, .way = v * time / 3.0, .time = time, .speed = v, .acc = a, .c = -a / time
+    };
 }
 
 struct pace_step pace_step_hop(double jerk, double way)
 {
-    return (struct pace_step){ .kind = PACE_HOP, .way = way,
-                               .time = 4.0 * el_cbrt(0.5 * way / jerk),
-                               .c = jerk };
+    return (struct pace_step){
+        .kind = PACE_HOP, .way = way, .time = 4.0 * el_cbrt(0.5 * way / jerk), .c = jerk
+    };
 }
 
 static struct pace_motion steady(double v, double a, double j, double t)

@@ -13,10 +13,10 @@ enum pace_step_kind { PACE_NO_STEP, PACE_BENT, PACE_JERK, PACE_HOP };
 
 struct pace_step {
     enum pace_step_kind kind;
-    double way, time;           /* [mm], [s] */
-    double speed, acc;          /* [mm/s], [mm/s^2] at its start */
-    double c;                   /* bent: [1/s^2]; else the jerk [mm/s^3] */
-    struct pace_state to;       /* at its end */
+    double way, time;     /* [mm], [s] */
+    double speed, acc;    /* [mm/s], [mm/s^2] at its start */
+    double c;             /* bent: [1/s^2]; else the jerk [mm/s^3] */
+    struct pace_state to; /* at its end */
 };
 
 /* Way, speed, acceleration and jerk at a time. */

@@ -98,7 +98,7 @@ static void cubic_bounds(const struct piece *p, double from, double to, struct p
 
 static void line_bounds(const struct piece *p, struct piece_bounds *b)
 {
-    double square[2] = { 0.0, 0.0 };    /* of |r'| in X Y Z, in U V W */
+    double square[2] = { 0.0, 0.0 }; /* of |r'| in X Y Z, in U V W */
 
     for (int i = 0; i < AXES; i++) {
         b->low[0][i] = b->high[0][i] = b->slope[0][i] = b->slope[1][i] = p->slope[i];
@@ -167,7 +167,7 @@ void piece_rest_start(struct piece_rest *r, const struct piece *p)
         if (c1 == 0.0 && c2 == 0.0 && c3 == 0.0 && c4 == 0.0 && c5 == 0.0) {
             continue;
         }
-        double (*d)[PIECE_POINTS - 1] = h->control[h->axes];
+        double(*d)[PIECE_POINTS - 1] = h->control[h->axes];
         const double d1 = c2 - c1, d2 = c3 - c2, d3 = c4 - c3, d4 = c5 - c4;
         const double e0 = d1 - c1, e1 = d2 - d1, e2 = d3 - d2, e3 = d4 - d3;
         d[0][0] = one * c1;

@@ -13,23 +13,28 @@
 
 enum piece_kind { PIECE_LINE, PIECE_ARC, PIECE_CURVE, PIECE_CUBIC };
 
-enum { PIECE_POINTS = 6 };      /* control points of a curve */
+enum { PIECE_POINTS = 6 }; /* control points of a curve */
 
 struct piece {
     enum piece_kind kind;
-    double length;      /* [mm] range of the parameter u */
-    double feed;        /* [mm/s] least programmed feed of the commands in it */
-    double cap;         /* [mm/s] highest speed any override may bring */
-    struct ramp_limits ramp;    /* least limits of the commands in it */
-    bool rest;          /* the motion comes to rest at its end: the next one goes on elsewhere */
+    double length;           /* [mm] range of the parameter u */
+    double feed;             /* [mm/s] least programmed feed of the commands in it */
+    double cap;              /* [mm/s] highest speed any override may bring */
+    struct ramp_limits ramp; /* least limits of the commands in it */
+    bool rest; /* the motion comes to rest at its end: the next one goes on elsewhere */
     union {
-        struct { double start[AXES], slope[AXES]; };    /* line: |slope| is 1 */
-        struct {                                        /* curve: */
-            double origin[AXES];                        /* [mm] its start */
-            double control[PIECE_POINTS][AXES];         /* [mm] from its start; the first is 0 */
+        struct {
+            double start[AXES], slope[AXES];
+        }; /* line: |slope| is 1 */
+        struct {                                /* curve: */
+            double origin[AXES];                /* [mm] its start */
+            double control[PIECE_POINTS][AXES]; /* [mm] from its start; the first is 0 */
         };
-        struct { struct path path; double from; };      /* arc, cubic: `path` from the length
-                                                         * `from` [mm] on */
+        struct {
+            struct path path;
+            double from;
+        }; /* arc, cubic: `path` from the length
+            * `from` [mm] on */
     };
 };
 
@@ -42,12 +47,12 @@ void piece_at(const struct piece *p, double u, struct piece_state *s);
 
 /* Derivatives over a part of a piece: bounds, axis by axis and of their length, and at its ends. */
 struct piece_bounds {
-    int32_t axes, axis[AXES];               /* number of axes that move, and which; all of the
-                                             * others is 0 */
-    double low[3][AXES], high[3][AXES];     /* bounds of r', r'' [1/mm], r''' [1/mm^2] */
-    double most[3];                         /* bounds of |r'|, |r''|, |r'''| (path.h: in X Y Z;
-                                             * without these in U V W) */
-    double slope[2][AXES], bend[2][AXES];   /* r' and r'' at both ends */
+    int32_t axes, axis[AXES];             /* number of axes that move, and which; all of the
+                                           * others is 0 */
+    double low[3][AXES], high[3][AXES];   /* bounds of r', r'' [1/mm], r''' [1/mm^2] */
+    double most[3];                       /* bounds of |r'|, |r''|, |r'''| (path.h: in X Y Z;
+                                           * without these in U V W) */
+    double slope[2][AXES], bend[2][AXES]; /* r' and r'' at both ends */
 };
 
 /* Exact bounds or a little outside, between from and to, 0 <= from < to <= length. */
@@ -57,7 +62,7 @@ enum { PIECE_DERIVATIVES = 3 };
 
 /* Control values of the derivatives over a part of a curve. */
 struct piece_hull {
-    int32_t axes, axis[AXES];   /* number of axes that move, and which */
+    int32_t axes, axis[AXES]; /* number of axes that move, and which */
     double control[AXES][PIECE_DERIVATIVES][PIECE_POINTS - 1];
 };
 
@@ -65,8 +70,8 @@ struct piece_hull {
  * by piece_bounds, for less work. */
 struct piece_rest {
     const struct piece *piece;
-    double from;                /* [mm] where it begins on the piece */
-    struct piece_hull hull;     /* its control values, if it is a curve */
+    double from;            /* [mm] where it begins on the piece */
+    struct piece_hull hull; /* its control values, if it is a curve */
 };
 
 void piece_rest_start(struct piece_rest *r, const struct piece *p);

@@ -55,10 +55,10 @@ static struct range times(struct range r, double a, double b)
 /* Part of an arc: its place in the plane is radius (cos, sin), or that without the radius on two
  * vectors of a tilted one. */
 struct part {
-    double angle;               /* [rad] by which it turns, >= 0 */
-    double radius[2], growth;   /* [mm] at both ends, and its change in each mm of the parameter */
-    double per;                 /* [rad/mm] */
-    double cos[2], sin[2];      /* of the angles at both ends */
+    double angle;             /* [rad] by which it turns, >= 0 */
+    double radius[2], growth; /* [mm] at both ends, and its change in each mm of the parameter */
+    double per;               /* [rad/mm] */
+    double cos[2], sin[2];    /* of the angles at both ends */
 };
 
 /* Range of an oscillation up to `most` in the part. a, b: its values at both ends; from, to: its
@@ -84,7 +84,7 @@ static void turn_bounds(struct piece_bounds *b, int axis, const struct part *t, 
 {
     const double most = x == 0.0 || y == 0.0 ? fabs(x + y) : sqrt(x * x + y * y);
     const double sign = t->per < 0.0 ? -1.0 : 1.0;
-    double e[2], f[2], power = 1.0;     /* per^(n - 1) */
+    double e[2], f[2], power = 1.0; /* per^(n - 1) */
 
     for (int i = 0; i < 2; i++) {
         e[i] = x * t->cos[i] + y * t->sin[i];
@@ -109,8 +109,8 @@ static void turn_bounds(struct piece_bounds *b, int axis, const struct part *t, 
 static void even_bounds(const struct path *a, struct piece_bounds *b)
 {
     for (int i = 0; i < AXES; i++) {
-        b->low[0][i] = b->high[0][i] = b->slope[0][i] = b->slope[1][i]
-            = (a->end[i] - a->start[i]) / a->length;
+        b->low[0][i] = b->high[0][i] = b->slope[0][i] = b->slope[1][i] =
+            (a->end[i] - a->start[i]) / a->length;
     }
 }
 
@@ -127,7 +127,7 @@ void piece_arc_bounds(const struct piece *p, double from, double to, struct piec
     const struct path *a = &p->path;
     const bool tilted = a->plane == PATH_TILTED;
     const double u[2] = { p->from + from, p->from + to };
-    double along = 0.0;     /* slope along the arc's axis, a part of |r'| */
+    double along = 0.0; /* slope along the arc's axis, a part of |r'| */
     struct part t = { .angle = fabs(a->sweep) * (to - from) / a->length,
                       .growth = tilted ? 0.0 : a->growth / a->length,
                       .per = a->sweep / a->length };

@@ -74,7 +74,7 @@ static void push_chords(struct shape *s, const struct path *p, double from, doub
                         double tolerance)
 {
     const int32_t n = shape_chords(p, to - from, tolerance);
-    if (n == 1 && to >= p->length && !p->arc && !p->cubic) {    /* a short line */
+    if (n == 1 && to >= p->length && !p->arc && !p->cubic) { /* a short line */
         push_vertex(s, p->end, to - from, tolerance)->joint = true;
         return;
     }
@@ -278,7 +278,7 @@ static void pass_window(struct shape *s, int32_t end)
     struct shape_run *r = &s->run;
     int32_t bad = shape_run_fit(r, end, false, NULL);
 
-    while (bad >= 0 && r->spans >= FULL && end > FEWEST) {      /* a shorter one has room */
+    while (bad >= 0 && r->spans >= FULL && end > FEWEST) { /* a shorter one has room */
         shape_run_afresh(r);
         end /= 2;
         bad = shape_run_fit(r, end, false, NULL);
@@ -353,7 +353,7 @@ static void pump(struct shape *s)
         }
         settle_loose(s);
         s->corner = false;
-        s->stretch = s->made + SHAPE_HELD;      /* all are finished */
+        s->stretch = s->made + SHAPE_HELD; /* all are finished */
         if (s->made > s->gone) {
             shape_made(s, s->made - 1)->rest = true;
         }
@@ -363,13 +363,13 @@ static void pump(struct shape *s)
 static bool room(const struct shape *s)
 {
     return s->made - s->gone + ROOM <= SHAPE_PIECES && s->marks - s->marks_gone < SHAPE_MARKS
-        && (!s->running || (s->closing == SHAPE_OPEN && !full(&s->run)));
+           && (!s->running || (s->closing == SHAPE_OPEN && !full(&s->run)));
 }
 
 static void push_mark(struct shape *s, const struct command *c)
 {
-    s->mark[s->marks++ % SHAPE_MARKS] = (struct shape_mark){ 0.0, c->index, c->line, c->set,
-                                                             c->clear, c->analog };
+    s->mark[s->marks++ % SHAPE_MARKS] =
+        (struct shape_mark){ 0.0, c->index, c->line, c->set, c->clear, c->analog };
     s->marks_loose++;
 }
 

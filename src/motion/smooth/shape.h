@@ -22,37 +22,37 @@
 
 enum {
     SHAPE_PIECES = 640,
-    SHAPE_MARKS = 1536,         /* for a window of SHAPE_VERTICES and for what lies ahead */
-    SHAPE_HELD = 8,             /* newest pieces, which a corner may cut: they are not finished */
-    SHAPE_TAIL = 24             /* vertices of a run that are kept for the corner at its end */
+    SHAPE_MARKS = 1536, /* for a window of SHAPE_VERTICES and for what lies ahead */
+    SHAPE_HELD = 8,     /* newest pieces, which a corner may cut: they are not finished */
+    SHAPE_TAIL = 24     /* vertices of a run that are kept for the corner at its end */
 };
 
 enum shape_closing { SHAPE_OPEN, SHAPE_BY_LONG, SHAPE_BY_END };
 
 /* Where a command begins. */
 struct shape_mark {
-    double at;                  /* [mm] parameter, from the chain's start */
-    int32_t index, line;        /* of the command */
-    uint32_t set, clear;        /* digital outputs */
+    double at;           /* [mm] parameter, from the chain's start */
+    int32_t index, line; /* of the command */
+    uint32_t set, clear; /* digital outputs */
     struct outputs_analog analog;
 };
 
 enum shape_status {
     SHAPE_TAKEN,
-    SHAPE_FULL,                 /* no room now: drop pieces and marks */
-    SHAPE_OTHER                 /* not of this chain: no path, no tolerance, or it begins elsewhere;
-                                 * or the chain has ended */
+    SHAPE_FULL, /* no room now: drop pieces and marks */
+    SHAPE_OTHER /* not of this chain: no path, no tolerance, or it begins elsewhere;
+                 * or the chain has ended */
 };
 
 struct shape {
-    double merge;               /* [mm] highest tolerance of a run; 0 none */
+    double merge; /* [mm] highest tolerance of a run; 0 none */
     bool started, ended;
-    double end[AXES];           /* [mm] end of the commands so far */
-    double u;                   /* [mm] length of the pieces so far */
-    struct shape_law law;       /* limits of the newest command */
-    bool exact;                 /* a long command waits for what follows it */
-    struct piece whole;         /* that long command */
-    double whole_tolerance;     /* [mm] its tolerance */
+    double end[AXES];       /* [mm] end of the commands so far */
+    double u;               /* [mm] length of the pieces so far */
+    struct shape_law law;   /* limits of the newest command */
+    bool exact;             /* a long command waits for what follows it */
+    struct piece whole;     /* that long command */
+    double whole_tolerance; /* [mm] its tolerance */
     bool running;
     enum shape_closing closing; /* what ends the run */
     struct piece next;          /* the long command that ends it */
@@ -70,7 +70,7 @@ struct shape {
     int32_t tail_points;        /* kept vertices of a run before it, the last is it; else 0 */
     double tail[SHAPE_TAIL][AXES], tail_u[SHAPE_TAIL], tail_tolerance[SHAPE_TAIL];
     int64_t marks, marks_set, marks_gone;
-    int32_t marks_loose;        /* newest marks, which lie where the next command begins */
+    int32_t marks_loose; /* newest marks, which lie where the next command begins */
     struct shape_run run;
     struct piece piece[SHAPE_PIECES];
     struct shape_mark mark[SHAPE_MARKS];

@@ -94,7 +94,7 @@ static int32_t chords(const struct piece *p, double half, double tolerance, doub
     const double most = sqrt(8.0 * SAGITTA * tolerance / b.most[1]);
     const int32_t n = (int32_t)el_min(20.0, ceil(half / most));
     *step = half / n;
-    *left = tolerance - b.most[1] * *step * *step / 8.0;    /* chords: |r''| h^2 / 8 off at most */
+    *left = tolerance - b.most[1] * *step * *step / 8.0; /* chords: |r''| h^2 / 8 off at most */
     return *left > 0.0 ? n + (p->length >= half + *step) : 0;
 }
 
@@ -155,7 +155,7 @@ static bool way_behind(struct shape *s, double before, double half, double toler
  * all else is along the normal and the same for each turn. Returns how far off it is. [mm]
  */
 static double middle(const struct piece_state *in, const struct piece_state *out, double half,
-                   double part, struct piece_state *m)
+                     double part, struct piece_state *m)
 {
     const double bend = (BEND + MORE_BEND * (2.0 * CUT - part)) / half;
     double square = 0.0;
@@ -201,8 +201,8 @@ static int32_t attempt(struct shape *s, double half, double part, double toleran
     }
     const struct piece *x = shape_made(s, c->piece[0]), *y = shape_made(s, c->piece[1]);
     const double more = x->kind == PIECE_CURVE ? el_max(0.0, SLIVER * x->length - c->at[0]) : 0.0;
-    const double less = y->kind == PIECE_CURVE
-        ? el_max(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
+    const double less =
+        y->kind == PIECE_CURVE ? el_max(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
     c->at[0] += more;
     c->at[1] -= less;
     const double before = half - more, behind = half - less;
@@ -213,7 +213,7 @@ static int32_t attempt(struct shape *s, double half, double part, double toleran
     piece_at(y, c->at[1], &b);
     if (part <= 0.0) {
         return way_behind(s, before, behind, tolerance, &way)
-            && shape_join(&p[0], &a, &b, before + behind, &way);
+               && shape_join(&p[0], &a, &b, before + behind, &way);
     }
     const double off = middle(&in, &out, half, part, &m);
     if (off > way.tolerance[way.points - 1] || !shape_join(&p[0], &a, &m, before, &way)) {
@@ -222,7 +222,9 @@ static int32_t attempt(struct shape *s, double half, double part, double toleran
     way.points = 0;
     add(&way, in.point, 0.0, tolerance);
     return way_behind(s, 0.0, behind, tolerance, &way) && off <= way.tolerance[1]
-        && shape_join(&p[1], &m, &b, behind, &way) ? 2 : 0;
+                   && shape_join(&p[1], &m, &b, behind, &way)
+               ? 2
+               : 0;
 }
 
 /* Puts n pieces in the place of what they cut off. */
@@ -290,7 +292,7 @@ void shape_corner_round(struct shape *s, double tolerance)
 
     s->corner = false;
     if (s->corner_made == 0) {
-        return;     /* nothing before it: the chain begins here */
+        return; /* nothing before it: the chain begins here */
     }
     piece_at(a, a->length, &in);
     piece_at(b, 0.0, &out);
@@ -315,7 +317,8 @@ void shape_corner_round(struct shape *s, double tolerance)
         behind += 0.5 * shape_made(s, k)->length;
     }
     const double of_a = a->kind == PIECE_CURVE && s->tail_points > 0
-        ? s->tail_tolerance[s->tail_points - 1] : s->corner_tolerance;
+                            ? s->tail_tolerance[s->tail_points - 1]
+                            : s->corner_tolerance;
     const double of_b = b->kind == PIECE_CURVE ? s->run.vertex[1].tolerance : tolerance;
     const double p = CUT * turn, q = CUT_CURVED * (kin + kout), most = el_min(of_a, of_b);
     const double plain = 2.0 * most / (p + sqrt(p * p + 4.0 * q * most));

@@ -33,7 +33,7 @@ static void put_bend(struct shape_fit *f)
     double most = 0.0;
 
     for (int32_t k = 0; k < f->spans; k++) {
-        double (*m)[4] = f->extract[k], row[4];
+        double(*m)[4] = f->extract[k], row[4];
         const double h = t[k + 4] - t[k + 3];
         for (int i = 0; i < 4; i++) {
             row[i] = 6.0 / (h * h * h) * (m[3][i] - 3.0 * m[2][i] + 3.0 * m[1][i] - m[0][i]);
@@ -162,7 +162,7 @@ void shape_fit_split(struct shape_fit *f, int32_t spans, const double knot[])
 {
     double *old = f->run->knot;
 
-    for (int32_t k = spans - 1, j = f->spans - 1; k >= 0; k--) {    /* j: the old span */
+    for (int32_t k = spans - 1, j = f->spans - 1; k >= 0; k--) { /* j: the old span */
         if (memcmp(knot + k + 1, old + j + 1, 6 * sizeof knot[0]) == 0) {
             memmove(f->extract[k], f->extract[j], sizeof f->extract[k]);
         } else {

@@ -20,17 +20,17 @@ struct shape_fit {
     struct shape_run *run;
     int32_t spans, end;
     bool last;
-    int32_t left, known_right;                  /* numbers of known control points at both ends */
+    int32_t left, known_right; /* numbers of known control points at both ends */
     const struct piece_state *stop;
-    int axis[AXES], axes;                       /* axes that move, an even number */
-    double extract[SHAPE_SPANS][4][4];          /* [Bernstein value][control point] */
-    int32_t first[SHAPE_SPANS + 1];             /* vertices first[k] .. first[k + 1] - 1 are in
-                                                 * span k */
-    double row[SHAPE_VERTICES][4];              /* place of a vertex by its span's control points */
-    double per[SHAPE_VERTICES];                 /* [1/mm^2] 1 / (distance a vertex may be off)^2 */
-    double bend[SHAPE_CONTROLS][SHAPE_BAND];    /* equations of integral |r'''|^2 */
+    int axis[AXES], axes;                    /* axes that move, an even number */
+    double extract[SHAPE_SPANS][4][4];       /* [Bernstein value][control point] */
+    int32_t first[SHAPE_SPANS + 1];          /* vertices first[k] .. first[k + 1] - 1 are in
+                                              * span k */
+    double row[SHAPE_VERTICES][4];           /* place of a vertex by its span's control points */
+    double per[SHAPE_VERTICES];              /* [1/mm^2] 1 / (distance a vertex may be off)^2 */
+    double bend[SHAPE_CONTROLS][SHAPE_BAND]; /* equations of integral |r'''|^2 */
     double band[SHAPE_CONTROLS][SHAPE_BAND], right[SHAPE_CONTROLS][AXES];
-    double worst;                               /* largest squared distance, in tolerance^2 */
+    double worst; /* largest squared distance, in tolerance^2 */
     int32_t worst_vertex;
 };
 

@@ -53,7 +53,7 @@ static bool within(const struct piece *p, double t0, double t1, const double a[A
     }
     const double middle = 0.5 * (t0 + t1);
     return within(p, t0, middle, a, b, square, halvings - 1)
-        && within(p, middle, t1, a, b, square, halvings - 1);
+           && within(p, middle, t1, a, b, square, halvings - 1);
 }
 
 /* *t becomes where the curve is nearest to a point, not before `least`. Squared distance. [mm^2] */

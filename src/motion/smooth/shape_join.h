@@ -17,9 +17,9 @@ enum { SHAPE_WAY = 48 };
 /* The polyline: from a point at or before the join's start to one at or behind its end. */
 struct shape_way {
     int32_t points;
-    double point[SHAPE_WAY][AXES];      /* [mm] */
-    double u[SHAPE_WAY];                /* [mm] about where it lies, from the join's start */
-    double tolerance[SHAPE_WAY];        /* [mm] of the chord that ends here */
+    double point[SHAPE_WAY][AXES]; /* [mm] */
+    double u[SHAPE_WAY];           /* [mm] about where it lies, from the join's start */
+    double tolerance[SHAPE_WAY];   /* [mm] of the chord that ends here */
 };
 
 /* Join two states by a quintic: sets kind, length, origin, control. False: it is not within the

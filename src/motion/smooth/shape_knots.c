@@ -21,8 +21,9 @@ static int32_t spread(struct shape_fit *f, int32_t held, double to)
 
     while (k < SHAPE_SPANS + 3) {
         double h = COARSE * shape_spacing(v[i].tolerance);
-        while (i < f->end && (v[i].u <= r->knot[k]
-                              || (v[i].u < r->knot[k] + h && crowd < COARSE * SHAPE_CROWD))) {
+        while (i < f->end
+               && (v[i].u <= r->knot[k]
+                   || (v[i].u < r->knot[k] + h && crowd < COARSE * SHAPE_CROWD))) {
             crowd += v[i].u > r->knot[k];
             i++;
         }
@@ -52,7 +53,7 @@ static int32_t put_end(struct shape_run *r, int32_t held, int32_t k, double at_e
     for (int32_t j = held + 1; j <= k; j++) {
         r->knot[j] = from + (r->knot[j] - from) * stretch;
     }
-    if (k < SHAPE_SPANS_LEAST + 3) {      /* short: evenly */
+    if (k < SHAPE_SPANS_LEAST + 3) { /* short: evenly */
         const int32_t n = SHAPE_SPANS_LEAST + 3 - held;
         k = SHAPE_SPANS_LEAST + 3;
         for (int32_t j = 1; j <= n; j++) {
@@ -98,7 +99,7 @@ bool shape_knots_put(struct shape_fit *f)
 bool shape_knots_halve(struct shape_fit *f, double longer)
 {
     struct shape_run *r = f->run;
-    const int32_t first = r->begun ? 2 : 0;     /* before it knots hold */
+    const int32_t first = r->begun ? 2 : 0; /* before it knots hold */
     bool wide[SHAPE_SPANS] = { false };
     double knot[SHAPE_SPANS + 7];
     int32_t k = 0, n = 0, more = 0;
@@ -109,8 +110,10 @@ bool shape_knots_halve(struct shape_fit *f, double longer)
             k++;
         }
         for (int32_t j = k; j < f->spans && r->knot[j + 3] <= v->u && v->off > 1.0; j++) {
-            wide[j] = wide[j] || (j >= first && r->knot[j + 4] - r->knot[j + 3]
-                                > longer * shape_spacing(v->tolerance));
+            wide[j] =
+                wide[j]
+                || (j >= first
+                    && r->knot[j + 4] - r->knot[j + 3] > longer * shape_spacing(v->tolerance));
         }
     }
     memcpy(knot, r->knot, 3 * sizeof knot[0]);

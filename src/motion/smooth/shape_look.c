@@ -20,7 +20,7 @@ static inline void note(struct shape_fit *f, int32_t vertex, double off)
     struct shape_vertex *v = &f->run->vertex[vertex];
 
     v->off = !(off <= v->off) ? off : v->off;
-    if (!(off <= f->worst)) {     /* not a number counts, too */
+    if (!(off <= f->worst)) { /* not a number counts, too */
         f->worst = off;
         f->worst_vertex = vertex;
     }
@@ -29,10 +29,10 @@ static inline void note(struct shape_fit *f, int32_t vertex, double off)
 /* Bernstein values of r over a span, for each axis that moves, from the run's origin. [mm] */
 static void values(const struct shape_fit *f, int32_t span, double b[AXES][4])
 {
-    const double (*m)[4] = (const double (*)[4])f->extract[span];
+    const double(*m)[4] = (const double(*)[4])f->extract[span];
 
     for (int x = 0; x < f->axes; x++) {
-        const double (*c)[AXES] = (const double (*)[AXES])&f->run->control[span][f->axis[x]];
+        const double(*c)[AXES] = (const double(*)[AXES]) & f->run->control[span][f->axis[x]];
         const double c0 = c[0][0], c1 = c[1][0], c2 = c[2][0], c3 = c[3][0];
         b[x][0] = m[0][0] * c0 + m[0][1] * c1 + m[0][2] * c2;
         b[x][1] = m[1][1] * c1 + m[1][2] * c2;
@@ -48,7 +48,7 @@ void shape_fit_look(struct shape_fit *f)
     f->worst = 0.0;
     f->worst_vertex = f->end;
     for (int32_t k = 0; k < f->spans; k++) {
-        const double (*c)[AXES] = (const double (*)[AXES])r->control + k;
+        const double(*c)[AXES] = (const double(*)[AXES])r->control + k;
         for (int x = 0; x < f->axes; x += 2) {
             const int a = f->axis[x], b = f->axis[x + 1];
             const double a0 = c[0][a], a1 = c[1][a], a2 = c[2][a], a3 = c[3][a];
@@ -56,17 +56,17 @@ void shape_fit_look(struct shape_fit *f)
             for (int32_t i = f->first[k]; i < f->first[k + 1]; i++) {
                 struct shape_vertex *v = &r->vertex[i];
                 const double *w = f->row[i], w0 = w[0], w1 = w[1], w2 = w[2], w3 = w[3];
-                const double p = v->point[a] - r->origin[a]
-                    - (w0 * a0 + w1 * a1 + w2 * a2 + w3 * a3);
-                const double q = v->point[b] - r->origin[b]
-                    - (w0 * b0 + w1 * b1 + w2 * b2 + w3 * b3);
+                const double p =
+                    v->point[a] - r->origin[a] - (w0 * a0 + w1 * a1 + w2 * a2 + w3 * a3);
+                const double q =
+                    v->point[b] - r->origin[b] - (w0 * b0 + w1 * b1 + w2 * b2 + w3 * b3);
                 v->off = p * p + q * q + (x == 0 ? 0.0 : v->off);
             }
         }
         for (int32_t i = f->first[k]; i < f->first[k + 1]; i++) {
             const double off = r->vertex[i].off * f->per[i];
             r->vertex[i].off = off;
-            if (!(off <= f->worst)) {       /* not a number counts, too */
+            if (!(off <= f->worst)) { /* not a number counts, too */
                 f->worst = off;
                 f->worst_vertex = i;
             }
@@ -112,7 +112,7 @@ void shape_fit_push(struct shape_fit *f, bool all)
                 values(f, k, b);
                 known = true;
             }
-            const double u = stays ? v->u : v->u + to_foot(f, i, k, (const double (*)[4])b);
+            const double u = stays ? v->u : v->u + to_foot(f, i, k, (const double(*)[4])b);
             if (all) {
                 const double most = r->knot[f->spans + 3];
                 v->weight = weight;
@@ -150,9 +150,10 @@ static void prove_chord(struct shape_fit *f, int32_t vertex, const struct place 
         }
     }
     const double per = ww > 0.0 ? 1.0 / ww : 0.0;
-    for (int i = 0; i < points; i++) {  /* from the foot, the start or the end of the chord */
-        const double square = wf[i] <= 0.0 ? ff[i] : wf[i] < ww ? ff[i] - wf[i] * wf[i] * per
-                            : ff[i] - 2.0 * wf[i] + ww;
+    for (int i = 0; i < points; i++) { /* from the foot, the start or the end of the chord */
+        const double square = wf[i] <= 0.0 ? ff[i]
+                              : wf[i] < ww ? ff[i] - wf[i] * wf[i] * per
+                                           : ff[i] - 2.0 * wf[i] + ww;
         most = square <= most ? most : square;
     }
     note(f, vertex, most / (SHAPE_USED * SHAPE_USED * v->tolerance * v->tolerance));
@@ -201,20 +202,20 @@ void shape_fit_prove(struct shape_fit *f, int32_t spans)
     f->worst = 0.0;
     f->worst_vertex = f->end;
     values(f, 0, b);
-    place_at(f, 0, (const double (*)[4])b, t[3], &now);
+    place_at(f, 0, (const double(*)[4])b, t[3], &now);
     for (int32_t k = 0; k < spans; k++) {
         int32_t i = f->first[k];
         if (k > 0) {
             values(f, k, b);
         }
         for (; i < f->first[k + 1]; i++) {
-            place_at(f, k, (const double (*)[4])b, f->run->vertex[i].u, &next);
-            prove_chord(f, i, &now, &next, 2);      /* the third is near the vertex itself */
+            place_at(f, k, (const double(*)[4])b, f->run->vertex[i].u, &next);
+            prove_chord(f, i, &now, &next, 2); /* the third is near the vertex itself */
             prove_vertex(f, i, &next);
             now = next;
         }
         if (i <= f->end) {
-            place_at(f, k, (const double (*)[4])b, t[k + 4], &next);
+            place_at(f, k, (const double(*)[4])b, t[k + 4], &next);
             prove_chord(f, i, &now, &next, 3);
             now = next;
         }

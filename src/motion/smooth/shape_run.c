@@ -112,7 +112,7 @@ void shape_run_afresh(struct shape_run *r)
 
 int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop)
 {
-    struct shape_fit f;     /* large: each part is set where it is made */
+    struct shape_fit f; /* large: each part is set where it is made */
 
     f.run = r;
     f.end = end;
@@ -143,8 +143,8 @@ int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct 
         }
         const bool all = round <= FOLLOWS;
         shape_fit_push(&f, all);
-        const bool finer = round % SPLIT == 0
-            && shape_knots_halve(&f, round < LATE ? LONGER : LONGER_LATE);
+        const bool finer =
+            round % SPLIT == 0 && shape_knots_halve(&f, round < LATE ? LONGER : LONGER_LATE);
         if (finer || all) {
             shape_solve_assemble(&f);
         }
@@ -182,7 +182,7 @@ void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, stru
     p->kind = PIECE_CURVE;
     p->length = t[4] - t[3];
     shape_extract(t, m);
-    for (int i = 0; i < AXES; i++) {    /* from the first control point, so differences are small */
+    for (int i = 0; i < AXES; i++) { /* from the first control point, so differences are small */
         const double at = r->control[k][i], c1 = r->control[k + 1][i] - at;
         const double c2 = r->control[k + 2][i] - at, c3 = r->control[k + 3][i] - at;
         const double start = m[0][1] * c1 + m[0][2] * c2;
@@ -190,7 +190,7 @@ void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, stru
         const double b2 = m[2][1] * c1 + m[2][2] * c2 - start;
         const double b3 = m[3][1] * c1 + m[3][2] * c2 + m[3][3] * c3 - start;
         p->origin[i] = r->origin[i] + (at + start);
-        p->control[1][i] = 0.6 * b1;    /* raised to degree 5 */
+        p->control[1][i] = 0.6 * b1; /* raised to degree 5 */
         p->control[2][i] = 0.6 * b1 + 0.3 * b2;
         p->control[3][i] = 0.3 * b1 + 0.6 * b2 + 0.1 * b3;
         p->control[4][i] = 0.6 * b2 + 0.4 * b3;

@@ -23,41 +23,41 @@
 #include "piece.h"
 
 enum {
-    SHAPE_SPANS = 64,           /* most spans of a window */
-    SHAPE_CROWD = 16,           /* about the most vertices of a span */
-    SHAPE_VERTICES = 900        /* most vertices of a window and of what waits behind it */
+    SHAPE_SPANS = 64,    /* most spans of a window */
+    SHAPE_CROWD = 16,    /* about the most vertices of a span */
+    SHAPE_VERTICES = 900 /* most vertices of a window and of what waits behind it */
 };
 
 /* What a chord's command asks of the motion along it. */
 struct shape_law {
-    double feed, cap;           /* [mm/s] */
+    double feed, cap; /* [mm/s] */
     struct ramp_limits ramp;
 };
 
 struct shape_vertex {
-    double point[AXES];         /* [mm] */
-    double s;                   /* [mm] where it lies along the polyline */
-    double u;                   /* [mm] parameter of its place on the curve */
-    double tolerance;           /* [mm] tolerance of the chord that ends here */
-    double weight;              /* weight of its distance; 0: none yet */
-    double off;                 /* largest squared distance last seen here, in tolerance^2 */
-    struct shape_law law;       /* limits of the chord that ends here */
-    int32_t marks;              /* number of commands that begin here */
-    bool joint;                 /* a command ends here: it may be a corner */
+    double point[AXES];   /* [mm] */
+    double s;             /* [mm] where it lies along the polyline */
+    double u;             /* [mm] parameter of its place on the curve */
+    double tolerance;     /* [mm] tolerance of the chord that ends here */
+    double weight;        /* weight of its distance; 0: none yet */
+    double off;           /* largest squared distance last seen here, in tolerance^2 */
+    struct shape_law law; /* limits of the chord that ends here */
+    int32_t marks;        /* number of commands that begin here */
+    bool joint;           /* a command ends here: it may be a corner */
     bool corner;
 };
 
 struct shape_run {
-    int32_t vertices, placed;   /* number of vertices; how many of them have a u */
-    bool begun;                 /* pieces of it exist: knots and control points hold at the left */
-    bool bound;                 /* it begins with the state `begin`, else with r'' = 0 */
+    int32_t vertices, placed; /* number of vertices; how many of them have a u */
+    bool begun;               /* pieces of it exist: knots and control points hold at the left */
+    bool bound;               /* it begins with the state `begin`, else with r'' = 0 */
     struct piece_state begin;
-    int32_t spans, fitted;      /* spans of the last fit; its last vertex */
-    int32_t proved;             /* so many of its first spans keep the tolerance */
-    int32_t kept;               /* knots up to this one are good for the next window, too */
-    double knot[SHAPE_SPANS + 7];       /* [mm]; span k lies between knots k + 3 and k + 4 */
-    double origin[AXES];                /* [mm] a point near the run */
-    double control[SHAPE_SPANS + 3][AXES];      /* [mm] control points, from the origin */
+    int32_t spans, fitted;        /* spans of the last fit; its last vertex */
+    int32_t proved;               /* so many of its first spans keep the tolerance */
+    int32_t kept;                 /* knots up to this one are good for the next window, too */
+    double knot[SHAPE_SPANS + 7]; /* [mm]; span k lies between knots k + 3 and k + 4 */
+    double origin[AXES];          /* [mm] a point near the run */
+    double control[SHAPE_SPANS + 3][AXES]; /* [mm] control points, from the origin */
     struct shape_vertex vertex[SHAPE_VERTICES];
 };
 

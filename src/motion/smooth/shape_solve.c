@@ -21,7 +21,7 @@ void shape_solve_add(double band[][SHAPE_BAND], int32_t k, const double row[4], 
 /* Shares of the four control points of a span in its place at t = 0 .. 1. */
 static inline void put_row(const struct shape_fit *f, int32_t span, double t, double row[4])
 {
-    const double (*m)[4] = (const double (*)[4])f->extract[span];
+    const double(*m)[4] = (const double(*)[4])f->extract[span];
     const double s = 1.0 - t, both = 3.0 * s * t;
     const double b0 = s * s * s, b1 = both * s, b2 = both * t, b3 = t * t * t;
 
@@ -52,7 +52,7 @@ static void add_span(struct shape_fit *f, int32_t span)
 {
     const int32_t from = f->first[span], to = f->first[span + 1];
     const struct shape_vertex *v = f->run->vertex;
-    double (*b)[SHAPE_BAND] = f->band + span;
+    double(*b)[SHAPE_BAND] = f->band + span;
     double b00 = 0.0, b01 = 0.0, b02 = 0.0, b03 = 0.0, b11 = 0.0, b12 = 0.0, b13 = 0.0;
     double b22 = 0.0, b23 = 0.0, b33 = 0.0;
 
@@ -135,8 +135,7 @@ void shape_solve_change(struct shape_fit *f, int32_t vertex, int32_t span, doubl
 }
 
 /* Takes known control points to the right side. */
-static void take_known(const struct shape_fit *f, int32_t first, int32_t last,
-                       double right[][AXES])
+static void take_known(const struct shape_fit *f, int32_t first, int32_t last, double right[][AXES])
 {
     const struct shape_run *r = f->run;
 
@@ -166,7 +165,7 @@ void shape_solve(struct shape_fit *f)
     memcpy(a, f->band, (size_t)n * sizeof a[0]);
     memcpy(right, f->right, (size_t)n * sizeof right[0]);
     take_known(f, first, last, right);
-    memset(a + last, 0, 3 * sizeof a[0]);           /* nothing behind the last */
+    memset(a + last, 0, 3 * sizeof a[0]); /* nothing behind the last */
     memset(right + last, 0, 3 * sizeof right[0]);
     for (int32_t i = first; i < last; i++) {
         const double inverse = 1.0 / a[i][0], a1 = a[i][1], a2 = a[i][2], a3 = a[i][3];
@@ -196,10 +195,10 @@ void shape_solve(struct shape_fit *f)
     for (int32_t i = last - 1; i >= first; i--) {
         const double a1 = a[i][1], a2 = a[i][2], a3 = a[i][3];
         for (int x = 0; x < f->axes; x += 2) {
-            const double b = right[i][x] - a1 * right[i + 1][x] - a2 * right[i + 2][x]
-                - a3 * right[i + 3][x];
+            const double b =
+                right[i][x] - a1 * right[i + 1][x] - a2 * right[i + 2][x] - a3 * right[i + 3][x];
             const double c = right[i][x + 1] - a1 * right[i + 1][x + 1] - a2 * right[i + 2][x + 1]
-                - a3 * right[i + 3][x + 1];
+                             - a3 * right[i + 3][x + 1];
             r->control[i][f->axis[x]] = right[i][x] = b;
             r->control[i][f->axis[x + 1]] = right[i][x + 1] = c;
         }
@@ -214,8 +213,8 @@ void shape_solve(struct shape_fit *f)
         }
         if (f->last && f->stop == NULL) {
             const double q = (t[n] - t[n - 2]) / (t[n] - t[n - 1]);
-            r->control[n - 3][i] = r->control[n - 2][i]
-                + q * (r->control[n - 2][i] - r->control[n - 1][i]);
+            r->control[n - 3][i] =
+                r->control[n - 2][i] + q * (r->control[n - 2][i] - r->control[n - 1][i]);
         }
     }
 }

@@ -4,7 +4,7 @@
 
 #include "shape_run.h"
 
-enum { SHAPE_CHORDS = 64 };     /* of one command in a run, at most */
+enum { SHAPE_CHORDS = 64 }; /* of one command in a run, at most */
 
 /* A piece under a law, without its geometry; a whole path as a piece. */
 struct piece shape_blank(const struct shape_law *law);

@@ -31,8 +31,13 @@ bool net_host_give(struct net_host *h, const struct net_host_order *order)
         if (o->stage == NET_HOST_WAITING || o->stage == NET_HOST_SENT)
             continue;
         *o = (struct net_host_order){
-            .at = order->at, .type = order->type, .axes = order->axes, .mode = order->mode,
-            .level = order->level, .pins = order->pins, .width = order->width,
+            .at = order->at,
+            .type = order->type,
+            .axes = order->axes,
+            .mode = order->mode,
+            .level = order->level,
+            .pins = order->pins,
+            .width = order->width,
             .stage = NET_HOST_WAITING,
         };
         return true;
@@ -85,7 +90,7 @@ static void forget(struct net_host *h)
 
 static bool greeted(struct net_host *h)
 {
-    struct net_challenge challenge = {.protocol = NET_PROTOCOL};
+    struct net_challenge challenge = { .protocol = NET_PROTOCOL };
     uint8_t payload[NET_BYTES_challenge];
     net_get_hello(net_channel_payload(&h->channel), &h->hello);
     if (h->hello.oldest > NET_PROTOCOL || h->hello.newest < NET_PROTOCOL)
@@ -106,7 +111,7 @@ static bool greeted(struct net_host *h)
 /* Commands on their way go out again, with their numbers. */
 static bool proved(struct net_host *h, int64_t now)
 {
-    const struct net_welcome welcome = {.interval = h->config.interval};
+    const struct net_welcome welcome = { .interval = h->config.interval };
     uint8_t proof[NET_SHA_BYTES], payload[NET_BYTES_welcome];
     struct net_auth auth;
     net_get_auth(net_channel_payload(&h->channel), &auth);
@@ -130,8 +135,7 @@ static bool proved(struct net_host *h, int64_t now)
         h->last_number = h->hello.last_command;
     for (int i = 0; i < NET_HOST_ORDERS; i++)
         h->order[i].again = h->order[i].stage == NET_HOST_SENT;
-    if (h->upload == NET_HOST_TO_BEGIN &&
-        net_equal(h->hello.job, h->job.hash, sizeof h->job.hash))
+    if (h->upload == NET_HOST_TO_BEGIN && net_equal(h->hello.job, h->job.hash, sizeof h->job.hash))
         h->upload = NET_HOST_STORED;
     return true;
 }
@@ -178,8 +182,8 @@ static void not_taken(struct net_host *h, int64_t now)
     struct net_nak nak;
     net_get_nak(net_channel_payload(&h->channel), &nak);
     h->naks++;
-    const bool asked = (h->upload == NET_HOST_BEGUN || h->upload == NET_HOST_ENDED) &&
-                       nak.sequence == h->asked;
+    const bool asked =
+        (h->upload == NET_HOST_BEGUN || h->upload == NET_HOST_ENDED) && nak.sequence == h->asked;
     if (asked && (nak.code == NET_BUSY || nak.code == NET_STATE)) {
         h->upload = NET_HOST_TO_BEGIN;
         h->again = now + NET_HOST_AGAIN_NS;
@@ -225,8 +229,7 @@ static void hear(struct net_host *h, int64_t now)
     case NET_PING:
         net_channel_put(&h->channel, NET_PONG, net_channel_payload(c), net_channel_length(c));
         break;
-    default:
-        break;
+    default: break;
     }
 }
 

@@ -3,9 +3,9 @@
 
 static size_t order_bytes(const struct net_host_order *o, uint8_t payload[NET_BYTES_output])
 {
-    const struct net_command command = {o->number};
-    const struct net_home home = {.number = o->number, .axes = o->axes};
-    const struct net_output output = {o->number, o->pins, o->mode, o->level, o->width};
+    const struct net_command command = { o->number };
+    const struct net_home home = { .number = o->number, .axes = o->axes };
+    const struct net_output output = { o->number, o->pins, o->mode, o->level, o->width };
     if (o->type == NET_HOME) {
         net_put_home(payload, &home);
         return NET_BYTES_home;
@@ -51,7 +51,7 @@ static struct net_host_order *next_order(struct net_host *h, int64_t now)
 
 static void send_begin(struct net_host *h)
 {
-    struct net_job_begin begin = {.bytes = h->job.bytes, .crc = h->job.crc};
+    struct net_job_begin begin = { .bytes = h->job.bytes, .crc = h->job.crc };
     uint8_t payload[NET_BYTES_job_begin];
     for (int i = 0; i < NET_SHA_BYTES; i++)
         begin.hash[i] = h->job.hash[i];
@@ -65,7 +65,7 @@ static void send_begin(struct net_host *h)
 
 static void send_end(struct net_host *h)
 {
-    const struct net_job_end end = {h->job.crc};
+    const struct net_job_end end = { h->job.crc };
     uint8_t payload[NET_BYTES_job_end];
     net_put_job_end(payload, &end);
     if (net_channel_put(&h->channel, NET_JOB_END, payload, sizeof payload)) {
@@ -84,16 +84,16 @@ static bool send_pages(struct net_host *h, const uint8_t *job)
         flying += h->flight[i].pages;
     const uint32_t free = h->credit > flying ? h->credit - flying : 0;
     count = count < free ? count : free;
-    const struct net_job_pages pages = {(uint16_t)h->page, (uint16_t)count};
+    const struct net_job_pages pages = { (uint16_t)h->page, (uint16_t)count };
     const size_t bytes = (size_t)count * NET_PAGE_BYTES;
-    if (count == 0 || h->flights == NET_HOST_FLIGHTS ||
-        !net_channel_room(&h->channel, NET_BYTES_job_pages + bytes, 0))
+    if (count == 0 || h->flights == NET_HOST_FLIGHTS
+        || !net_channel_room(&h->channel, NET_BYTES_job_pages + bytes, 0))
         return false;
     net_put_job_pages(payload, &pages);
     for (size_t i = 0; i < bytes; i++)
         payload[NET_BYTES_job_pages + i] = job[(size_t)h->page * NET_PAGE_BYTES + i];
     net_channel_put(&h->channel, NET_JOB_DATA, payload, NET_BYTES_job_pages + bytes);
-    h->flight[h->flights++] = (struct net_host_flight){h->channel.sent, count};
+    h->flight[h->flights++] = (struct net_host_flight){ h->channel.sent, count };
     h->pages_sent += count;
     for (uint32_t p = h->page; p < h->page + count; p++)
         h->pages_again += p < h->high;
@@ -120,11 +120,11 @@ static void send_job(struct net_host *h, const uint8_t *job, int64_t now)
 
 bool net_host_ask(struct net_host *h, uint16_t id, uint16_t index)
 {
-    const struct net_config_get get = {id, index};
+    const struct net_config_get get = { id, index };
     uint8_t payload[NET_BYTES_config_get];
     net_put_config_get(payload, &get);
-    return h->phase == NET_HOST_UP &&
-           net_channel_put(&h->channel, NET_CONFIG_GET, payload, sizeof payload);
+    return h->phase == NET_HOST_UP
+           && net_channel_put(&h->channel, NET_CONFIG_GET, payload, sizeof payload);
 }
 
 void net_host_tick(struct net_host *h, const uint8_t *job, int64_t now)
@@ -137,7 +137,7 @@ void net_host_tick(struct net_host *h, const uint8_t *job, int64_t now)
     if (h->phase != NET_HOST_UP)
         return;
     while ((event = net_alive_tick(&h->alive, now)) == NET_ASK) {
-        const struct net_token token = {(uint32_t)h->alive.pings};
+        const struct net_token token = { (uint32_t)h->alive.pings };
         net_put_token(payload, &token);
         net_channel_put(&h->channel, NET_PING, payload, sizeof payload);
     }

@@ -70,8 +70,7 @@ enum job_fault job_check_end(struct job_check *c)
         return c->fault;
     if (c->page != c->header.pages + 1)
         return set(c, JOB_SIZE);
-    if (c->frame != c->header.frames
-        || memcmp(c->position, c->header.end, sizeof c->position))
+    if (c->frame != c->header.frames || memcmp(c->position, c->header.end, sizeof c->position))
         return set(c, JOB_END);
     return set(c, slow(c, &c->last) ? JOB_GOOD : JOB_REST);
 }

@@ -8,12 +8,12 @@
 
 struct job_check {
     struct job_header header;
-    uint32_t start_speed[JOB_AXES]; /* [pulses/s] */
-    enum job_fault fault;           /* the first */
-    uint32_t page;                  /* of the file, the next; of a fault, where it is */
-    uint32_t frame;                 /* the next; of a fault, that or the first of its page */
-    int32_t  position[JOB_AXES];    /* [pulses] there */
-    int32_t  low[JOB_AXES], high[JOB_AXES]; /* [pulses] of all positions so far */
+    uint32_t start_speed[JOB_AXES];        /* [pulses/s] */
+    enum job_fault fault;                  /* the first */
+    uint32_t page;                         /* of the file, the next; of a fault, where it is */
+    uint32_t frame;                        /* the next; of a fault, that or the first of its page */
+    int32_t position[JOB_AXES];            /* [pulses] there */
+    int32_t low[JOB_AXES], high[JOB_AXES]; /* [pulses] of all positions so far */
     struct job_frame last;
 };
 

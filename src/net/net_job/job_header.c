@@ -6,8 +6,16 @@
 #include "job_page.h"
 #include "net_crc.h"
 
-enum { ID_AT = 8, RATES_AT = 32, JERK_AT = 80, END_AT = 112, ORIGIN_AT = 128, EVENTS_AT = 160,
-       EVENT_BYTES = 8, EVENTS_END = EVENTS_AT + JOB_EVENTS * EVENT_BYTES };
+enum {
+    ID_AT = 8,
+    RATES_AT = 32,
+    JERK_AT = 80,
+    END_AT = 112,
+    ORIGIN_AT = 128,
+    EVENTS_AT = 160,
+    EVENT_BYTES = 8,
+    EVENTS_END = EVENTS_AT + JOB_EVENTS * EVENT_BYTES
+};
 
 bool job_page_whole(const uint8_t page[JOB_PAGE_BYTES])
 {
@@ -35,11 +43,11 @@ static enum job_fault read_events(struct job_header *h, const uint8_t page[JOB_P
 {
     for (uint32_t k = 0; k < JOB_EVENTS; k++) {
         const uint8_t *at = page + EVENTS_AT + EVENT_BYTES * k;
-        const struct job_event e = {(uint16_t)job_get(at, 2), at[2], at[3], job_get32(at + 4)};
+        const struct job_event e = { (uint16_t)job_get(at, 2), at[2], at[3], job_get32(at + 4) };
         const bool none = !e.pins && !e.mode && !e.level && !e.width_us;
-        const bool good = e.mode <= 1 && e.level <= 1
-                          && (e.mode ? e.width_us >= 1 && e.width_us <= JOB_WIDTH_MAX_US
-                                     : e.width_us == 0);
+        const bool good =
+            e.mode <= 1 && e.level <= 1
+            && (e.mode ? e.width_us >= 1 && e.width_us <= JOB_WIDTH_MAX_US : e.width_us == 0);
         if (k < h->events ? !good : !none)
             return JOB_EVENT;
         h->event[k] = e;
@@ -132,7 +140,7 @@ void job_header_write(const struct job_header *h, uint8_t page[JOB_PAGE_BYTES])
 }
 
 /* The texts themselves, not pointers to them, which would not be constant in a shared library. */
-#define ROW(name, text) [name] = text,
+#define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[JOB_FAULTS][50] = { JOB_FAULT_TEXTS(ROW) };
 JOB_FAULT_TEXTS(FITS)

@@ -17,11 +17,11 @@
 enum {
     JOB_AXES = 4,
     JOB_PAGE_BYTES = 256,
-    JOB_CRC_AT = 252,           /* of each page, the CRC of the bytes before */
+    JOB_CRC_AT = 252, /* of each page, the CRC of the bytes before */
     JOB_EVENTS = 11,
     JOB_ORIGIN_BYTES = 32,
     JOB_VERSION = 1,
-    JOB_CLOCK_NS = 20,          /* a period is a whole number of these */
+    JOB_CLOCK_NS = 20, /* a period is a whole number of these */
     JOB_PERIOD_MIN_NS = 250000,
     JOB_PERIOD_MAX_NS = 10000000,
     JOB_WIDTH_MAX_US = 1000000, /* of the pulse of an event */
@@ -37,8 +37,8 @@ enum {
     X(JOB_MAGIC, "it does not begin with MCJ1") \
     X(JOB_FORMAT, "another version or page size") \
     X(JOB_ID, "its number is not that of its origin") \
-    X(JOB_PERIOD, "the period is out of range")  /* or no whole number of clocks */ \
-    X(JOB_MASK, "the mask of axes is none")  /* or more than four axes */ \
+    X(JOB_PERIOD, "the period is out of range") /* or no whole number of clocks */ \
+    X(JOB_MASK, "the mask of axes is none")     /* or more than four axes */ \
     /* header: no page or frame, more frames than the pages hold, too many events */ \
     X(JOB_COUNT, "the counts of pages, frames and events do not fit") \
     /* an event with a bad member; a frame's or the rest's is not in the table */ \
@@ -59,32 +59,29 @@ enum {
     X(JOB_END, "it does not end where its header says")
 
 #define JOB_FAULT_ENTRY(name, text) name,
-enum job_fault {
-    JOB_FAULT_TEXTS(JOB_FAULT_ENTRY)
-    JOB_FAULTS
-};
+enum job_fault { JOB_FAULT_TEXTS(JOB_FAULT_ENTRY) JOB_FAULTS };
 
 struct job_event {
-    uint16_t pins;      /* a bit each */
-    uint8_t  mode;      /* 0 level, 1 pulse */
-    uint8_t  level;     /* 1: active high */
-    uint32_t width_us;  /* [us] of a pulse, 1 .. JOB_WIDTH_MAX_US; 0 for a level */
+    uint16_t pins;     /* a bit each */
+    uint8_t mode;      /* 0 level, 1 pulse */
+    uint8_t level;     /* 1: active high */
+    uint32_t width_us; /* [us] of a pulse, 1 .. JOB_WIDTH_MAX_US; 0 for a level */
 };
 
 struct job_header {
-    uint32_t id;                            /* first four bytes of origin */
-    uint32_t period_ns;                     /* [ns] of a frame */
-    uint32_t axes;                          /* bit mask of those the frames hold */
-    uint32_t rest;                          /* event when the job is given up; 0 none */
-    uint32_t pages;                         /* data pages */
+    uint32_t id;        /* first four bytes of origin */
+    uint32_t period_ns; /* [ns] of a frame */
+    uint32_t axes;      /* bit mask of those the frames hold */
+    uint32_t rest;      /* event when the job is given up; 0 none */
+    uint32_t pages;     /* data pages */
     uint32_t frames;
-    uint32_t events;                        /* in use, numbers 1 .. events */
-    uint32_t pulses_per_m[JOB_AXES];        /* [pulses/m] */
-    uint32_t speed_max[JOB_AXES];           /* [pulses/s] planned */
-    uint32_t acc_max[JOB_AXES];             /* [pulses/s^2] for the card's own ramps */
-    uint64_t jerk_max[JOB_AXES];            /* [pulses/s^3] */
-    int32_t  end[JOB_AXES];                 /* [pulses] behind the last frame; the begin is 0 */
-    uint8_t  origin[JOB_ORIGIN_BYTES];      /* SHA-256 of the drawing and the settings */
+    uint32_t events;                  /* in use, numbers 1 .. events */
+    uint32_t pulses_per_m[JOB_AXES];  /* [pulses/m] */
+    uint32_t speed_max[JOB_AXES];     /* [pulses/s] planned */
+    uint32_t acc_max[JOB_AXES];       /* [pulses/s^2] for the card's own ramps */
+    uint64_t jerk_max[JOB_AXES];      /* [pulses/s^3] */
+    int32_t end[JOB_AXES];            /* [pulses] behind the last frame; the begin is 0 */
+    uint8_t origin[JOB_ORIGIN_BYTES]; /* SHA-256 of the drawing and the settings */
     struct job_event event[JOB_EVENTS];
 };
 

@@ -4,10 +4,13 @@
 
 #include "job_bytes.h"
 
-enum { VARINT_BYTES = 3 };  /* 4 * 32767 zigzagged twice over: below 2^21 */
+enum { VARINT_BYTES = 3 }; /* 4 * 32767 zigzagged twice over: below 2^21 */
 
 /* What is left of a payload. */
-struct stream { const uint8_t *at; int32_t left; };
+struct stream {
+    const uint8_t *at;
+    int32_t left;
+};
 
 static bool read_varint(struct stream *s, uint32_t *value)
 {
@@ -18,7 +21,7 @@ static bool read_varint(struct stream *s, uint32_t *value)
         if (byte < 0x80) {
             s->at += k + 1;
             s->left -= k + 1;
-            return byte || k == 0;  /* else a shorter one would do */
+            return byte || k == 0; /* else a shorter one would do */
         }
     }
     return false;
@@ -61,7 +64,7 @@ static enum job_fault read_frame(struct stream *s, const struct job_header *h, i
                                  const struct job_frame *before, struct job_frame *frame)
 {
     bool first = true, event = false;
-    *frame = (struct job_frame){0};
+    *frame = (struct job_frame){ 0 };
     for (int i = 0; i < JOB_AXES; i++) {
         uint32_t number;
         if (!(h->axes >> i & 1))
@@ -109,8 +112,8 @@ static enum job_fault read_page(struct job_page *p, const struct job_header *h,
         if (position[i] == INT32_MIN)
             return JOB_POSITION;
     }
-    struct stream s = {bytes + JOB_PAYLOAD_AT, payload};
-    struct job_frame before = {0};
+    struct stream s = { bytes + JOB_PAYLOAD_AT, payload };
+    struct job_frame before = { 0 };
     const int32_t most = job_command_max(h->period_ns);
     for (int32_t k = 0; k < frames; k++) {
         const enum job_fault fault = read_frame(&s, h, most, &before, &p->frame[k]);

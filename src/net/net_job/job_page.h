@@ -16,19 +16,19 @@
 enum {
     JOB_PAYLOAD_AT = 24,
     JOB_PAYLOAD = JOB_CRC_AT - JOB_PAYLOAD_AT,
-    JOB_PAGE_FRAMES = JOB_PAYLOAD,          /* at most: one axis, a byte each */
-    JOB_FRAME_BYTES = 3 * JOB_AXES + 1      /* at most: differences of 2 * 32767, an event */
+    JOB_PAGE_FRAMES = JOB_PAYLOAD,     /* at most: one axis, a byte each */
+    JOB_FRAME_BYTES = 3 * JOB_AXES + 1 /* at most: differences of 2 * 32767, an event */
 };
 
 struct job_frame {
-    int32_t command[JOB_AXES];  /* [pulses] */
-    int32_t event;              /* 1 .. events; 0 none */
+    int32_t command[JOB_AXES]; /* [pulses] */
+    int32_t event;             /* 1 .. events; 0 none */
 };
 
 struct job_page {
-    uint32_t first;                 /* frame number */
-    int32_t  position[JOB_AXES];    /* [pulses] at its begin */
-    int32_t  frames;                /* 1 .. JOB_PAGE_FRAMES */
+    uint32_t first;             /* frame number */
+    int32_t position[JOB_AXES]; /* [pulses] at its begin */
+    int32_t frames;             /* 1 .. JOB_PAGE_FRAMES */
     struct job_frame frame[JOB_PAGE_FRAMES];
 };
 

@@ -43,7 +43,7 @@ static enum job_fault take(struct job_reader *r, const struct job_page *page, ui
 enum job_fault job_reader_page(struct job_reader *r, const uint8_t bytes[JOB_PAGE_BYTES])
 {
     const uint32_t number = job_reader_wants(r);
-    struct job_page page = {0};     /* what has no frame is the same in every copy of a state */
+    struct job_page page = { 0 }; /* what has no frame is the same in every copy of a state */
     const enum job_fault fault = number ? job_page_read(&page, &r->header, bytes) : JOB_SIZE;
     if (fault)
         return fault;
@@ -55,7 +55,7 @@ enum job_fault job_reader_page(struct job_reader *r, const uint8_t bytes[JOB_PAG
     if (!before && !behind)
         return take(r, &page, number);
     if (before ? number == r->low : number == r->high)
-        return JOB_FRAMES;      /* none of the pages has it */
+        return JOB_FRAMES; /* none of the pages has it */
     if (before)
         r->high = number - 1;
     else

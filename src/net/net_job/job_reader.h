@@ -13,9 +13,9 @@ struct job_reader {
     struct job_header header;
     uint32_t low, high;         /* data pages among which the next one is sought; low <= high */
     uint32_t frame;             /* the next */
-    int32_t  position[JOB_AXES];/* [pulses] at the begin of the next frame, if that is */
-    bool     known;             /* then the next page must begin there */
-    int32_t  at;                /* in the page */
+    int32_t position[JOB_AXES]; /* [pulses] at the begin of the next frame, if that is */
+    bool known;                 /* then the next page must begin there */
+    int32_t at;                 /* in the page */
     struct job_page page;       /* frames 0: none is there */
 };
 

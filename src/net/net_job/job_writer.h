@@ -13,13 +13,13 @@
 #include "job_page.h"
 
 struct job_writer {
-    struct job_header header;       /* pages, frames and end are those so far */
-    enum job_fault fault;           /* of the first frame refused; no other is taken then */
-    uint32_t first;                 /* frame of the page under way, */
-    int32_t  begin[JOB_AXES];       /* [pulses] where it begins, */
-    int32_t  frames, bytes;         /* and what it has */
+    struct job_header header; /* pages, frames and end are those so far */
+    enum job_fault fault;     /* of the first frame refused; no other is taken then */
+    uint32_t first;           /* frame of the page under way, */
+    int32_t begin[JOB_AXES];  /* [pulses] where it begins, */
+    int32_t frames, bytes;    /* and what it has */
     struct job_frame last;
-    uint8_t  payload[JOB_PAYLOAD];
+    uint8_t payload[JOB_PAYLOAD];
 };
 
 /* The header's counts, end and id are made by the writer; the rest is the caller's. */

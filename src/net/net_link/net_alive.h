@@ -9,8 +9,8 @@
 enum { NET_PINGS = 3 };
 
 struct net_alive {
-    int64_t due;        /* [ns] next deadline */
-    int32_t pings;      /* since it was heard */
+    int64_t due;   /* [ns] next deadline */
+    int32_t pings; /* since it was heard */
 };
 
 enum net_alive_event { NET_QUIET, NET_ASK, NET_GONE };

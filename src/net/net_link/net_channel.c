@@ -79,7 +79,8 @@ static enum net_fault frame_fault(const struct net_channel *c)
     if (!net_equal(check, c->frame + bytes, check_bytes(c)))
         return NET_BAD_CHECK;
     return net_payload_fits(net_channel_type(c), net_channel_payload(c), net_channel_length(c))
-           ? NET_FINE : NET_BAD_PAYLOAD;
+               ? NET_FINE
+               : NET_BAD_PAYLOAD;
 }
 
 size_t net_channel_take(struct net_channel *c, const uint8_t *bytes, size_t n)
@@ -87,8 +88,8 @@ size_t net_channel_take(struct net_channel *c, const uint8_t *bytes, size_t n)
     size_t taken = 0;
     while (taken < n && !c->whole && c->fault == NET_FINE) {
         const size_t held = (size_t)c->held;
-        const size_t want = held < NET_HEADER ? NET_HEADER
-                            : NET_HEADER + net_channel_length(c) + check_bytes(c);
+        const size_t want =
+            held < NET_HEADER ? NET_HEADER : NET_HEADER + net_channel_length(c) + check_bytes(c);
         const size_t part = n - taken < want - held ? n - taken : want - held;
         memcpy(c->frame + held, bytes + taken, part);
         taken += part;
@@ -132,8 +133,8 @@ void net_channel_drop(struct net_channel *c)
 
 bool net_channel_room(const struct net_channel *c, size_t payload, size_t left)
 {
-    return c->fault == NET_FINE && c->sent < UINT32_MAX &&
-           (size_t)c->out_count + NET_HEADER + payload + check_bytes(c) + left <= NET_OUT;
+    return c->fault == NET_FINE && c->sent < UINT32_MAX
+           && (size_t)c->out_count + NET_HEADER + payload + check_bytes(c) + left <= NET_OUT;
 }
 
 bool net_channel_put(struct net_channel *c, uint8_t type, const uint8_t *payload, size_t n)
@@ -169,7 +170,7 @@ size_t net_channel_out(struct net_channel *c, uint8_t *bytes, size_t most)
 }
 
 /* The texts themselves, not pointers to them, which would not be constant in a shared library. */
-#define ROW(name, text) [name] = text,
+#define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[NET_FAULTS][35] = { NET_FAULT_TEXTS(ROW) };
 NET_FAULT_TEXTS(FITS)

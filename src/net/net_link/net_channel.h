@@ -21,8 +21,8 @@ enum {
     NET_HEADER = 12,
     NET_CRC = 4,
     NET_MAC = 8,
-    NET_FRAME = NET_HEADER + NET_PAYLOAD + NET_MAC,     /* longest */
-    NET_OUT = 4096,         /* bytes that wait to be sent */
+    NET_FRAME = NET_HEADER + NET_PAYLOAD + NET_MAC, /* longest */
+    NET_OUT = 4096,                                 /* bytes that wait to be sent */
 };
 
 /* What is wrong with a stream, each fault with its text. */
@@ -34,25 +34,22 @@ enum {
     X(NET_BAD_SEQUENCE, "a frame out of sequence") \
     X(NET_BAD_LENGTH, "a frame too long") \
     X(NET_BAD_CHECK, "a frame whose CRC or MAC is wrong") \
-    X(NET_BAD_PAYLOAD, "a message of a wrong length")  /* not the length of its type */
+    X(NET_BAD_PAYLOAD, "a message of a wrong length") /* not the length of its type */
 
 #define NET_FAULT_ENTRY(name, text) name,
-enum net_fault {
-    NET_FAULT_TEXTS(NET_FAULT_ENTRY)
-    NET_FAULTS
-};
+enum net_fault { NET_FAULT_TEXTS(NET_FAULT_ENTRY) NET_FAULTS };
 
 struct net_channel {
-    bool     card;          /* this end is the card's */
-    bool     keyed;
-    bool     whole;         /* the frame below is */
-    uint8_t  fault;         /* enum net_fault; once set, nothing is taken or written */
-    uint8_t  key[NET_SHA_BYTES];
-    uint32_t sent, taken;   /* sequences of the latest frames */
-    int32_t  held;          /* bytes of the frame below */
-    int32_t  out_first, out_count;      /* of the ring out */
-    uint8_t  frame[NET_FRAME];
-    uint8_t  out[NET_OUT];
+    bool card; /* this end is the card's */
+    bool keyed;
+    bool whole;    /* the frame below is */
+    uint8_t fault; /* enum net_fault; once set, nothing is taken or written */
+    uint8_t key[NET_SHA_BYTES];
+    uint32_t sent, taken;         /* sequences of the latest frames */
+    int32_t held;                 /* bytes of the frame below */
+    int32_t out_first, out_count; /* of the ring out */
+    uint8_t frame[NET_FRAME];
+    uint8_t out[NET_OUT];
 };
 
 /* A new connection. */

@@ -16,80 +16,92 @@
 #include "net_sha.h"
 
 enum {
-    NET_PROTOCOL = 1,       /* the only one there is */
+    NET_PROTOCOL = 1, /* the only one there is */
     NET_PAGE_BYTES = 256,
-    NET_PAGES = 4,          /* most pages of a JOB_DATA */
+    NET_PAGES = 4, /* most pages of a JOB_DATA */
     NET_NONCE = 16,
     NET_AXES = 4,
     NET_NO_PAGE = 0xFFFF,
-    NET_PAYLOAD = 4 + NET_PAGES * NET_PAGE_BYTES,   /* longest payload */
+    NET_PAYLOAD = 4 + NET_PAGES * NET_PAGE_BYTES, /* longest payload */
 };
 
 enum net_type {
-    NET_HELLO = 1, NET_CHALLENGE, NET_AUTH, NET_WELCOME,
-    NET_JOB_BEGIN = 16, NET_JOB_DATA, NET_JOB_END, NET_ACK, NET_NAK,
-    NET_START = 32, NET_PAUSE, NET_STOP, NET_HOME, NET_RESET, NET_OUTPUT,
+    NET_HELLO = 1,
+    NET_CHALLENGE,
+    NET_AUTH,
+    NET_WELCOME,
+    NET_JOB_BEGIN = 16,
+    NET_JOB_DATA,
+    NET_JOB_END,
+    NET_ACK,
+    NET_NAK,
+    NET_START = 32,
+    NET_PAUSE,
+    NET_STOP,
+    NET_HOME,
+    NET_RESET,
+    NET_OUTPUT,
     NET_RESULT = 48,
-    NET_CONFIG_GET = 64, NET_CONFIG_SET, NET_CONFIG,
+    NET_CONFIG_GET = 64,
+    NET_CONFIG_SET,
+    NET_CONFIG,
     NET_STATUS = 80,
-    NET_PING = 96, NET_PONG,
+    NET_PING = 96,
+    NET_PONG,
 };
 
 #define NET_HELLO_LIST(X) \
     X(uint32_t, card, ) \
-    X(uint16_t, oldest, )               /* protocol */ \
+    X(uint16_t, oldest, ) /* protocol */ \
     X(uint16_t, newest, ) \
-    X(uint8_t,  nonce, [NET_NONCE]) \
+    X(uint8_t, nonce, [NET_NONCE]) \
     X(uint32_t, firmware, ) \
-    X(uint8_t,  slots, ) \
-    X(uint8_t,  axes, ) \
-    X(uint16_t, credit, )               /* [pages] */ \
-    X(uint32_t, last_command, )         /* highest number taken since power-up */ \
-    X(uint8_t,  job, [NET_SHA_BYTES])   /* hash of the job in flash; 0 none */ \
-    X(uint8_t,  state, )                /* enum net_state */ \
-    X(uint8_t,  spare, ) \
-    X(uint16_t, life, )                 /* drawn at power-up: another one, results are lost */
+    X(uint8_t, slots, ) \
+    X(uint8_t, axes, ) \
+    X(uint16_t, credit, )            /* [pages] */ \
+    X(uint32_t, last_command, )      /* highest number taken since power-up */ \
+    X(uint8_t, job, [NET_SHA_BYTES]) /* hash of the job in flash; 0 none */ \
+    X(uint8_t, state, )              /* enum net_state */ \
+    X(uint8_t, spare, ) \
+    X(uint16_t, life, ) /* drawn at power-up: another one, results are lost */
 #define NET_CHALLENGE_LIST(X) \
     X(uint16_t, protocol, ) \
     X(uint16_t, spare, ) \
-    X(uint8_t,  nonce, [NET_NONCE]) \
-    X(uint8_t,  proof, [NET_SHA_BYTES])
-#define NET_AUTH_LIST(X) \
-    X(uint8_t,  proof, [NET_SHA_BYTES])
+    X(uint8_t, nonce, [NET_NONCE]) \
+    X(uint8_t, proof, [NET_SHA_BYTES])
+#define NET_AUTH_LIST(X) X(uint8_t, proof, [NET_SHA_BYTES])
 #define NET_WELCOME_LIST(X) \
-    X(uint16_t, interval, )             /* [ms] of STATUS; 0 none */ \
+    X(uint16_t, interval, ) /* [ms] of STATUS; 0 none */ \
     X(uint16_t, spare, )
 #define NET_JOB_BEGIN_LIST(X) \
-    X(uint32_t, bytes, )                /* a multiple of 256 */ \
-    X(uint8_t,  hash, [NET_SHA_BYTES]) \
+    X(uint32_t, bytes, ) /* a multiple of 256 */ \
+    X(uint8_t, hash, [NET_SHA_BYTES]) \
     X(uint32_t, crc, )
 /* JOB_DATA is page, count and count pages. */
 #define NET_JOB_PAGES_LIST(X) \
     X(uint16_t, page, ) \
     X(uint16_t, count, )
-#define NET_JOB_END_LIST(X) \
-    X(uint32_t, crc, )
+#define NET_JOB_END_LIST(X) X(uint32_t, crc, )
 #define NET_ACK_LIST(X) \
-    X(uint32_t, sequence, )             /* all up to it are taken */ \
-    X(uint16_t, credit, )               /* [pages] of frames behind it */ \
-    X(uint16_t, missing, )              /* first missing page, NET_NO_PAGE */
+    X(uint32_t, sequence, ) /* all up to it are taken */ \
+    X(uint16_t, credit, )   /* [pages] of frames behind it */ \
+    X(uint16_t, missing, )  /* first missing page, NET_NO_PAGE */
 #define NET_NAK_LIST(X) \
     X(uint32_t, sequence, ) \
-    X(uint16_t, code, )                 /* enum net_code */ \
+    X(uint16_t, code, ) /* enum net_code */ \
     X(uint16_t, detail, )
 /* START, PAUSE, STOP, RESET. */
-#define NET_COMMAND_LIST(X) \
-    X(uint32_t, number, )
+#define NET_COMMAND_LIST(X) X(uint32_t, number, )
 #define NET_HOME_LIST(X) \
     X(uint32_t, number, ) \
-    X(uint8_t,  axes, )                 /* bits */ \
-    X(uint8_t,  spare, [3])
+    X(uint8_t, axes, ) /* bits */ \
+    X(uint8_t, spare, [3])
 #define NET_OUTPUT_LIST(X) \
     X(uint32_t, number, ) \
-    X(uint16_t, pins, )                 /* bits */ \
-    X(uint8_t,  mode, )                 /* 0 level, 1 pulse */ \
-    X(uint8_t,  level, )                /* 1 high active */ \
-    X(uint32_t, width, )                /* [us] */
+    X(uint16_t, pins, )  /* bits */ \
+    X(uint8_t, mode, )   /* 0 level, 1 pulse */ \
+    X(uint8_t, level, )  /* 1 high active */ \
+    X(uint32_t, width, ) /* [us] */
 #define NET_RESULT_LIST(X) \
     X(uint32_t, number, ) \
     X(uint16_t, code, ) \
@@ -101,42 +113,54 @@ enum net_type {
     X(uint32_t, number, ) \
     X(uint16_t, id, ) \
     X(uint16_t, index, ) \
-    X(int64_t,  value, )
+    X(int64_t, value, )
 #define NET_CONFIG_LIST(X) \
     X(uint16_t, id, ) \
     X(uint16_t, index, ) \
-    X(int64_t,  value, )
+    X(int64_t, value, )
 #define NET_STATUS_LIST(X) \
-    X(uint8_t,  state, ) \
-    X(uint8_t,  error, ) \
+    X(uint8_t, state, ) \
+    X(uint8_t, error, ) \
     X(uint16_t, inputs, ) \
     X(uint16_t, outputs, ) \
-    X(uint16_t, stock, )                /* [frames] */ \
+    X(uint16_t, stock, ) /* [frames] */ \
     X(uint32_t, job, ) \
     X(uint32_t, frame, ) \
-    X(int32_t,  position, [NET_AXES])   /* [pulses] */ \
+    X(int32_t, position, [NET_AXES]) /* [pulses] */ \
     X(uint32_t, underflows, ) \
-    X(uint32_t, switches, )             /* limits, home, alarm */ \
-    X(uint16_t, load, [7])              /* [1/1000] six tasks, interrupts */ \
-    X(uint16_t, rate, )                 /* [1/1000] */ \
-    X(uint32_t, wear, )                 /* most erases of a sector */
-#define NET_TOKEN_LIST(X) \
-    X(uint32_t, token, )
+    X(uint32_t, switches, ) /* limits, home, alarm */ \
+    X(uint16_t, load, [7])  /* [1/1000] six tasks, interrupts */ \
+    X(uint16_t, rate, )     /* [1/1000] */ \
+    X(uint32_t, wear, )     /* most erases of a sector */
+#define NET_TOKEN_LIST(X) X(uint32_t, token, )
 
 /* struct, list: of each there are net_put_<struct> and net_get_<struct>. */
 #define NET_STRUCTS(X) \
-    X(hello, NET_HELLO_LIST) X(challenge, NET_CHALLENGE_LIST) X(auth, NET_AUTH_LIST) \
-    X(welcome, NET_WELCOME_LIST) X(job_begin, NET_JOB_BEGIN_LIST) \
-    X(job_pages, NET_JOB_PAGES_LIST) X(job_end, NET_JOB_END_LIST) X(ack, NET_ACK_LIST) \
-    X(nak, NET_NAK_LIST) X(command, NET_COMMAND_LIST) X(home, NET_HOME_LIST) \
-    X(output, NET_OUTPUT_LIST) X(result, NET_RESULT_LIST) X(config_get, NET_CONFIG_GET_LIST) \
-    X(config_set, NET_CONFIG_SET_LIST) X(config, NET_CONFIG_LIST) X(status, NET_STATUS_LIST) \
+    X(hello, NET_HELLO_LIST) \
+    X(challenge, NET_CHALLENGE_LIST) \
+    X(auth, NET_AUTH_LIST) \
+    X(welcome, NET_WELCOME_LIST) \
+    X(job_begin, NET_JOB_BEGIN_LIST) \
+    X(job_pages, NET_JOB_PAGES_LIST) \
+    X(job_end, NET_JOB_END_LIST) \
+    X(ack, NET_ACK_LIST) \
+    X(nak, NET_NAK_LIST) \
+    X(command, NET_COMMAND_LIST) \
+    X(home, NET_HOME_LIST) \
+    X(output, NET_OUTPUT_LIST) \
+    X(result, NET_RESULT_LIST) \
+    X(config_get, NET_CONFIG_GET_LIST) \
+    X(config_set, NET_CONFIG_SET_LIST) \
+    X(config, NET_CONFIG_LIST) \
+    X(status, NET_STATUS_LIST) \
     X(token, NET_TOKEN_LIST)
 
 #define NET_MEMBER(type, name, elements) type name elements;
-#define NET_SIZE(type, name, elements) + sizeof(type elements)
+#define NET_SIZE(type, name, elements)   +sizeof(type elements)
 #define NET_DECLARE(name, list) \
-    struct net_##name { list(NET_MEMBER) }; \
+    struct net_##name { \
+        list(NET_MEMBER) \
+    }; \
     enum { NET_BYTES_##name = 0 list(NET_SIZE) }; \
     void net_put_##name(uint8_t *payload, const struct net_##name *m); \
     void net_get_##name(const uint8_t *payload, struct net_##name *m);

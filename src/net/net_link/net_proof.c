@@ -6,8 +6,8 @@ void net_prove(const struct net_secret *s, enum net_proof of, uint8_t proof[NET_
 {
     const uint8_t first = (uint8_t)of;
     const uint8_t last[6] = {
-        (uint8_t)s->card, (uint8_t)(s->card >> 8), (uint8_t)(s->card >> 16),
-        (uint8_t)(s->card >> 24), (uint8_t)s->protocol, (uint8_t)(s->protocol >> 8),
+        (uint8_t)s->card,         (uint8_t)(s->card >> 8), (uint8_t)(s->card >> 16),
+        (uint8_t)(s->card >> 24), (uint8_t)s->protocol,    (uint8_t)(s->protocol >> 8),
     };
     struct net_hmac m;
     net_hmac_start(&m, s->key, sizeof s->key);

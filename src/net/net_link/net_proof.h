@@ -5,8 +5,8 @@
 #include "net_message.h"
 
 struct net_secret {
-    uint8_t  key[NET_SHA_BYTES];        /* of the card; all 0: open, frames have a CRC only */
-    uint8_t  card_nonce[NET_NONCE], server_nonce[NET_NONCE];
+    uint8_t key[NET_SHA_BYTES]; /* of the card; all 0: open, frames have a CRC only */
+    uint8_t card_nonce[NET_NONCE], server_nonce[NET_NONCE];
     uint32_t card;
     uint16_t protocol;
 };
@@ -22,11 +22,11 @@ bool net_is_open(const uint8_t key[NET_SHA_BYTES]);
 
 /* Random bytes from a seed: SHA-256(seed + number), a number for each draw. */
 struct net_random {
-    uint8_t  seed[NET_SHA_BYTES];
+    uint8_t seed[NET_SHA_BYTES];
     uint64_t drawn;
 };
 
 void net_random_start(struct net_random *r, const uint8_t seed[NET_SHA_BYTES]);
-void net_random_draw(struct net_random *r, uint8_t *bytes, size_t n);  /* n <= 32 */
+void net_random_draw(struct net_random *r, uint8_t *bytes, size_t n); /* n <= 32 */
 
 #endif

@@ -78,7 +78,7 @@ void net_sha_add(struct net_sha *s, const uint8_t *bytes, size_t n)
 
 void net_sha_end(struct net_sha *s, uint8_t hash[NET_SHA_BYTES])
 {
-    enum { LENGTH_AT = NET_SHA_BLOCK - 8 };     /* of a block: the number of bits */
+    enum { LENGTH_AT = NET_SHA_BLOCK - 8 }; /* of a block: the number of bits */
     const uint64_t bits = s->bytes * 8;
     const uint8_t one = 0x80, zero = 0;
     uint8_t length[8];

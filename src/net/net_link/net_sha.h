@@ -10,8 +10,8 @@ enum { NET_SHA_BYTES = 32, NET_SHA_BLOCK = 64 };
 
 struct net_sha {
     uint32_t h[8];
-    uint64_t bytes;                 /* so far */
-    uint8_t  block[NET_SHA_BLOCK];  /* the last bytes % 64 of them */
+    uint64_t bytes;               /* so far */
+    uint8_t block[NET_SHA_BLOCK]; /* the last bytes % 64 of them */
 };
 
 void net_sha_start(struct net_sha *s);
@@ -23,7 +23,7 @@ void net_sha(const uint8_t *bytes, size_t n, uint8_t hash[NET_SHA_BYTES]);
 
 struct net_hmac {
     struct net_sha inner;
-    uint8_t        key[NET_SHA_BLOCK];
+    uint8_t key[NET_SHA_BLOCK];
 };
 
 /* A key longer than 64 bytes counts as its hash, as the RFC has it. */

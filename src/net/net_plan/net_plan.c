@@ -14,7 +14,7 @@ void net_plan_start(struct net_plan *p, const struct net_plan_config *config)
 {
     memset(p, 0, offsetof(struct net_plan, chain));
     p->config = *config;
-    p->lowered = true;      /* not known: it is raised first */
+    p->lowered = true; /* not known: it is raised first */
     p->chain.open = false;
 }
 

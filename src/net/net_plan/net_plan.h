@@ -25,33 +25,33 @@ enum net_plan_pen { NET_PLAN_OUTPUT, NET_PLAN_AXIS };
 enum net_plan_event { NET_PLAN_LOWER = 1, NET_PLAN_RAISE = 2 };
 
 struct net_plan_axis {
-    double pulses_per_mm;       /* > 0; X and Y must, others without a pen are 0 and stand */
-    double speed;               /* [mm/s] > 0 */
-    double acc;                 /* [mm/s^2] > 0 */
-    double jerk;                /* [mm/s^3] > 0 */
+    double pulses_per_mm; /* > 0; X and Y must, others without a pen are 0 and stand */
+    double speed;         /* [mm/s] > 0 */
+    double acc;           /* [mm/s^2] > 0 */
+    double jerk;          /* [mm/s^3] > 0 */
 };
 
 struct net_plan_config {
     struct net_plan_axis axis[JOB_AXES];
-    int32_t period_ns;          /* [ns] of a frame */
-    double tolerance;           /* [mm] > 0 of the curve from the vertices, both ways */
-    double rapid;               /* [mm/s] > 0 with the pen up, and of an axis that moves it */
-    double reserve;             /* 0 .. < 1 share of acceleration and jerk left free */
+    int32_t period_ns; /* [ns] of a frame */
+    double tolerance;  /* [mm] > 0 of the curve from the vertices, both ways */
+    double rapid;      /* [mm/s] > 0 with the pen up, and of an axis that moves it */
+    double reserve;    /* 0 .. < 1 share of acceleration and jerk left free */
     enum net_plan_pen pen;
-    int32_t pen_axis;           /* 2 or 3 */
-    double up, down;            /* [mm] its places */
-    double dwell;               /* [s] of rest while the pen moves */
+    int32_t pen_axis; /* 2 or 3 */
+    double up, down;  /* [mm] its places */
+    double dwell;     /* [s] of rest while the pen moves */
 };
 
 enum net_plan_kind {
-    NET_PLAN_MOVE,              /* there with the pen up */
-    NET_PLAN_DRAW,              /* there with the pen down */
-    NET_PLAN_STOP               /* the same, to rest exactly there */
+    NET_PLAN_MOVE, /* there with the pen up */
+    NET_PLAN_DRAW, /* there with the pen down */
+    NET_PLAN_STOP  /* the same, to rest exactly there */
 };
 
 struct net_plan_vertex {
-    double point[2];            /* [mm] */
-    double feed;                /* [mm/s] > 0; of a move any */
+    double point[2]; /* [mm] */
+    double feed;     /* [mm/s] > 0; of a move any */
     enum net_plan_kind kind;
 };
 
@@ -59,13 +59,13 @@ enum net_plan_step { NET_PLAN_NOTHING, NET_PLAN_RESTS, NET_PLAN_SLIDES, NET_PLAN
 
 struct net_plan_frame {
     struct job_frame job;
-    double place[JOB_AXES];     /* [mm] planned at its end */
-    enum net_plan_step step;    /* what it is part of */
+    double place[JOB_AXES];  /* [mm] planned at its end */
+    enum net_plan_step step; /* what it is part of */
 };
 
 enum net_plan_result {
     NET_PLAN_FRAME,
-    NET_PLAN_WANTS,             /* a vertex, or the end */
+    NET_PLAN_WANTS, /* a vertex, or the end */
     NET_PLAN_OVER
 };
 
@@ -77,11 +77,11 @@ struct net_plan {
     bool moving, drawing, over; /* a move, a line waits or is under way; nothing more comes */
     double goal[2], target[2];  /* [mm] the end of all that has come; of the move */
     enum net_plan_step step;
-    int32_t rest;               /* frames left */
-    int32_t stops;              /* rests within lines so far, where there is no room for a curve */
-    struct scurve slide;        /* along a straight line, */
-    double from[JOB_AXES], slope[JOB_AXES];     /* [mm], [1] from there */
-    double time;                /* [s] since it began */
+    int32_t rest;        /* frames left */
+    int32_t stops;       /* rests within lines so far, where there is no room for a curve */
+    struct scurve slide; /* along a straight line, */
+    double from[JOB_AXES], slope[JOB_AXES]; /* [mm], [1] from there */
+    double time;                            /* [s] since it began */
     struct plan_chain chain;
 };
 

@@ -101,7 +101,7 @@ double plan_chain_advance(struct plan_chain *c, double dt)
     join(c);
     dt = pace_advance(&c->pace, 1.0, dt);
     look(c);
-    while (rests(c)) {      /* the next stretch begins at rest */
+    while (rests(c)) { /* the next stretch begins at rest */
         shape_drop(&c->shape, c->joined);
         c->joined = 0;
         c->base = 0.0;
@@ -122,5 +122,5 @@ double plan_chain_advance(struct plan_chain *c, double dt)
 bool plan_chain_done(const struct plan_chain *c)
 {
     return !c->open && c->joined == shape_count(&c->shape)
-        && (shape_count(&c->shape) == 0 || rests(c));
+           && (shape_count(&c->shape) == 0 || rests(c));
 }

@@ -12,14 +12,14 @@
 #include "shape.h"
 
 struct plan_chain {
-    bool   open;            /* vertices may come */
-    bool   full;            /* none has room before the motion goes on */
-    int32_t stops;          /* rests before its end so far */
-    double tolerance;       /* [mm] */
-    double end[AXES];       /* [mm] the latest vertex */
-    int32_t joined;         /* pieces that the pace has, from the first that the shape keeps */
-    double base;            /* [mm] of the pace: start of the first piece that the shape keeps */
-    double place[AXES];     /* [mm] where the motion is */
+    bool open;          /* vertices may come */
+    bool full;          /* none has room before the motion goes on */
+    int32_t stops;      /* rests before its end so far */
+    double tolerance;   /* [mm] */
+    double end[AXES];   /* [mm] the latest vertex */
+    int32_t joined;     /* pieces that the pace has, from the first that the shape keeps */
+    double base;        /* [mm] of the pace: start of the first piece that the shape keeps */
+    double place[AXES]; /* [mm] where the motion is */
     struct pace_limits limits;
     struct shape shape;
     struct pace pace;

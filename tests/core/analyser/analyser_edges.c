@@ -61,7 +61,7 @@ static void check_reactions(void)
                 if (width >= LEAST && width <= MOST) {
                     widths[width - LEAST]++;
                 }
-            } else {    /* one that is not known yet is too far away for that */
+            } else { /* one that is not known yet is too far away for that */
                 CHECK((a.levels ^ response) >> i & 1 || c->edge > at + 2 * PERIOD);
             }
             CHECK_EQ(c->level, a.levels >> i & 1);
@@ -79,7 +79,7 @@ static void check_reactions(void)
         CHECK_EQ(c->timeouts, 0);
         CHECK_EQ(c->strays, 0);
     }
-    for (int k = 0; k <= MOST - LEAST; k++) {   /* within five standard deviations */
+    for (int k = 0; k <= MOST - LEAST; k++) { /* within five standard deviations */
         CHECK_NEAR(widths[k], answers / 10.0, 5.0 * sqrt(answers * 0.09) + 32.0);
     }
 }
@@ -117,7 +117,7 @@ static void check_times(void)
     for (int k = 0; k < 3; k++) {
         const uint32_t level = k % 2 ? 0 : 8;
         const int64_t shown = a.channel[3].shown, late = (int64_t[]){ 40, 0, 70 }[k];
-        clock_[3] = (double)(shown - 1);    /* a change before the edge answers nothing */
+        clock_[3] = (double)(shown - 1); /* a change before the edge answers nothing */
         CHECK_EQ(analyser_instant(&a, at, level, clock_, event), 0);
         CHECK_EQ(a.channel[3].strays, 3 * k + 1);
         CHECK_EQ(analyser_instant(&a, at, level ^ 8, clock_, event), 0);
@@ -159,8 +159,8 @@ static void check_seeds(void)
     /* The first number of SplitMix64 from 0, as published, and the constant of its next step. */
     CHECK(all[0] == UINT64_C(0xE220A8397B1DCDAF) + UINT64_C(0x9E3779B97F4A7C15));
     /* And from 2^32 + 1: channel 1 of seed 1. */
-    CHECK(all[ANALYSER_CHANNELS + 1] ==
-          UINT64_C(0x204391A6FD59956F) + UINT64_C(0x9E3779B97F4A7C15));
+    CHECK(all[ANALYSER_CHANNELS + 1]
+          == UINT64_C(0x204391A6FD59956F) + UINT64_C(0x9E3779B97F4A7C15));
 }
 
 int main(void)

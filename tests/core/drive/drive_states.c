@@ -8,9 +8,17 @@
 static struct drive_config config(int32_t mode)
 {
     return (struct drive_config){
-        .mode = mode, .period = 1e-4, .speed_per_volt = 300.0, .encoder_lines = 2500,
-        .encoder_counts = 10000, .pulses_per_turn = 10000, .velocity_gain = 0.5,
-        .velocity_time = 0.02, .position_gain = 50.0, .torque_limit = 10.0, .speed_limit = 3000.0,
+        .mode = mode,
+        .period = 1e-4,
+        .speed_per_volt = 300.0,
+        .encoder_lines = 2500,
+        .encoder_counts = 10000,
+        .pulses_per_turn = 10000,
+        .velocity_gain = 0.5,
+        .velocity_time = 0.02,
+        .position_gain = 50.0,
+        .torque_limit = 10.0,
+        .speed_limit = 3000.0,
         .error_limit = 0.5,
     };
 }
@@ -20,9 +28,9 @@ static struct drive_config config(int32_t mode)
 static void bumpless(int32_t mode, double volts)
 {
     struct drive_config c = config(mode);
-    struct drive_state s = {0};
+    struct drive_state s = { 0 };
     struct drive_output out;
-    struct drive_input in = {.volts = volts, .pulses = 123456, .phase = 77.0};
+    struct drive_input in = { .volts = volts, .pulses = 123456, .phase = 77.0 };
     double turns_per_sample = 600.0 / 60.0 * 1e-4;
     for (int k = 0; k < 40; k++) {
         in.enable = k >= 20;
@@ -30,7 +38,7 @@ static void bumpless(int32_t mode, double volts)
         drive_tick(&c, &s, &in, &out);
         if (k < 20) {
             CHECK(out.torque == 0.0 && out.speed_command == 0.0 && !out.ready);
-            CHECK(k == 0 || fabs(out.speed - 600.0) < 61.0);    /* one count is 60 rpm */
+            CHECK(k == 0 || fabs(out.speed - 600.0) < 61.0); /* one count is 60 rpm */
         } else {
             double error = (out.speed_command - out.speed) * 3.14159265358979 / 30.0;
             CHECK(out.ready);
@@ -46,11 +54,11 @@ static void bumpless(int32_t mode, double volts)
 static void following_error_alarm(void)
 {
     struct drive_config c = config(DRIVE_POSITION);
-    struct drive_state s = {0};
+    struct drive_state s = { 0 };
     struct drive_output out;
-    struct drive_input in = {.enable = true};
+    struct drive_input in = { .enable = true };
     drive_tick(&c, &s, &in, &out);
-    in.pulses = 5000;                       /* exactly the limit of half a turn */
+    in.pulses = 5000; /* exactly the limit of half a turn */
     drive_tick(&c, &s, &in, &out);
     CHECK_EQ(out.alarm, DRIVE_NO_ALARM);
     CHECK(out.torque > 0.0);
@@ -58,7 +66,7 @@ static void following_error_alarm(void)
     drive_tick(&c, &s, &in, &out);
     CHECK_EQ(out.alarm, DRIVE_FOLLOWING_ERROR);
     CHECK(!out.ready && out.torque == 0.0 && out.speed_command == 0.0);
-    in.enable = false;                      /* only a reset edge clears it */
+    in.enable = false; /* only a reset edge clears it */
     drive_tick(&c, &s, &in, &out);
     in.enable = true;
     drive_tick(&c, &s, &in, &out);
@@ -67,7 +75,7 @@ static void following_error_alarm(void)
     drive_tick(&c, &s, &in, &out);
     CHECK_EQ(out.alarm, DRIVE_NO_ALARM);
     CHECK(out.ready && out.following_error == 0.0 && out.torque == 0.0);
-    in.pulses += 6000;                      /* a reset held up does not clear the next one */
+    in.pulses += 6000; /* a reset held up does not clear the next one */
     drive_tick(&c, &s, &in, &out);
     CHECK_EQ(out.alarm, DRIVE_FOLLOWING_ERROR);
     drive_tick(&c, &s, &in, &out);
@@ -83,9 +91,9 @@ static void overspeed_alarm(void)
 {
     struct drive_config c = config(DRIVE_VELOCITY);
     c.encoder_counts = 1000000;
-    struct drive_state s = {0};
+    struct drive_state s = { 0 };
     struct drive_output out;
-    struct drive_input in = {.enable = true};
+    struct drive_input in = { .enable = true };
     drive_tick(&c, &s, &in, &out);
     in.phase += 3599.0 / 60.0 * 1e-4 * 2500;
     drive_tick(&c, &s, &in, &out);
@@ -94,11 +102,11 @@ static void overspeed_alarm(void)
     drive_tick(&c, &s, &in, &out);
     CHECK_EQ(out.alarm, DRIVE_OVERSPEED);
     CHECK(out.torque == 0.0);
-    in.alarm_reset = true;                  /* too fast still: comes back at once */
+    in.alarm_reset = true; /* too fast still: comes back at once */
     in.phase -= 3601.0 / 60.0 * 1e-4 * 2500;
     drive_tick(&c, &s, &in, &out);
     CHECK_EQ(out.alarm, DRIVE_OVERSPEED);
-    struct drive_state off = {0};           /* turned by hand while off: no alarm */
+    struct drive_state off = { 0 }; /* turned by hand while off: no alarm */
     in.enable = in.alarm_reset = false;
     drive_tick(&c, &off, &in, &out);
     in.phase += 100.0;
@@ -113,18 +121,18 @@ static void overload_alarm(void)
     struct drive_config c = config(DRIVE_VELOCITY);
     struct drive_output out;
     c.overload_time = 0.1;
-    for (int busy = 3; busy <= 10; busy++) {    /* of ten samples in a row */
-        struct drive_state s = {0};
-        struct drive_input in = {.enable = true};
+    for (int busy = 3; busy <= 10; busy++) { /* of ten samples in a row */
+        struct drive_state s = { 0 };
+        struct drive_input in = { .enable = true };
         int limited = 0, first = -1;
-        c.velocity_time = 0.0;                  /* torque by the volts of this sample alone */
+        c.velocity_time = 0.0; /* torque by the volts of this sample alone */
         for (int k = 0; k < 20000 && first < 0; k++) {
             in.volts = k % 10 < busy ? 8.0 : 0.001;
             drive_tick(&c, &s, &in, &out);
             limited += out.saturated || out.alarm ? 1 : limited > 0 ? -1 : 0;
             CHECK(out.alarm == (limited > 1000 ? DRIVE_OVERLOAD : DRIVE_NO_ALARM));
             first = out.alarm ? k : -1;
-            CHECK(!(out.saturated && out.alarm));     /* no torque is at no limit */
+            CHECK(!(out.saturated && out.alarm)); /* no torque is at no limit */
             CHECK(out.ready == !out.alarm && (out.alarm ? out.torque == 0.0 : out.torque > 0.0));
         }
         CHECK((first > 0) == (busy > 5));
@@ -138,17 +146,17 @@ static void overload_alarm(void)
         }
     }
     /* However long the torque was below the limit before, nothing is saved up. */
-    struct drive_state rested = {0};
+    struct drive_state rested = { 0 };
     for (int k = 0; k < 5000 + 1001; k++) {
         CHECK_EQ(out.alarm, DRIVE_NO_ALARM);
         const double volts = k < 5000 ? 0.001 : 8.0;
-        drive_tick(&c, &rested, &(struct drive_input){.enable = true, .volts = volts}, &out);
+        drive_tick(&c, &rested, &(struct drive_input){ .enable = true, .volts = volts }, &out);
     }
     CHECK_EQ(out.alarm, DRIVE_OVERLOAD);
-    struct drive_state never = {0};
+    struct drive_state never = { 0 };
     c.overload_time = 0.0;
     for (int k = 0; k < 20000; k++)
-        drive_tick(&c, &never, &(struct drive_input){.enable = true, .volts = 8.0}, &out);
+        drive_tick(&c, &never, &(struct drive_input){ .enable = true, .volts = 8.0 }, &out);
     CHECK(out.saturated && out.alarm == DRIVE_NO_ALARM);
 }
 
@@ -156,18 +164,18 @@ static void overload_alarm(void)
  * long as it bears the load. */
 static void brake(void)
 {
-    static const double INERTIA = 1e-3, STEP = 1e-4, PULL = 2.0;   /* [kg.m^2] [s] [N.m] */
+    static const double INERTIA = 1e-3, STEP = 1e-4, PULL = 2.0; /* [kg.m^2] [s] [N.m] */
 
-    for (int bears = 0; bears < 3; bears++) {       /* none, too little, enough */
+    for (int bears = 0; bears < 3; bears++) { /* none, too little, enough */
         struct drive_config c = config(DRIVE_VELOCITY);
-        struct drive_state s = {0};
-        struct drive_output out = {0};
-        double speed = 20.0, angle = 0.0, at = 0.0, most = 0.0;     /* [rad/s] [rad] */
+        struct drive_state s = { 0 };
+        struct drive_output out = { 0 };
+        double speed = 20.0, angle = 0.0, at = 0.0, most = 0.0; /* [rad/s] [rad] */
         c.brake_torque = bears == 0 ? 0.0 : bears == 1 ? 0.5 * PULL : 2.0 * PULL;
         c.velocity_gain = 0.2;
         c.velocity_time = 0.05;
         for (int k = 0; k < 10000; k++) {
-            const struct drive_input in = {.phase = angle / 6.283185307179586 * c.encoder_lines};
+            const struct drive_input in = { .phase = angle / 6.283185307179586 * c.encoder_lines };
             CHECK_EQ(drive_tick(&c, &s, &in, &out), DRIVE_OK);
             CHECK(!out.ready && !out.saturated && out.speed_command == 0.0);
             CHECK(fabs(out.torque) <= c.brake_torque);
@@ -176,7 +184,7 @@ static void brake(void)
             at = k == 5000 ? angle : at;
             most = k > 5000 ? fmax(most, fabs(angle - at)) : most;
         }
-        const double pull = (PULL - c.brake_torque) / INERTIA;      /* [rad/s^2] it falls with */
+        const double pull = (PULL - c.brake_torque) / INERTIA; /* [rad/s^2] it falls with */
         if (bears < 2)
             CHECK_NEAR(speed, 20.0 + pull, 0.01 * pull);
         else
@@ -188,16 +196,16 @@ static void brake(void)
 static void bad_phase(void)
 {
     struct drive_config c = config(DRIVE_POSITION);
-    struct drive_state s = {0};
-    struct drive_output out = {0};
-    drive_tick(&c, &s, &(struct drive_input){.enable = true, .phase = 3.0}, &out);
+    struct drive_state s = { 0 };
+    struct drive_output out = { 0 };
+    drive_tick(&c, &s, &(struct drive_input){ .enable = true, .phase = 3.0 }, &out);
     struct drive_state was = s;
-    const double bad[] = {NAN, INFINITY, -INFINITY, 1e16};
+    const double bad[] = { NAN, INFINITY, -INFINITY, 1e16 };
     for (int i = 0; i < 4; i++)
-        CHECK_EQ(drive_tick(&c, &s, &(struct drive_input){.enable = true, .phase = bad[i]}, &out),
+        CHECK_EQ(drive_tick(&c, &s, &(struct drive_input){ .enable = true, .phase = bad[i] }, &out),
                  DRIVE_BAD_PHASE);
     CHECK(memcmp(&s, &was, sizeof s) == 0);
-    CHECK_EQ(drive_tick(&c, &s, &(struct drive_input){.enable = true, .phase = 2e15}, &out),
+    CHECK_EQ(drive_tick(&c, &s, &(struct drive_input){ .enable = true, .phase = 2e15 }, &out),
              DRIVE_OK);
 }
 

@@ -13,8 +13,16 @@ static uint64_t seed = 7;
 /* Those that lanes are good for; one in eight is any other number, half of these are special. */
 static double some(void)
 {
-    static const double special[] = { 0.0, -0.0, 0x1p-1074, -0x1p-27, 0x1.fffffffffffffp-28,
-                                      0x1p17, -0x1.fffffffffffffp16, INFINITY, -INFINITY, NAN };
+    static const double special[] = { 0.0,
+                                      -0.0,
+                                      0x1p-1074,
+                                      -0x1p-27,
+                                      0x1.fffffffffffffp-28,
+                                      0x1p17,
+                                      -0x1.fffffffffffffp16,
+                                      INFINITY,
+                                      -INFINITY,
+                                      NAN };
     if (check_random(&seed, 0, 7)) {
         return check_random(&seed, 0, 1) ? check_real(&seed, -7.0, 7.0)
                                          : check_real(&seed, -1.3e5, 1.3e5);

@@ -26,15 +26,15 @@ static void is(double got, double want, int line)
 
 static void special_values(void)
 {
-    static const of_one zeros[] = { el_sin, el_tan, el_asin, el_atan, el_expm1, el_sinh, el_tanh,
-                                    el_cbrt };
+    static const of_one zeros[] = { el_sin,   el_tan,  el_asin, el_atan,
+                                    el_expm1, el_sinh, el_tanh, el_cbrt };
     for (unsigned i = 0; i < sizeof zeros / sizeof *zeros; i++) {
         IS(zeros[i](0.0), 0.0);
         IS(zeros[i](-0.0), -0.0);
         IS(zeros[i](0x1p-1074), zeros[i] == el_cbrt ? 0x1p-358 : 0x1p-1074);
     }
-    static const of_one all[] = { el_sin, el_cos, el_tan, el_asin, el_acos, el_atan, el_exp, el_log,
-                                  el_expm1, el_sinh, el_cosh, el_tanh, el_cbrt };
+    static const of_one all[] = { el_sin, el_cos,   el_tan,  el_asin, el_acos, el_atan, el_exp,
+                                  el_log, el_expm1, el_sinh, el_cosh, el_tanh, el_cbrt };
     for (unsigned i = 0; i < sizeof all / sizeof *all; i++) {
         IS(all[i](NAN), NAN);
     }
@@ -173,8 +173,8 @@ static void special_powers(void)
     IS(el_pow(2.0, 1024.0), INFINITY);
     IS(el_pow(-2.0, 1023.0), -0x1p1023);
     IS(el_pow(-1e300, 3.0), -INFINITY);
-    IS(el_pow(67108865.0, 2.0), 4503599761588225.0);        /* (2^26 + 1)^2, 53 bits */
-    IS(el_pow(134217729.0, 2.0), 18014398777917440.0);      /* (2^27 + 1)^2, in the middle */
+    IS(el_pow(67108865.0, 2.0), 4503599761588225.0);   /* (2^26 + 1)^2, 53 bits */
+    IS(el_pow(134217729.0, 2.0), 18014398777917440.0); /* (2^27 + 1)^2, in the middle */
 }
 
 /* f(-x) = sign f(x). */
@@ -205,12 +205,12 @@ static void order(void)
 {
     static const struct {
         of_one f;
-        int    low, high;   /* exponents of the argument */
+        int low, high; /* exponents of the argument */
         double sign;
     } rising[] = {
-        { el_sin, -40, -1, 1 },     { el_asin, -40, -1, 1 },   { el_tan, -40, -1, 1 },
-        { el_atan, -40, 40, 1 },    { el_exp, -54, 9, 1 },     { el_expm1, -54, 9, 1 },
-        { el_sinh, -40, 9, 1 },     { el_tanh, -40, 5, 1 },    { el_cbrt, -1070, 1023, 1 },
+        { el_sin, -40, -1, 1 },   { el_asin, -40, -1, 1 }, { el_tan, -40, -1, 1 },
+        { el_atan, -40, 40, 1 },  { el_exp, -54, 9, 1 },   { el_expm1, -54, 9, 1 },
+        { el_sinh, -40, 9, 1 },   { el_tanh, -40, 5, 1 },  { el_cbrt, -1070, 1023, 1 },
         { el_acos, -40, -1, -1 },
     };
     for (unsigned k = 0; k < sizeof rising / sizeof *rising; k++) {
@@ -250,7 +250,7 @@ static void together(void)
         CHECK_NEAR(el_asin(s) + el_acos(s), el_acos(0.0), 0x1p-51);
         CHECK_NEAR(el_log(el_exp(a)), a, 0x1p-49);
     }
-    for (int i = 1; i < 200000; i += 7) {       /* whole numbers are met */
+    for (int i = 1; i < 200000; i += 7) { /* whole numbers are met */
         const double n = i;
         IS(el_cbrt(n * n * n), n);
         IS(el_hypot(3.0 * n, -4.0 * n), 5.0 * n);

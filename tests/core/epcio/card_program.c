@@ -28,8 +28,8 @@ static struct epcio power_on(void)
         config.active[i] = false;
     config.encoder[0].index_lines = LINES;
     CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
-    const uint32_t mask[IRQ_PAGES] = {[IRQ_DDA] = 1, [IRQ_ENC0] = 1u << IRQ_ENC_INDEX};
-    const struct epcio_host host = {.gain = {GAIN}, .loop_on = {true}, .dac_loop = {true}};
+    const uint32_t mask[IRQ_PAGES] = { [IRQ_DDA] = 1, [IRQ_ENC0] = 1u << IRQ_ENC_INDEX };
+    const struct epcio_host host = { .gain = { GAIN }, .loop_on = { true }, .dac_loop = { true } };
     CHECK_EQ(epcio_set_dda(&card, 12, 5), EPCIO_OK);
     CHECK_EQ(epcio_set_minimum(&card, 3), EPCIO_OK);
     CHECK_EQ(epcio_set_latch(&card, 0, 1u << LATCH_INDEX, true), EPCIO_OK);
@@ -49,14 +49,14 @@ static void serve(struct epcio *card, int *n)
     if (card->fifo[0].stock > 3)
         return;
     for (int k = 0; k < 4; k++)
-        CHECK_EQ(epcio_write_frame(card, (int32_t[EPCIO_AXES]){command((*n)++)}), EPCIO_OK);
+        CHECK_EQ(epcio_write_frame(card, (int32_t[EPCIO_AXES]){ command((*n)++) }), EPCIO_OK);
 }
 
 int main(int argc, char **argv)
 {
     const int table = argc > 1 && strcmp(argv[1], "--table") == 0;
     struct epcio card = power_on();
-    struct epcio_lines lines = {.local.power = true};
+    struct epcio_lines lines = { .local.power = true };
     int64_t pulses[EPCIO_AXES], out = 0;
     int n = 0, bad;
     for (int64_t k = 0; k < INSTANTS; k++) {
@@ -69,9 +69,8 @@ int main(int argc, char **argv)
         out = pulses[0] > out ? pulses[0] : out;
         if (table)
             printf("%.17g %lld %lld %d %.17g %d %u %lld\n", lines.phase[0], (long long)pulses[0],
-                   (long long)card.encoder[0].count, (int)card.loop[0].error,
-                   epcio_volts(&card, 0), (int)card.fifo[0].stock, card.irq.seq,
-                   (long long)card.latch[0].value);
+                   (long long)card.encoder[0].count, (int)card.loop[0].error, epcio_volts(&card, 0),
+                   (int)card.fifo[0].stock, card.irq.seq, (long long)card.latch[0].value);
         /* 50,000 counts/s per volt for 100 us, four counts a line */
         lines.phase[0] += epcio_volts(&card, 0) * 50000.0 * 1e-4 / 4.0;
     }

@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-_Static_assert((int)ADC_EVENT_COMPARE == (int)IRQ_ADC_COMP &&
-                   (int)ADC_EVENT_DONE == (int)IRQ_ADC_CONV &&
-                   (int)ADC_EVENT_TAG == (int)IRQ_ADC_TAG,
+_Static_assert((int)ADC_EVENT_COMPARE == (int)IRQ_ADC_COMP
+                   && (int)ADC_EVENT_DONE == (int)IRQ_ADC_CONV
+                   && (int)ADC_EVENT_TAG == (int)IRQ_ADC_TAG,
                "events are bits of the latch");
 
 enum { DONE = 1 << ADC_EVENT_DONE, TAG = 1 << ADC_EVENT_TAG };
@@ -21,7 +21,7 @@ static const double ZERO[ADC_CHANNELS];
 static void codes(void)
 {
     for (int k = 0; k < 6; k++) {
-        struct adc_config c = {12 + 2 * (k / 2), 1};
+        struct adc_config c = { 12 + 2 * (k / 2), 1 };
         enum adc_range range = k % 2 == 0 ? ADC_BIPOLAR : ADC_UNIPOLAR;
         double lsb = (k % 2 == 0 ? 20.0 : 10.0) / (1 << c.bits);
         int32_t low = k % 2 == 0 ? -(1 << (c.bits - 1)) : 0, high = low + (1 << c.bits) - 1;
@@ -38,14 +38,14 @@ static void codes(void)
         }
         CHECK_EQ(wrong, 0);
         for (int i = 0; i < 3; i++) {
-            double beyond = (double[]){10.0, 1e308, INFINITY}[i];
+            double beyond = (double[]){ 10.0, 1e308, INFINITY }[i];
             CHECK_EQ(adc_code(&c, range, beyond), high);
             CHECK_EQ(adc_code(&c, range, -beyond), low);
         }
         CHECK_EQ(adc_code(&c, range, nextafter(lsb / 2, 0.0)), 0);
         CHECK_EQ(adc_code(&c, range, NAN), 0);
     }
-    struct adc_config c = {12, 1};
+    struct adc_config c = { 12, 1 };
     CHECK_EQ(adc_code(&c, ADC_BIPOLAR, -5.0), -1024);
     CHECK_EQ(adc_code(&c, ADC_UNIPOLAR, 5.0), 2048);
 }
@@ -65,14 +65,14 @@ static void settings(void)
 {
     for (int32_t bits = -1; bits <= 40; bits++) {
         bool good = bits == 12 || bits == 14 || bits == 16;
-        CHECK_EQ(adc_check_config(&(struct adc_config){bits, 1}), good ? ADC_OK : ADC_BAD_BITS);
+        CHECK_EQ(adc_check_config(&(struct adc_config){ bits, 1 }), good ? ADC_OK : ADC_BAD_BITS);
     }
-    CHECK_EQ(adc_check_config(&(struct adc_config){12, 0}), ADC_BAD_TIME);
-    CHECK_EQ(adc_check_config(&(struct adc_config){12, INT32_MIN}), ADC_BAD_TIME);
-    struct adc_control good = {.range = {[7] = ADC_UNIPOLAR}};
+    CHECK_EQ(adc_check_config(&(struct adc_config){ 12, 0 }), ADC_BAD_TIME);
+    CHECK_EQ(adc_check_config(&(struct adc_config){ 12, INT32_MIN }), ADC_BAD_TIME);
+    struct adc_control good = { .range = { [7] = ADC_UNIPOLAR } };
     REFUSED(mode, ADC_FREE_RUN, ADC_OK);
     REFUSED(mode, (enum adc_mode)2, ADC_BAD_MODE);
-    REFUSED(mode, (enum adc_mode)-1, ADC_BAD_MODE);
+    REFUSED(mode, (enum adc_mode) - 1, ADC_BAD_MODE);
     REFUSED(channel, 7, ADC_OK);
     REFUSED(channel, 8, ADC_BAD_CHANNEL);
     REFUSED(channel, -1, ADC_BAD_CHANNEL);
@@ -102,14 +102,14 @@ static void settings(void)
 /* Single mode to the clock: sampled at the start, coded at the end; restart and stop drop. */
 static void single(void)
 {
-    struct adc_config c = {12, 400};
-    struct adc_control set = {.mode = ADC_SINGLE, .channel = 3, .enabled = 0xFF};
-    struct adc a = {0};
-    double volts[ADC_CHANNELS] = {[3] = 5.0};
+    struct adc_config c = { 12, 400 };
+    struct adc_control set = { .mode = ADC_SINGLE, .channel = 3, .enabled = 0xFF };
+    struct adc a = { 0 };
+    double volts[ADC_CHANNELS] = { [3] = 5.0 };
     CHECK_EQ(adc_due(&a), INT64_MAX);
     adc_start(&c, &set, &a, volts, 1000);
     CHECK_EQ(adc_due(&a), 1400);
-    volts[3] = 2.5;                             /* after the sample: not seen */
+    volts[3] = 2.5; /* after the sample: not seen */
     CHECK_EQ(adc_finish(&c, &set, &a, volts), DONE);
     CHECK_EQ(a.code[3], 1024);
     CHECK_EQ(adc_due(&a), INT64_MAX);
@@ -118,13 +118,13 @@ static void single(void)
     CHECK_EQ(adc_finish(&c, &set, &a, volts), 0);
     CHECK(memcmp(&before, &a, sizeof a) == 0);
     adc_start(&c, &set, &a, volts, 2000);
-    set.channel = 4;                            /* holds from the next start on */
+    set.channel = 4; /* holds from the next start on */
     CHECK_EQ(adc_finish(&c, &set, &a, volts), DONE);
     CHECK_EQ(a.code[3], 512);
     set.channel = 3;
     adc_start(&c, &set, &a, volts, 3000);
     volts[3] = -5.0;
-    adc_start(&c, &set, &a, volts, 3399);       /* one clock before the end */
+    adc_start(&c, &set, &a, volts, 3399); /* one clock before the end */
     CHECK_EQ(adc_due(&a), 3799);
     CHECK_EQ(a.conversions, 2);
     CHECK_EQ(adc_finish(&c, &set, &a, volts), DONE);
@@ -142,10 +142,10 @@ static void single(void)
 /* Free run: order, clocks, the instant of each sample, an emptied mask. */
 static void free_run(void)
 {
-    static const int order[] = {0, 2, 5, 7, 0, 2, 5, 7, 0};
-    struct adc_config c = {16, 100};
-    struct adc_control set = {.mode = ADC_FREE_RUN, .channel = 1, .enabled = 0xA5};
-    struct adc a = {0};
+    static const int order[] = { 0, 2, 5, 7, 0, 2, 5, 7, 0 };
+    struct adc_config c = { 16, 100 };
+    struct adc_control set = { .mode = ADC_FREE_RUN, .channel = 1, .enabled = 0xA5 };
+    struct adc a = { 0 };
     double volts[ADC_CHANNELS];
     for (int n = 0; n <= 8; n++) {
         for (int i = 0; i < ADC_CHANNELS; i++)
@@ -159,31 +159,31 @@ static void free_run(void)
         if (n > 0)
             CHECK_EQ(a.code[order[n - 1]], 1000 * (n - 1) + order[n - 1]);
     }
-    set.enabled = 0x02;                         /* channel 0 is under way: it ends, then 1 */
+    set.enabled = 0x02; /* channel 0 is under way: it ends, then 1 */
     CHECK_EQ(adc_finish(&c, &set, &a, volts), DONE);
     CHECK_EQ(a.channel, 1);
     set.enabled = 0;
     CHECK_EQ(adc_finish(&c, &set, &a, volts), DONE);
     CHECK_EQ(a.code[1], 8001);
     CHECK(!a.busy);
-    set.enabled = 0x80;                         /* does not go on by itself */
+    set.enabled = 0x80; /* does not go on by itself */
     CHECK_EQ(adc_due(&a), INT64_MAX);
     adc_start(&c, &set, &a, volts, 7000);
     CHECK_EQ(a.channel, 7);
     set.enabled = 0;
-    adc_start(&c, &set, &a, volts, 7050);       /* drops channel 7, converts nothing */
+    adc_start(&c, &set, &a, volts, 7050); /* drops channel 7, converts nothing */
     CHECK_EQ(adc_due(&a), INT64_MAX);
     CHECK_EQ(a.conversions, 10);
 }
 
 static void changed_mode(void)
 {
-    struct adc_config c = {16, 100};
-    struct adc_control set = {.mode = ADC_SINGLE, .channel = 1};
-    struct adc a = {0};
+    struct adc_config c = { 16, 100 };
+    struct adc_control set = { .mode = ADC_SINGLE, .channel = 1 };
+    struct adc a = { 0 };
     adc_start(&c, &set, &a, ZERO, 8000);
     set.mode = ADC_FREE_RUN;
-    set.enabled = 0x03;                         /* goes on behind the single one, wrapping */
+    set.enabled = 0x03; /* goes on behind the single one, wrapping */
     CHECK_EQ(adc_finish(&c, &set, &a, ZERO), DONE);
     CHECK_EQ(a.channel, 0);
     set.mode = ADC_SINGLE;
@@ -194,8 +194,8 @@ static void changed_mode(void)
 /* One single conversion of channel 2 of a voltage given as a 12-bit code: did it fire? */
 static bool fires(const struct adc_control *set, struct adc *a, int32_t code)
 {
-    struct adc_config c = {12, 1};
-    double volts[ADC_CHANNELS] = {[2] = adc_volts(&c, set->range[2], code)};
+    struct adc_config c = { 12, 1 };
+    double volts[ADC_CHANNELS] = { [2] = adc_volts(&c, set->range[2], code) };
     adc_start(&c, set, a, volts, 0);
     uint32_t events = adc_finish(&c, set, a, ZERO);
     CHECK_EQ(events & ~4u, DONE);
@@ -205,28 +205,34 @@ static bool fires(const struct adc_control *set, struct adc *a, int32_t code)
 /* Preset 100: what each step of the value fires, with 0 and with 2 bits ignored. */
 static void comparator(void)
 {
-    static const struct { int32_t from, to; bool rising, falling, rising2, falling2; } step[] = {
-        {99, 100, true, false, true, false},    {99, 101, true, false, true, false},
-        {100, 101, false, false, false, false}, {100, 100, false, false, false, false},
-        {98, 99, false, false, false, false},   {101, 100, false, true, false, false},
-        {101, 99, false, true, false, false},   {100, 99, false, false, false, false},
-        {104, 103, false, false, false, true},  {104, 99, false, true, false, true},
-        {-2048, 2047, true, false, true, false}, {2047, -2048, false, true, false, true},
+    static const struct {
+        int32_t from, to;
+        bool rising, falling, rising2, falling2;
+    } step[] = {
+        { 99, 100, true, false, true, false },     { 99, 101, true, false, true, false },
+        { 100, 101, false, false, false, false },  { 100, 100, false, false, false, false },
+        { 98, 99, false, false, false, false },    { 101, 100, false, true, false, false },
+        { 101, 99, false, true, false, false },    { 100, 99, false, false, false, false },
+        { 104, 103, false, false, false, true },   { 104, 99, false, true, false, true },
+        { -2048, 2047, true, false, true, false }, { 2047, -2048, false, true, false, true },
     };
-    struct adc_config c = {12, 1};
+    struct adc_config c = { 12, 1 };
     for (int sign = 1; sign >= -1; sign -= 2)
         for (int n = 0; n < 12 - 2 * (sign < 0); n++)
             for (int way = ADC_RISING; way <= ADC_BOTH; way++)
                 for (int ignored = 0; ignored <= 2; ignored += 2) {
-                    int32_t shift = sign < 0 ? -400 : 0;    /* the same around -300 */
+                    int32_t shift = sign < 0 ? -400 : 0; /* the same around -300 */
                     int32_t preset = 100 + shift + (ignored == 2 ? n % 4 : 0);
                     bool up = ignored == 0 ? step[n].rising : step[n].rising2;
                     bool down = ignored == 0 ? step[n].falling : step[n].falling2;
-                    struct adc_control set = {.channel = 2, .compare_on = 4,
-                        .compare = {[2] = (enum adc_compare)way}, .ignored_bits = ignored,
-                        .compare_volts = {[2] = adc_volts(&c, ADC_BIPOLAR, preset)}};
-                    struct adc a = {0};
-                    CHECK(!fires(&set, &a, step[n].from + shift));  /* no predecessor */
+                    struct adc_control set = { .channel = 2,
+                                               .compare_on = 4,
+                                               .compare = { [2] = (enum adc_compare)way },
+                                               .ignored_bits = ignored,
+                                               .compare_volts = {
+                                                   [2] = adc_volts(&c, ADC_BIPOLAR, preset) } };
+                    struct adc a = { 0 };
+                    CHECK(!fires(&set, &a, step[n].from + shift)); /* no predecessor */
                     CHECK_EQ(fires(&set, &a, step[n].to + shift),
                              (up && way != ADC_FALLING) || (down && way != ADC_RISING));
                     set.compare_on = 0xFB;
@@ -238,32 +244,32 @@ static void comparator(void)
 /* What has no predecessor, and what a changed preset or range does. */
 static void predecessors(void)
 {
-    struct adc_config c = {12, 1};
-    struct adc_control set = {.channel = 2, .enabled = 4, .compare_on = 4};
-    struct adc a = {0};
+    struct adc_config c = { 12, 1 };
+    struct adc_control set = { .channel = 2, .enabled = 4, .compare_on = 4 };
+    struct adc a = { 0 };
     set.compare[2] = ADC_BOTH;
     set.compare_volts[2] = adc_volts(&c, ADC_BIPOLAR, 100);
-    CHECK(!fires(&set, &a, 200));               /* first since power on: at the preset already */
+    CHECK(!fires(&set, &a, 200)); /* first since power on: at the preset already */
     set.compare_volts[2] = adc_volts(&c, ADC_BIPOLAR, 300);
-    CHECK(!fires(&set, &a, 200));               /* the preset jumped over the value: nothing */
+    CHECK(!fires(&set, &a, 200)); /* the preset jumped over the value: nothing */
     CHECK(fires(&set, &a, 300));
     set.compare_on = 0;
     CHECK(!fires(&set, &a, 0));
-    set.compare_on = 4;                         /* a value not compared is a predecessor too */
+    set.compare_on = 4; /* a value not compared is a predecessor too */
     CHECK(fires(&set, &a, 300));
-    set.range[2] = ADC_UNIPOLAR;                /* 300 now is half the voltage */
+    set.range[2] = ADC_UNIPOLAR; /* 300 now is half the voltage */
     set.compare_volts[2] = adc_volts(&c, ADC_UNIPOLAR, 400);
     CHECK(!fires(&set, &a, 500));
     CHECK(fires(&set, &a, 399));
     adc_start(&c, &set, &a, ZERO, 0);
-    adc_stop(&a);                               /* neither the dropped one nor the stop counts */
+    adc_stop(&a); /* neither the dropped one nor the stop counts */
     CHECK(fires(&set, &a, 4095));
-    set.mode = ADC_FREE_RUN;                    /* each start of free run begins anew */
+    set.mode = ADC_FREE_RUN; /* each start of free run begins anew */
     for (int n = 0; n < 3; n++)
         CHECK(!fires(&set, &a, n % 2 == 0 ? 4095 : 0));
     set.mode = ADC_SINGLE;
     CHECK(fires(&set, &a, 0));
-    double volts[ADC_CHANNELS] = {[2] = 5.0};   /* the range is that of the end */
+    double volts[ADC_CHANNELS] = { [2] = 5.0 }; /* the range is that of the end */
     adc_start(&c, &set, &a, volts, 0);
     set.range[2] = ADC_BIPOLAR;
     adc_finish(&c, &set, &a, volts);
@@ -274,7 +280,7 @@ static void predecessors(void)
 /* Free run over `enabled`: the group must fire at exactly these of the next 12 conversions. */
 static void fires_at(const struct adc_control *set, struct adc *a, uint32_t want)
 {
-    struct adc_config c = {12, 1};
+    struct adc_config c = { 12, 1 };
     uint32_t got = 0;
     for (int n = 0; n < 12; n++)
         got |= (adc_finish(&c, set, a, ZERO) == (DONE | TAG) ? 1u : 0u) << n;
@@ -283,25 +289,25 @@ static void fires_at(const struct adc_control *set, struct adc *a, uint32_t want
 
 static void group(void)
 {
-    struct adc_config c = {12, 1};
-    struct adc_control set = {.mode = ADC_FREE_RUN, .enabled = 0x0F, .tagged = 0x05};
-    struct adc a = {0};
+    struct adc_config c = { 12, 1 };
+    struct adc_control set = { .mode = ADC_FREE_RUN, .enabled = 0x0F, .tagged = 0x05 };
+    struct adc a = { 0 };
     adc_start(&c, &set, &a, ZERO, 0);
-    fires_at(&set, &a, 0x444);                  /* at each end of channel 2 */
+    fires_at(&set, &a, 0x444); /* at each end of channel 2 */
     set.tagged = 0;
     fires_at(&set, &a, 0);
-    set.tagged = 0x11;                          /* channel 4 is not enabled */
+    set.tagged = 0x11; /* channel 4 is not enabled */
     fires_at(&set, &a, 0);
     adc_finish(&c, &set, &a, ZERO);
-    set.tagged = 0x06;                          /* 0 does not count any more: 1, 2 */
+    set.tagged = 0x06; /* 0 does not count any more: 1, 2 */
     fires_at(&set, &a, 0x222);
-    set.tagged = 0x05;                          /* stands before 1: 2, then 0 */
+    set.tagged = 0x05; /* stands before 1: 2, then 0 */
     fires_at(&set, &a, 0x888);
     adc_finish(&c, &set, &a, ZERO);
-    adc_finish(&c, &set, &a, ZERO);             /* 1, 2 */
-    adc_start(&c, &set, &a, ZERO, 100);         /* afresh: 0, 1, 2 */
+    adc_finish(&c, &set, &a, ZERO);     /* 1, 2 */
+    adc_start(&c, &set, &a, ZERO, 100); /* afresh: 0, 1, 2 */
     fires_at(&set, &a, 0x444);
-    set.mode = ADC_SINGLE;                      /* single conversions fill a group too */
+    set.mode = ADC_SINGLE; /* single conversions fill a group too */
     for (int n = 0; n < 8; n++) {
         set.channel = n % 2 == 0 ? 0 : 2;
         adc_start(&c, &set, &a, ZERO, 200);
@@ -316,7 +322,7 @@ struct model {
     int range_before[ADC_CHANNELS];
     bool has_before[ADC_CHANNELS], got[ADC_CHANNELS];
     int channel;
-    int64_t held, left;         /* [units], [clocks] still to go */
+    int64_t held, left; /* [units], [clocks] still to go */
     int32_t conversions;
     bool busy;
 };
@@ -358,7 +364,7 @@ static bool model_compare(const struct adc_config *c, const struct adc_control *
                           struct model *m, int64_t preset)
 {
     int i = m->channel;
-    double unit = (double[]){1, 2, 4, 8}[set->ignored_bits];
+    double unit = (double[]){ 1, 2, 4, 8 }[set->ignored_bits];
     double at = floor(model_code(c->bits, set->range[i], preset) / unit);
     double old = floor(m->before[i] / unit), now = floor(m->code[i] / unit);
     bool comparable = m->has_before[i] && m->range_before[i] == (int)set->range[i];
@@ -412,14 +418,14 @@ static void change(uint64_t *seed, struct adc_control *set, int64_t preset[ADC_C
     int i = (int)check_random(seed, 0, 7), what = (int)check_random(seed, 0, 9);
     uint32_t mask = (uint32_t)(check_random(seed, 0, 255) & check_random(seed, 0, 255));
     switch (what) {
-    case 0: set->mode = check_random(seed, 0, 3) == 0 ? ADC_SINGLE : ADC_FREE_RUN; break;
-    case 1: set->channel = i; break;
-    case 2: set->enabled = mask; break;
-    case 3: set->compare_on = mask | 1u << i; break;
-    case 4: set->tagged = mask; break;
-    case 5: set->ignored_bits = i % 4; break;
-    case 6: set->compare[i] = (enum adc_compare)(check_random(seed, 0, 2)); break;
-    case 7: set->range[i] = (enum adc_range)(check_random(seed, 0, 1)); break;
+    case 0:  set->mode = check_random(seed, 0, 3) == 0 ? ADC_SINGLE : ADC_FREE_RUN; break;
+    case 1:  set->channel = i; break;
+    case 2:  set->enabled = mask; break;
+    case 3:  set->compare_on = mask | 1u << i; break;
+    case 4:  set->tagged = mask; break;
+    case 5:  set->ignored_bits = i % 4; break;
+    case 6:  set->compare[i] = (enum adc_compare)(check_random(seed, 0, 2)); break;
+    case 7:  set->range[i] = (enum adc_range)(check_random(seed, 0, 1)); break;
     default: preset[i] = check_random(seed, -40, 40);
     }
     if (set->range[i] == ADC_UNIPOLAR && preset[i] < 0)
@@ -445,19 +451,19 @@ static void same(const struct adc *a, const struct model *m, int64_t clock)
 
 static void scenario(uint64_t seed)
 {
-    struct adc_config c = {12 + 2 * (int32_t)check_random(&seed, 0, 2),
-                           (int32_t)check_random(&seed, 1, 12)};
-    struct adc_control set = {.mode = ADC_FREE_RUN, .enabled = 0xFF, .compare_on = 0xFF};
-    struct adc a = {0};
-    struct model m = {0};
-    int64_t units[ADC_CHANNELS] = {0}, preset[ADC_CHANNELS] = {0};
-    double volts[ADC_CHANNELS] = {0};
+    struct adc_config c = { 12 + 2 * (int32_t)check_random(&seed, 0, 2),
+                            (int32_t)check_random(&seed, 1, 12) };
+    struct adc_control set = { .mode = ADC_FREE_RUN, .enabled = 0xFF, .compare_on = 0xFF };
+    struct adc a = { 0 };
+    struct model m = { 0 };
+    int64_t units[ADC_CHANNELS] = { 0 }, preset[ADC_CHANNELS] = { 0 };
+    double volts[ADC_CHANNELS] = { 0 };
     int64_t swing = c.bits == 12 ? 200 : 50;
     for (int64_t clock = 1; clock <= 1500; clock++) {
         int mover = (int)check_random(&seed, 0, 7);
         units[mover] = check_random(&seed, -swing, swing);
         if (check_random(&seed, 0, 50) == 0)
-            units[mover] *= 10000;          /* beyond the range */
+            units[mover] *= 10000; /* beyond the range */
         volts[mover] = (double)units[mover] * 10.0 / (1 << 17);
         uint32_t want = model_tick(&c, &set, &m, preset, units);
         uint32_t got = adc_due(&a) == clock ? adc_finish(&c, &set, &a, volts) : 0;

@@ -19,12 +19,12 @@ static inline struct epcio card_on(void)
 static inline struct epcio card_stocked(int stock, int minimum)
 {
     struct epcio card = card_on();
-    const uint32_t mask[IRQ_PAGES] = {[IRQ_DDA] = 1};
+    const uint32_t mask[IRQ_PAGES] = { [IRQ_DDA] = 1 };
     CHECK_EQ(epcio_set_dda(&card, 10, 1), EPCIO_OK);
     CHECK_EQ(epcio_set_minimum(&card, minimum), EPCIO_OK);
     epcio_set_mask(&card, mask);
     for (int k = 0; k < stock; k++)
-        CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){100, 100, 100, 100, 100, 100}), EPCIO_OK);
+        CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){ 100, 100, 100, 100, 100, 100 }), EPCIO_OK);
     return card;
 }
 
@@ -32,17 +32,17 @@ static inline struct epcio card_stocked(int stock, int minimum)
 static inline void card_acknowledge(struct epcio *card, enum irq_page page, uint32_t flags,
                                     uint32_t mask)
 {
-    uint32_t clear[IRQ_PAGES] = {0}, open[IRQ_PAGES] = {0};
+    uint32_t clear[IRQ_PAGES] = { 0 }, open[IRQ_PAGES] = { 0 };
     clear[page] = flags;
     open[page] = mask;
     epcio_acknowledge(card, clear, open);
 }
 
 /* Sample encoder phases, all else at rest. */
-static inline enum epcio_status card_sample(struct epcio *card,
-                                            const double phase[EPCIO_ENCODERS], int *bad)
+static inline enum epcio_status card_sample(struct epcio *card, const double phase[EPCIO_ENCODERS],
+                                            int *bad)
 {
-    struct epcio_lines lines = {.local.power = true};
+    struct epcio_lines lines = { .local.power = true };
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         lines.phase[i] = phase[i];
     return epcio_sample(card, &lines, bad);

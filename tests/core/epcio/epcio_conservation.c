@@ -8,7 +8,7 @@
 static void overflow_and_underflow(void)
 {
     struct epcio card = card_stocked(63, 0), before = card;
-    int32_t frame[6] = {1, 2, 3, 4, 5, 6};
+    int32_t frame[6] = { 1, 2, 3, 4, 5, 6 };
     CHECK_EQ(epcio_write_frame(&card, frame), EPCIO_FIFO_FULL);
     CHECK_EQ(card.refusal.status, EPCIO_FIFO_FULL);
     CHECK(memcmp(card.fifo, before.fifo, sizeof card.fifo) == 0);
@@ -21,10 +21,10 @@ static void overflow_and_underflow(void)
         CHECK_EQ(pulses[i], 6300 + i + 1);
         CHECK_EQ(card.underflows[i], 1);
     }
-    epcio_write_frame(&card, (int32_t[6]){100, -100, 1, 0, 1023, -1023});
+    epcio_write_frame(&card, (int32_t[6]){ 100, -100, 1, 0, 1023, -1023 });
     epcio_advance(&card, 80 * 1024);
     CHECK_EQ(card.underflows[0], 2);
-    CHECK_EQ(card.underflows[3], 1);            /* its last command was no motion */
+    CHECK_EQ(card.underflows[3], 1); /* its last command was no motion */
 }
 
 static void refusals(void)
@@ -34,12 +34,12 @@ static void refusals(void)
     struct epcio card;
     epcio_reset(&card, &config);
     epcio_set_dda(&card, 10, 1);
-    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){1023, -1023}), EPCIO_OK);
-    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){0, 1024}), EPCIO_COMMAND_TOO_LARGE);
+    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){ 1023, -1023 }), EPCIO_OK);
+    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){ 0, 1024 }), EPCIO_COMMAND_TOO_LARGE);
     CHECK_EQ(card.refusal.axis, 1);
     CHECK_EQ(card.refusal.command, 1024);
-    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){0, 0, INT32_MIN}), EPCIO_COMMAND_TOO_LARGE);
-    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){0, 0, 0, 0, 1}), EPCIO_AXIS_UNUSED);
+    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){ 0, 0, INT32_MIN }), EPCIO_COMMAND_TOO_LARGE);
+    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){ 0, 0, 0, 0, 1 }), EPCIO_AXIS_UNUSED);
     CHECK_EQ(card.fifo[0].stock, 1);
     CHECK_EQ(card.fifo[4].stock, 0);
     CHECK_EQ(epcio_set_dda(&card, 9, 1), EPCIO_BAD_LENGTH);
@@ -48,7 +48,7 @@ static void refusals(void)
     CHECK_EQ(epcio_set_dda(&card, 10, 65536), EPCIO_BAD_DIVIDER);
     /* a shorter length must wait for what was written under the longer one */
     CHECK_EQ(epcio_set_dda(&card, 11, 1), EPCIO_OK);
-    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){2047}), EPCIO_OK);
+    CHECK_EQ(epcio_write_frame(&card, (int32_t[6]){ 2047 }), EPCIO_OK);
     CHECK_EQ(epcio_set_dda(&card, 10, 1), EPCIO_STOCK_TOO_LARGE);
     epcio_advance(&card, 2 * 2048);
     CHECK_EQ(epcio_set_dda(&card, 10, 1), EPCIO_OK);
@@ -65,14 +65,15 @@ static int32_t waiting(const struct epcio *card, int axis, int k)
 static void conservation(uint64_t seed)
 {
     struct epcio card = card_on();
-    int64_t sent = 0, popped[6] = {0};
+    int64_t sent = 0, popped[6] = { 0 };
     int32_t seq = 0;
     for (int event = 0; event < 4000; event++) {
         epcio_advance(&card, card.clock + check_random(&seed, 0, 6000));
         int32_t taken = card.frames_taken;
-        struct bus_write w = {.seq = ++seq, .count = (int32_t)check_random(&seed, 0, 16),
-                              .clock = card.clock + check_random(&seed, -2000, 9000)};
-        int64_t sum[6] = {0};
+        struct bus_write w = { .seq = ++seq,
+                               .count = (int32_t)check_random(&seed, 0, 16),
+                               .clock = card.clock + check_random(&seed, -2000, 9000) };
+        int64_t sum[6] = { 0 };
         for (int k = 0; k < w.count; k++)
             for (int i = 0; i < 6; i++) {
                 int32_t top = k == 7 && event % 9 == 0 ? 40000 : 1023;
@@ -80,8 +81,10 @@ static void conservation(uint64_t seed)
             }
         switch (check_random(&seed, 0, 7)) {
         case 0: epcio_set_run(&card, !card.run); break;
-        case 1: epcio_set_dda(&card, (int32_t)check_random(&seed, 10, 15),
-                              (int32_t)check_random(&seed, 1, 3)); break;
+        case 1:
+            epcio_set_dda(&card, (int32_t)check_random(&seed, 10, 15),
+                          (int32_t)check_random(&seed, 1, 3));
+            break;
         case 2: epcio_set_minimum(&card, (int32_t)check_random(&seed, 0, 62)); break;
         case 3:
             if (event % 10 == 0) {
@@ -125,8 +128,10 @@ static void exact_arrival(uint64_t seed)
 {
     for (int trial = 0; trial < 200; trial++) {
         struct epcio a = card_stocked(4, 2), b = a;
-        struct bus_write w = {.seq = 1, .clock = check_random(&seed, 1, 6000), .count = 2,
-                              .frame = {{7, 8, 9, 1, 2, 3}, {-7, 8, 9, 1, 2, 3}}};
+        struct bus_write w = { .seq = 1,
+                               .clock = check_random(&seed, 1, 6000),
+                               .count = 2,
+                               .frame = { { 7, 8, 9, 1, 2, 3 }, { -7, 8, 9, 1, 2, 3 } } };
         epcio_post(&a, &w);
         epcio_post(&b, &w);
         epcio_advance(&a, w.clock - 1);
@@ -141,7 +146,7 @@ static void exact_arrival(uint64_t seed)
         CHECK(memcmp(&a, &b, sizeof a) == 0);
     }
     struct epcio card = card_stocked(0, 0);
-    struct bus_write w = {.seq = 1, .clock = 100};
+    struct bus_write w = { .seq = 1, .clock = 100 };
     for (int k = 0; k < BUS_DEPTH; k++, w.seq++)
         CHECK_EQ(epcio_post(&card, &w), EPCIO_OK);
     CHECK_EQ(epcio_post(&card, &w), EPCIO_BUS_FULL);
@@ -151,7 +156,7 @@ static void exact_arrival(uint64_t seed)
     CHECK_EQ(card.cmd_ack, BUS_DEPTH);
     w.clock = 500;
     epcio_post(&card, &w);
-    w.clock = 300;                              /* sent later, so it arrives no earlier */
+    w.clock = 300; /* sent later, so it arrives no earlier */
     w.seq++;
     epcio_post(&card, &w);
     epcio_advance(&card, 499);

@@ -11,8 +11,9 @@ static struct link_host start(void)
 {
     const struct epcio_config config = epcio_default_config();
     CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
-    taken = (struct mailbox){0};
-    return (struct link_host){.dda_length = 12, .dda_divider = 10, .dda_run = true, .min_stock = 3};
+    taken = (struct mailbox){ 0 };
+    return (
+        struct link_host){ .dda_length = 12, .dda_divider = 10, .dda_run = true, .min_stock = 3 };
 }
 
 static enum epcio_status take(const struct link_host *link)
@@ -26,11 +27,11 @@ static void mailboxes(void)
 {
     struct link_host link = start();
     link.cmd_seq = 7;
-    link.cmd_clock = 0.25;          /* the next whole clock */
+    link.cmd_clock = 0.25; /* the next whole clock */
     link.cmd_count = 2;
     link.cmd_frames[0][0] = 5;
     link.cmd_frames[1][3] = -9;
-    link.cmd_frames[2][0] = 1000;   /* behind the two: of no account */
+    link.cmd_frames[2][0] = 1000; /* behind the two: of no account */
     for (int i = 0; i < 3; i++) {
         CHECK_EQ(take(&link), EPCIO_OK);
         epcio_advance(&card, 10 + i);
@@ -45,13 +46,13 @@ static void mailboxes(void)
     CHECK_EQ(take(&link), EPCIO_OK);
     CHECK_EQ(take(&link), EPCIO_OK);
     epcio_advance(&card, 20);
-    CHECK_EQ(card.fifo[0].stock, 2);    /* emptied once */
+    CHECK_EQ(card.fifo[0].stock, 2); /* emptied once */
 
     irq_raise(&card.irq, IRQ_ADC, 3, card.clock);
     link.irq_mask[IRQ_ADC] = 3;
     link.ack_flags[IRQ_ADC] = 1;
     CHECK_EQ(take(&link), EPCIO_OK);
-    CHECK_EQ(card.irq.flags[IRQ_ADC], 3);   /* its number is the old one */
+    CHECK_EQ(card.irq.flags[IRQ_ADC], 3); /* its number is the old one */
     link.ack_seq = 1;
     CHECK_EQ(take(&link), EPCIO_OK);
     CHECK_EQ(card.irq.flags[IRQ_ADC], 2);
@@ -82,7 +83,7 @@ static void refused(void)
     link.cmd_seq = 1;
     link.cmd_count = 17;
     CHECK_EQ(take(&link), EPCIO_BAD_COUNT);
-    CHECK_EQ(taken.cmd_seq, 0);      /* it may come again, mended */
+    CHECK_EQ(taken.cmd_seq, 0); /* it may come again, mended */
     link.cmd_count = 16;
     link.cmd_frames[15][0] = 4000;
     CHECK_EQ(take(&link), EPCIO_OK);
@@ -98,14 +99,14 @@ static void silent(void)
 {
     struct link_host link = start();
     CHECK_EQ(take(&link), EPCIO_OK);
-    const struct link_host nothing = {.clear_seq = 3, .irq_mask = {1}, .p_gain = {7}};
+    const struct link_host nothing = { .clear_seq = 3, .irq_mask = { 1 }, .p_gain = { 7 } };
     CHECK_EQ(take(&nothing), EPCIO_OK);
     CHECK(card.run);
     CHECK_EQ(card.minimum, 3);
     CHECK_EQ(taken.clear_seq, 0);
     CHECK_EQ(card.irq.mask[0], 0);
     link.dda_length = 0;
-    CHECK_EQ(take(&link), EPCIO_BAD_LENGTH);    /* it speaks, and is wrong */
+    CHECK_EQ(take(&link), EPCIO_BAD_LENGTH); /* it speaks, and is wrong */
 }
 
 /* The card shows its counters as 32 bits, and 0 for an axis it does not use. */

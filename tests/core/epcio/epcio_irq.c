@@ -5,21 +5,21 @@
 
 static void line_and_sequence(void)
 {
-    struct irq q = {0};
-    uint32_t all[IRQ_PAGES], none[IRQ_PAGES] = {0}, lio[IRQ_PAGES] = {[IRQ_LIO] = 16};
-    uint32_t eight[IRQ_PAGES] = {[IRQ_DDA] = 8}, last[IRQ_PAGES] = {[IRQ_PCL] = 1u << 5};
+    struct irq q = { 0 };
+    uint32_t all[IRQ_PAGES], none[IRQ_PAGES] = { 0 }, lio[IRQ_PAGES] = { [IRQ_LIO] = 16 };
+    uint32_t eight[IRQ_PAGES] = { [IRQ_DDA] = 8 }, last[IRQ_PAGES] = { [IRQ_PCL] = 1u << 5 };
     memset(all, 0xFF, sizeof all);
     irq_raise(&q, IRQ_DDA, 8, 10);
-    CHECK(!q.line);                         /* masked */
+    CHECK(!q.line); /* masked */
     CHECK_EQ(q.flags[IRQ_DDA], 8);
-    irq_set_mask(&q, all, 20);              /* a pending flag pulls when it is let through */
+    irq_set_mask(&q, all, 20); /* a pending flag pulls when it is let through */
     CHECK(q.line);
     CHECK_EQ(q.seq, 1);
     CHECK_EQ(q.clock, 20);
-    irq_raise(&q, IRQ_LIO, 16, 30);         /* the line is up already */
-    irq_raise(&q, IRQ_LIO, 0, 31);          /* nothing fires */
+    irq_raise(&q, IRQ_LIO, 16, 30); /* the line is up already */
+    irq_raise(&q, IRQ_LIO, 0, 31);  /* nothing fires */
     CHECK_EQ(q.seq, 1);
-    irq_acknowledge(&q, eight, all, 40);    /* the other page still waits: the line rises anew */
+    irq_acknowledge(&q, eight, all, 40); /* the other page still waits: the line rises anew */
     CHECK(q.line);
     CHECK_EQ(q.flags[IRQ_DDA], 0);
     CHECK_EQ(q.flags[IRQ_LIO], 16);
@@ -29,15 +29,15 @@ static void line_and_sequence(void)
     CHECK(!q.line);
     CHECK_EQ(q.flags[IRQ_LIO], 0);
     CHECK_EQ(q.seq, 2);
-    irq_acknowledge(&q, all, all, 60);      /* nothing there: nothing happens */
+    irq_acknowledge(&q, all, all, 60); /* nothing there: nothing happens */
     CHECK_EQ(q.seq, 2);
     irq_set_mask(&q, none, 65);
     irq_raise(&q, IRQ_PCL, 1u << 5, 70);
-    irq_acknowledge(&q, last, last, 80);    /* cleared and let through at once: no pull */
+    irq_acknowledge(&q, last, last, 80); /* cleared and let through at once: no pull */
     CHECK_EQ(q.seq, 2);
     irq_raise(&q, IRQ_PCL, 1u << 5, 90);
     CHECK_EQ(q.seq, 3);
-    irq_acknowledge(&q, none, none, 100);   /* masked off in the same write: no pull either */
+    irq_acknowledge(&q, none, none, 100); /* masked off in the same write: no pull either */
     CHECK(!q.line);
     CHECK_EQ(q.seq, 3);
     CHECK_EQ(q.flags[IRQ_PCL], 1u << 5);
@@ -46,9 +46,9 @@ static void line_and_sequence(void)
 /* A source that is told later, as an index is, was first: the line rose with it. */
 static void told_later(void)
 {
-    struct irq q = {.mask = {[IRQ_DDA] = 8, [IRQ_ENC0] = 1}};
+    struct irq q = { .mask = { [IRQ_DDA] = 8, [IRQ_ENC0] = 1 } };
     irq_raise(&q, IRQ_DDA, 8, 20);
-    irq_raise(&q, IRQ_ENC0, 2, 5);          /* masked */
+    irq_raise(&q, IRQ_ENC0, 2, 5); /* masked */
     CHECK_EQ(q.clock, 20);
     irq_raise(&q, IRQ_ENC0, 1, 15);
     CHECK_EQ(q.clock, 15);
@@ -60,7 +60,7 @@ static void told_later(void)
 /* Fires again after the host looked, before its acknowledge arrives: must come back. */
 static void fired_between_read_and_acknowledge(void)
 {
-    struct irq q = {.mask = {[IRQ_ADC] = 1}};
+    struct irq q = { .mask = { [IRQ_ADC] = 1 } };
     struct irq seen;
     irq_raise(&q, IRQ_ADC, 1, 10);
     seen = q;
@@ -83,7 +83,7 @@ enum { SOURCES = IRQ_PAGES * 16 };
 static void nothing_is_lost(uint64_t seed)
 {
     struct irq q, host;
-    int64_t fired[SOURCES] = {0}, served[SOURCES] = {0};
+    int64_t fired[SOURCES] = { 0 }, served[SOURCES] = { 0 };
     uint32_t served_seq = 0;
     int64_t looked = 0, act = INT64_MAX;
     memset(&q, 0, sizeof q);
@@ -95,7 +95,7 @@ static void nothing_is_lost(uint64_t seed)
             fired[source] = clock;
         }
         if (act == INT64_MAX && q.seq != served_seq) {
-            served_seq = q.seq;                 /* the host takes the interrupt: reads the latch */
+            served_seq = q.seq; /* the host takes the interrupt: reads the latch */
             host = q;
             looked = clock;
             act = clock + check_random(&seed, 1, 90);
@@ -120,11 +120,11 @@ static void nothing_is_lost(uint64_t seed)
 static void card_sources(void)
 {
     struct epcio_config config = epcio_default_config();
-    config.loop = (struct ploop_config){.limit = 50, .scale = 0};
+    config.loop = (struct ploop_config){ .limit = 50, .scale = 0 };
     config.encoder[0].index_lines = config.encoder[8].index_lines = 10;
     config.encoder[8].rate = 1;
     struct epcio card;
-    double phase[EPCIO_ENCODERS] = {0};
+    double phase[EPCIO_ENCODERS] = { 0 };
     int bad;
     epcio_reset(&card, &config);
     epcio_set_dda(&card, 10, 4);
@@ -138,8 +138,8 @@ static void card_sources(void)
     epcio_control(&card);
     CHECK_EQ(card.loop[0].error, -48);
     CHECK_EQ(card.irq.flags[IRQ_ENC0], 1u << IRQ_ENC_INDEX);
-    CHECK_EQ(card.irq.flags[IRQ_ENC6], 0);              /* left the index, did not meet it */
-    CHECK_EQ(card.encoder[0].index_clock, 3334);        /* 10/12 of 4000 = 3333.3 */
+    CHECK_EQ(card.irq.flags[IRQ_ENC6], 0);       /* left the index, did not meet it */
+    CHECK_EQ(card.encoder[0].index_clock, 3334); /* 10/12 of 4000 = 3333.3 */
     epcio_advance(&card, 8000);
     CHECK(card.irq.flags[IRQ_DDA] >> IRQ_DDA_CYCLE & 1);
     phase[8] = -10.5;

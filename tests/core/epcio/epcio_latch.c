@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-enum { SPAN = 4000 };       /* [clocks] between two samples */
+enum { SPAN = 4000 }; /* [clocks] between two samples */
 
 /* Clock in a sample at which an index line of one line period rises, its phase going from `from` to
  * `to`: on entering the first quarter of a period, going up at its lower end, going down at its
@@ -30,7 +30,7 @@ static void first_and_last(double index_to, double counter_to)
     for (int last = 0; last < 2; last++) {
         struct epcio_config config = epcio_default_config();
         struct epcio card;
-        double phase[EPCIO_ENCODERS] = {0};
+        double phase[EPCIO_ENCODERS] = { 0 };
         int bad;
         config.encoder[1].index_lines = 1;
         CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
@@ -69,7 +69,7 @@ static void several_sources(void)
         for (int last = 0; last < 2; last++) {
             struct epcio_config config = epcio_default_config();
             struct epcio card;
-            double phase[EPCIO_ENCODERS] = {0};
+            double phase[EPCIO_ENCODERS] = { 0 };
             int bad;
             config.encoder[1].index_lines = config.encoder[2].index_lines = 1;
             CHECK_EQ(epcio_reset(&card, &config), EPCIO_OK);
@@ -77,8 +77,8 @@ static void several_sources(void)
             CHECK_EQ(card_sample(&card, phase, &bad), EPCIO_OK);
             CHECK_EQ(epcio_set_latch(&card, 0, 6u << LATCH_INDEX, last), EPCIO_OK);
             phase[0] = 10.0;
-            phase[1 + swap] = 1.5;          /* index half-way */
-            phase[2 - swap] = 1.125;        /* index at four fifths */
+            phase[1 + swap] = 1.5;   /* index half-way */
+            phase[2 - swap] = 1.125; /* index at four fifths */
             epcio_advance(&card, SPAN);
             CHECK_EQ(card_sample(&card, phase, &bad), EPCIO_OK);
             CHECK_EQ(card.latch[0].clock, last ? 3200 : 2000);
@@ -88,7 +88,7 @@ static void several_sources(void)
 
 int main(void)
 {
-    static const double way[] = {3.75, -3.75, 7.5, 1.0, 0.25, -0.4, 30.0};
+    static const double way[] = { 3.75, -3.75, 7.5, 1.0, 0.25, -0.4, 30.0 };
     for (int i = 0; i < 7; i++)
         for (int k = 0; k < 7; k++)
             first_and_last(way[i], way[k]);

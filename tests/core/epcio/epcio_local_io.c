@@ -6,8 +6,8 @@
 #include "check.h"
 #include "irq.h"
 
-_Static_assert((int)LOCAL_IO_EVENT_LDI == (int)IRQ_LIO_LDI &&
-                   (int)LOCAL_IO_EVENT_DFI == (int)IRQ_LIO_DFI,
+_Static_assert((int)LOCAL_IO_EVENT_LDI == (int)IRQ_LIO_LDI
+                   && (int)LOCAL_IO_EVENT_DFI == (int)IRQ_LIO_DFI,
                "events are bits of the latch");
 
 enum { INPUTS = LOCAL_IO_LDIS + LOCAL_IO_DFIS };
@@ -27,7 +27,7 @@ static void set_edge(struct local_io_control *set, int input, enum local_io_edge
 
 static struct local_io_lines lines_of(uint32_t inputs)
 {
-    return (struct local_io_lines){.ldi = inputs & 0xFF, .dfi = inputs >> 8};
+    return (struct local_io_lines){ .ldi = inputs & 0xFF, .dfi = inputs >> 8 };
 }
 
 /* Each input, edge and pair of levels, the other inputs high or low; the others never fire. */
@@ -37,16 +37,16 @@ static void edges(void)
         int input = code / 24, edge = code / 8 % 3;
         bool from = code & 1, to = code & 2;
         uint32_t rest = code & 4 ? 0x7FFFu & ~(1u << input) : 0;
-        struct local_io_control set = {0};
-        struct local_io io = {0};
+        struct local_io_control set = { 0 };
+        struct local_io io = { 0 };
         set_edge(&set, input, (enum local_io_edge)edge);
         struct local_io_lines lines = lines_of(rest | (uint32_t)from << input);
-        CHECK_EQ(local_io_sample(&set, &io, &lines), 0);        /* the first: nothing */
+        CHECK_EQ(local_io_sample(&set, &io, &lines), 0); /* the first: nothing */
         CHECK_EQ(io.inputs, rest | (uint32_t)from << input);
-        CHECK_EQ(local_io_sample(&set, &io, &lines), 0);        /* no change */
+        CHECK_EQ(local_io_sample(&set, &io, &lines), 0); /* no change */
         lines = lines_of(rest | (uint32_t)to << input);
-        bool fires = (edge == 0 && !from && to) || (edge == 1 && from && !to) ||
-                     (edge == 2 && from != to);
+        bool fires =
+            (edge == 0 && !from && to) || (edge == 1 && from && !to) || (edge == 2 && from != to);
         CHECK_EQ(local_io_sample(&set, &io, &lines), (uint32_t)fires << input);
         CHECK_EQ(local_io_sample(&set, &io, &lines), 0);
         CHECK_EQ(io.inputs, rest | (uint32_t)to << input);
@@ -55,7 +55,7 @@ static void edges(void)
 
 static struct local_io_lines sources(int i, bool terminal, bool signal, bool down)
 {
-    struct local_io_lines lines = {.dfi = (uint32_t)terminal << i};
+    struct local_io_lines lines = { .dfi = (uint32_t)terminal << i };
     if (i == 6)
         lines.stop = signal;
     else if (down)
@@ -71,10 +71,10 @@ static void change_of_source(void)
 {
     for (int code = 0; code < 7 * 128; code++) {
         int i = code / 128;
-        bool terminal[2] = {code & 1, code & 2}, signal[2] = {code & 4, code & 8};
-        bool dedicated[2] = {code & 16, code & 32}, down = code & 64;
-        struct local_io_control set = {0};
-        struct local_io io = {0};
+        bool terminal[2] = { code & 1, code & 2 }, signal[2] = { code & 4, code & 8 };
+        bool dedicated[2] = { code & 16, code & 32 }, down = code & 64;
+        struct local_io_control set = { 0 };
+        struct local_io io = { 0 };
         set.dfi_edge[i] = LOCAL_IO_BOTH;
         uint32_t got = 0;
         for (int k = 0; k < 2; k++) {
@@ -92,9 +92,9 @@ static void change_of_source(void)
 /* The same levels under changing registers: no event at all. */
 static void registers_fire_nothing(uint64_t seed)
 {
-    struct local_io_control set = {0};
-    struct local_io io = {0};
-    struct local_io_lines lines = {.ldi = 0x5A, .dfi = 0x2C, .up = 0x11, .stop = true};
+    struct local_io_control set = { 0 };
+    struct local_io io = { 0 };
+    struct local_io_lines lines = { .ldi = 0x5A, .dfi = 0x2C, .up = 0x11, .stop = true };
     for (int n = 0; n < 500; n++) {
         set.dedicated = (uint32_t)check_random(&seed, 0, 127);
         for (int i = 0; i < 8; i++)
@@ -110,10 +110,14 @@ static void outputs(void)
 {
     for (int code = 0; code < 32; code++) {
         bool off = code & 1, gate = code & 2, stop = code & 4, enable = code & 8, power = code & 16;
-        struct local_io_control set = {.ldo = 0xA5, .servo_on = 0x2D, .position_ready = true,
-                                       .stop_enable = enable, .gate = gate, .dedicated = 0x40};
-        struct local_io io = {0};
-        struct local_io_lines lines = {.stop = stop, .power = power};
+        struct local_io_control set = { .ldo = 0xA5,
+                                        .servo_on = 0x2D,
+                                        .position_ready = true,
+                                        .stop_enable = enable,
+                                        .gate = gate,
+                                        .dedicated = 0x40 };
+        struct local_io io = { 0 };
+        struct local_io_lines lines = { .stop = stop, .power = power };
         CHECK(!local_io_stopped(&set, &io));
         CHECK_EQ(local_io_outputs(&set, &io, off).ldo, 0);
         local_io_sample(&set, &io, &lines);
@@ -123,7 +127,7 @@ static void outputs(void)
         CHECK_EQ(out.ldo, through ? 0xA5 : 0);
         CHECK_EQ(out.servo_on, through ? 0x2D : 0);
         CHECK_EQ(out.position_ready, through);
-        set.dedicated = 0;                      /* the stop acts whatever DFI6 is */
+        set.dedicated = 0; /* the stop acts whatever DFI6 is */
         CHECK_EQ(local_io_stopped(&set, &io), stop && enable);
         set.position_ready = false;
         CHECK(!local_io_outputs(&set, &io, off).position_ready);
@@ -132,7 +136,7 @@ static void outputs(void)
 
 static void refusals(void)
 {
-    struct local_io_control set = {0}, bad, copy;
+    struct local_io_control set = { 0 }, bad, copy;
     CHECK_EQ(local_io_check_control(&set), LOCAL_IO_OK);
     for (int i = 0; i < INPUTS; i++) {
         set_edge(&set, i, LOCAL_IO_FALL);
@@ -141,11 +145,11 @@ static void refusals(void)
         CHECK_EQ(local_io_check_control(&set), LOCAL_IO_OK);
         bad = set;
         set_edge(&bad, i, (enum local_io_edge)3);
-        bad.dedicated = 128;                    /* the first of two is told */
+        bad.dedicated = 128; /* the first of two is told */
         copy = bad;
         CHECK_EQ(local_io_check_control(&bad), LOCAL_IO_BAD_EDGE);
         CHECK_EQ(memcmp(&bad, &copy, sizeof bad), 0);
-        set_edge(&bad, i, (enum local_io_edge)-1);
+        set_edge(&bad, i, (enum local_io_edge) - 1);
         CHECK_EQ(local_io_check_control(&bad), LOCAL_IO_BAD_EDGE);
     }
     set.dedicated = 0x7F;
@@ -173,12 +177,9 @@ struct model {
 static bool model_fires(enum local_io_edge edge, bool before, bool now)
 {
     switch (edge) {
-    case LOCAL_IO_RISE:
-        return !before && now;
-    case LOCAL_IO_FALL:
-        return before && !now;
-    default:
-        return before != now;
+    case LOCAL_IO_RISE: return !before && now;
+    case LOCAL_IO_FALL: return before && !now;
+    default:            return before != now;
     }
 }
 
@@ -214,14 +215,14 @@ static uint32_t model_sample(const struct local_io_control *set, struct model *m
 static void toggle(uint32_t *bits, uint64_t *seed)
 {
     if (check_random(seed, 0, 2) == 0)
-        *bits ^= 1u << check_random(seed, 0, 31);       /* beyond the last bit too: ignored */
+        *bits ^= 1u << check_random(seed, 0, 31); /* beyond the last bit too: ignored */
     else
         *bits ^= (uint32_t)check_random(seed, 0, 255);
 }
 
 static void move_lines(struct local_io_lines *lines, uint64_t *seed)
 {
-    uint32_t *groups[] = {&lines->ldi, &lines->dfi, &lines->home, &lines->up, &lines->down};
+    uint32_t *groups[] = { &lines->ldi, &lines->dfi, &lines->home, &lines->up, &lines->down };
     for (int i = 0; i < 5; i++)
         if (check_random(seed, 0, 3) == 0)
             toggle(groups[i], seed);
@@ -231,10 +232,10 @@ static void move_lines(struct local_io_lines *lines, uint64_t *seed)
 
 static void against_model(uint64_t seed, uint32_t *fired)
 {
-    struct local_io_control set = {0};
-    struct local_io io = {0};
-    struct local_io_lines lines = {0};
-    struct model m = {0};
+    struct local_io_control set = { 0 };
+    struct local_io io = { 0 };
+    struct local_io_lines lines = { 0 };
+    struct model m = { 0 };
     uint32_t inputs;
     for (int n = 0; n < 2000; n++) {
         move_lines(&lines, &seed);

@@ -8,11 +8,11 @@
 #include <string.h>
 
 /* The call must be refused with this status and leave the card as it was. */
-#define REFUSED(call, want)                                              \
-    do {                                                                 \
-        struct epcio before = card;                                      \
-        CHECK_EQ(call, want);                                            \
-        CHECK(memcmp(&before, &card, sizeof card) == 0);                 \
+#define REFUSED(call, want) \
+    do { \
+        struct epcio before = card; \
+        CHECK_EQ(call, want); \
+        CHECK(memcmp(&before, &card, sizeof card) == 0); \
         CHECK(strlen(epcio_status_text((enum epcio_status)(want))) > 9); \
     } while (0)
 
@@ -30,7 +30,7 @@ static void dda_and_fifo(void)
     REFUSED(epcio_erase_last(&card, -1, 1, &n), EPCIO_BAD_AXIS);
     REFUSED(epcio_erase_last(&card, 0, -1, &n), EPCIO_BAD_COUNT);
     REFUSED(epcio_shift_out(&card, 6, &n), EPCIO_BAD_AXIS);
-    struct bus_write w = {.seq = 1, .count = 17};
+    struct bus_write w = { .seq = 1, .count = 17 };
     REFUSED(epcio_post(&card, &w), EPCIO_BAD_COUNT);
     w.count = -1;
     REFUSED(epcio_post(&card, &w), EPCIO_BAD_COUNT);
@@ -42,7 +42,7 @@ static void dda_and_fifo(void)
     CHECK_EQ(card.irq.flags[IRQ_DDA], 0);
     CHECK_EQ(epcio_shift_out(&card, 1, &n), EPCIO_OK);
     CHECK_EQ(n, 100);
-    CHECK_EQ(card.irq.flags[IRQ_DDA], 2);           /* the stock has fallen to 2 */
+    CHECK_EQ(card.irq.flags[IRQ_DDA], 2); /* the stock has fallen to 2 */
     CHECK_EQ(epcio_erase_last(&card, 1, 9, &n), EPCIO_OK);
     CHECK_EQ(n, 2);
     REFUSED(epcio_shift_out(&card, 1, &n), EPCIO_FIFO_EMPTY);
@@ -62,7 +62,7 @@ static void encoders_and_loops(void)
     REFUSED(epcio_set_latch(&card, 9, 1, false), EPCIO_BAD_AXIS);
     REFUSED(epcio_set_latch(&card, 0, 1u << LATCH_SOURCES, false), EPCIO_BAD_MASK);
     REFUSED(epcio_clear_loops(&card, 1u << 7), EPCIO_BAD_MASK);
-    struct epcio_host host = {.gain = {65535}};
+    struct epcio_host host = { .gain = { 65535 } };
     CHECK_EQ(epcio_set_host(&card, &host), EPCIO_OK);
     host.gain[5] = 65536;
     REFUSED(epcio_set_host(&card, &host), EPCIO_BAD_GAIN);
@@ -78,15 +78,15 @@ static void encoders_and_loops(void)
 static void analog_and_io(void)
 {
     struct epcio card = card_on();
-    REFUSED(epcio_set_trigger(&card, 8, &(struct analog_trigger){1, 0.0}), EPCIO_BAD_AXIS);
-    REFUSED(epcio_set_trigger(&card, 0, &(struct analog_trigger){1, 10.1}), EPCIO_BAD_VOLTS);
-    REFUSED(epcio_set_trigger(&card, 0, &(struct analog_trigger){1, NAN}), EPCIO_BAD_VOLTS);
-    struct adc_control adc = {.channel = 8};
+    REFUSED(epcio_set_trigger(&card, 8, &(struct analog_trigger){ 1, 0.0 }), EPCIO_BAD_AXIS);
+    REFUSED(epcio_set_trigger(&card, 0, &(struct analog_trigger){ 1, 10.1 }), EPCIO_BAD_VOLTS);
+    REFUSED(epcio_set_trigger(&card, 0, &(struct analog_trigger){ 1, NAN }), EPCIO_BAD_VOLTS);
+    struct adc_control adc = { .channel = 8 };
     REFUSED(epcio_set_adc(&card, &adc), EPCIO_ADC + ADC_BAD_CHANNEL);
     struct local_io_control local = card.local_control;
     local.servo_on = 64;
     REFUSED(epcio_set_local_io(&card, &local), EPCIO_LOCAL_IO + LOCAL_IO_BAD_SERVO_ON);
-    struct remote_io_control remote = {.retry_limit = 256};
+    struct remote_io_control remote = { .retry_limit = 256 };
     REFUSED(epcio_set_remote_io(&card, 0, &remote), EPCIO_REMOTE_IO + REMOTE_IO_BAD_RETRY);
     remote.retry_limit = 1;
     REFUSED(epcio_set_remote_io(&card, 2, &remote), EPCIO_BAD_AXIS);
@@ -133,44 +133,48 @@ static void configuration(void)
 /* Each row: a value that is taken, and one that is refused, and why. */
 static void map(void)
 {
-    static const struct { int32_t address; double good, bad; int status; } ROW[] = {
-        {REG_FIFO_ERASE, 1, -1, EPCIO_BAD_COUNT},
-        {REG_ENC_FORMAT + 8, 1, 4, EPCIO_ENCODER + ENCODER_BAD_FORMAT},
-        {REG_ENC_RATE, 2, 3, EPCIO_ENCODER + ENCODER_BAD_RATE},
-        {REG_ENC_WIRING + 3, 12, 16, EPCIO_ENCODER + ENCODER_BAD_WIRING},
-        {REG_ENC_FILTER, 40, -1, EPCIO_ENCODER + ENCODER_BAD_FILTER},
-        {REG_ENC_COMPARE + 1, -5000, 3e9, EPCIO_BAD_VALUE},
-        {REG_ENC_COMPARE_ON + 1, 1, 2, EPCIO_BAD_VALUE},
-        {REG_ENC_LATCH_LAST, 1, -1, EPCIO_BAD_VALUE},
-        {REG_ENC_LATCH, 0x6200, 0x8000, EPCIO_BAD_MASK},
-        {REG_DAC_TRIGGER_VOLTS + 7, -9.99, -10.01, EPCIO_BAD_VOLTS},
-        {REG_DAC_TRIGGER + 7, 4294967295.0, -1, EPCIO_BAD_MASK},
-        {REG_ADC_MODE, 1, 2, EPCIO_ADC + ADC_BAD_MODE},
-        {REG_ADC_CHANNEL, 7, 8, EPCIO_ADC + ADC_BAD_CHANNEL},
-        {REG_ADC_ENABLED, 255, 256, EPCIO_ADC + ADC_BAD_MASK},
-        {REG_ADC_COMPARE_ON, 3, 999, EPCIO_ADC + ADC_BAD_MASK},
-        {REG_ADC_IGNORED_BITS, 3, 4, EPCIO_ADC + ADC_BAD_IGNORED},
-        {REG_ADC_TAGGED, 255, -1, EPCIO_ADC + ADC_BAD_MASK},
-        {REG_ADC_RUN, 1, 7, EPCIO_BAD_VALUE},
-        {REG_ADC_RANGE + 2, 1, 2, EPCIO_ADC + ADC_BAD_RANGE},
-        {REG_ADC_COMPARE + 2, 2, 3, EPCIO_ADC + ADC_BAD_COMPARE},
-        {REG_ADC_COMPARE_VOLTS + 2, 5.25, -0.1, EPCIO_ADC + ADC_BAD_VOLTS},
-        {REG_LIO_OUTPUTS, 255, 256, EPCIO_LOCAL_IO + LOCAL_IO_BAD_LDO},
-        {REG_LIO_SERVO_ON, 63, 64, EPCIO_LOCAL_IO + LOCAL_IO_BAD_SERVO_ON},
-        {REG_LIO_POSITION_READY, 1, 2, EPCIO_BAD_VALUE},
-        {REG_LIO_STOP_ENABLE, 1, -1, EPCIO_BAD_VALUE},
-        {REG_LIO_GATE, 1, 3, EPCIO_BAD_VALUE},
-        {REG_LIO_DEDICATED, 127, 128, EPCIO_LOCAL_IO + LOCAL_IO_BAD_DEDICATED},
-        {REG_LIO_LDI_EDGE + 7, 2, 3, EPCIO_LOCAL_IO + LOCAL_IO_BAD_EDGE},
-        {REG_LIO_DFI_EDGE + 6, 1, -1, EPCIO_LOCAL_IO + LOCAL_IO_BAD_EDGE},
-        {REG_TIMER_PERIOD, 40000, -1, EPCIO_TIMER + TIMER_BAD_PERIOD},
-        {REG_WATCHDOG_RESET, 4294967295.0, 0, EPCIO_TIMER + TIMER_BAD_RESET},
-        {REG_WATCHDOG_VALUE, 65535, 65536, EPCIO_TIMER + TIMER_BAD_VALUE},
-        {REG_RIO_RETRY + 1, 255, 256, EPCIO_REMOTE_IO + REMOTE_IO_BAD_RETRY},
-        {REG_RIO_ENABLED + 1, 7, 8, EPCIO_REMOTE_IO + REMOTE_IO_BAD_ENABLED},
-        {REG_RIO_EDGE + 23, 2, 3, EPCIO_REMOTE_IO + REMOTE_IO_BAD_EDGE},
-        {REG_RIO_OUT + 23, 65535, 65536, EPCIO_BAD_VALUE},
-        {REG_MODULE_RESET, 3, 0, EPCIO_BAD_MODULE},
+    static const struct {
+        int32_t address;
+        double good, bad;
+        int status;
+    } ROW[] = {
+        { REG_FIFO_ERASE, 1, -1, EPCIO_BAD_COUNT },
+        { REG_ENC_FORMAT + 8, 1, 4, EPCIO_ENCODER + ENCODER_BAD_FORMAT },
+        { REG_ENC_RATE, 2, 3, EPCIO_ENCODER + ENCODER_BAD_RATE },
+        { REG_ENC_WIRING + 3, 12, 16, EPCIO_ENCODER + ENCODER_BAD_WIRING },
+        { REG_ENC_FILTER, 40, -1, EPCIO_ENCODER + ENCODER_BAD_FILTER },
+        { REG_ENC_COMPARE + 1, -5000, 3e9, EPCIO_BAD_VALUE },
+        { REG_ENC_COMPARE_ON + 1, 1, 2, EPCIO_BAD_VALUE },
+        { REG_ENC_LATCH_LAST, 1, -1, EPCIO_BAD_VALUE },
+        { REG_ENC_LATCH, 0x6200, 0x8000, EPCIO_BAD_MASK },
+        { REG_DAC_TRIGGER_VOLTS + 7, -9.99, -10.01, EPCIO_BAD_VOLTS },
+        { REG_DAC_TRIGGER + 7, 4294967295.0, -1, EPCIO_BAD_MASK },
+        { REG_ADC_MODE, 1, 2, EPCIO_ADC + ADC_BAD_MODE },
+        { REG_ADC_CHANNEL, 7, 8, EPCIO_ADC + ADC_BAD_CHANNEL },
+        { REG_ADC_ENABLED, 255, 256, EPCIO_ADC + ADC_BAD_MASK },
+        { REG_ADC_COMPARE_ON, 3, 999, EPCIO_ADC + ADC_BAD_MASK },
+        { REG_ADC_IGNORED_BITS, 3, 4, EPCIO_ADC + ADC_BAD_IGNORED },
+        { REG_ADC_TAGGED, 255, -1, EPCIO_ADC + ADC_BAD_MASK },
+        { REG_ADC_RUN, 1, 7, EPCIO_BAD_VALUE },
+        { REG_ADC_RANGE + 2, 1, 2, EPCIO_ADC + ADC_BAD_RANGE },
+        { REG_ADC_COMPARE + 2, 2, 3, EPCIO_ADC + ADC_BAD_COMPARE },
+        { REG_ADC_COMPARE_VOLTS + 2, 5.25, -0.1, EPCIO_ADC + ADC_BAD_VOLTS },
+        { REG_LIO_OUTPUTS, 255, 256, EPCIO_LOCAL_IO + LOCAL_IO_BAD_LDO },
+        { REG_LIO_SERVO_ON, 63, 64, EPCIO_LOCAL_IO + LOCAL_IO_BAD_SERVO_ON },
+        { REG_LIO_POSITION_READY, 1, 2, EPCIO_BAD_VALUE },
+        { REG_LIO_STOP_ENABLE, 1, -1, EPCIO_BAD_VALUE },
+        { REG_LIO_GATE, 1, 3, EPCIO_BAD_VALUE },
+        { REG_LIO_DEDICATED, 127, 128, EPCIO_LOCAL_IO + LOCAL_IO_BAD_DEDICATED },
+        { REG_LIO_LDI_EDGE + 7, 2, 3, EPCIO_LOCAL_IO + LOCAL_IO_BAD_EDGE },
+        { REG_LIO_DFI_EDGE + 6, 1, -1, EPCIO_LOCAL_IO + LOCAL_IO_BAD_EDGE },
+        { REG_TIMER_PERIOD, 40000, -1, EPCIO_TIMER + TIMER_BAD_PERIOD },
+        { REG_WATCHDOG_RESET, 4294967295.0, 0, EPCIO_TIMER + TIMER_BAD_RESET },
+        { REG_WATCHDOG_VALUE, 65535, 65536, EPCIO_TIMER + TIMER_BAD_VALUE },
+        { REG_RIO_RETRY + 1, 255, 256, EPCIO_REMOTE_IO + REMOTE_IO_BAD_RETRY },
+        { REG_RIO_ENABLED + 1, 7, 8, EPCIO_REMOTE_IO + REMOTE_IO_BAD_ENABLED },
+        { REG_RIO_EDGE + 23, 2, 3, EPCIO_REMOTE_IO + REMOTE_IO_BAD_EDGE },
+        { REG_RIO_OUT + 23, 65535, 65536, EPCIO_BAD_VALUE },
+        { REG_MODULE_RESET, 3, 0, EPCIO_BAD_MODULE },
     };
     struct epcio card = card_stocked(9, 0);
     for (size_t i = 0; i < sizeof ROW / sizeof ROW[0]; i++) {
@@ -203,7 +207,7 @@ static void map_is_disjoint(void)
 {
     static unsigned char owners[0x1000];
 #define EPCIO_REGISTER(first, name, count) \
-    for (int i = 0; i < (count); i++)      \
+    for (int i = 0; i < (count); i++) \
         owners[(first) + i]++;
     EPCIO_REGISTERS(EPCIO_REGISTER)
 #undef EPCIO_REGISTER
@@ -216,7 +220,7 @@ static void module_resets(void)
     struct epcio card = card_stocked(9, 0);
     const struct epcio fresh = card_on();
     int bad;
-    double phase[EPCIO_ENCODERS] = {0};
+    double phase[EPCIO_ENCODERS] = { 0 };
     card_sample(&card, phase, &bad);
     epcio_write(&card, REG_ADC_ENABLED, 255);
     epcio_write(&card, REG_ADC_MODE, 1);
@@ -252,7 +256,7 @@ static void module_resets(void)
     epcio_advance(&card, 100000);
     int64_t pulses[EPCIO_AXES];
     epcio_pulses(&card, pulses);
-    CHECK_EQ(pulses[0], 300);                       /* the DDA time in progress ended */
+    CHECK_EQ(pulses[0], 300); /* the DDA time in progress ended */
 }
 
 int main(void)

@@ -14,18 +14,18 @@ enum {
 
 /* A set with its surroundings. */
 struct bench {
-    struct remote_io_config  c;
+    struct remote_io_config c;
     struct remote_io_control set;
-    struct remote_io_lines   lines;
-    struct remote_io         io;
+    struct remote_io_lines lines;
+    struct remote_io io;
 };
 
 static struct bench bench(int32_t time, uint32_t enabled, int32_t retry_limit)
 {
     return (struct bench){
-        .c = {time},
-        .set = {.on = true, .enabled = enabled, .retry_limit = retry_limit},
-        .lines = {.connected = 7},
+        .c = { time },
+        .set = { .on = true, .enabled = enabled, .retry_limit = retry_limit },
+        .lines = { .connected = 7 },
     };
 }
 
@@ -66,10 +66,10 @@ static enum remote_io_status check(const struct remote_io_control *set)
 /* Both ends of each range are taken, what is beyond is refused; the first that is wrong is said. */
 static void settings(void)
 {
-    const struct remote_io_control low = {0};
-    struct remote_io_control high = {.on = true, .enabled = 7, .retry_limit = 255};
+    const struct remote_io_control low = { 0 };
+    struct remote_io_control high = { .on = true, .enabled = 7, .retry_limit = 255 };
     for (int64_t time = -1; time < 2; time++) {
-        const struct remote_io_config c = {(int32_t)time};
+        const struct remote_io_config c = { (int32_t)time };
         CHECK_EQ(remote_io_check_config(&c), time < 1 ? REMOTE_IO_BAD_TIME : REMOTE_IO_OK);
     }
     for (int i = 0; i < 12; i++)
@@ -103,7 +103,7 @@ static void scan(void)
                     if (!(enabled >> i & 1))
                         continue;
                     struct bench same = b;
-                    update(&b, due + time / 2);         /* written again: nothing changes */
+                    update(&b, due + time / 2); /* written again: nothing changes */
                     CHECK(memcmp(&b, &same, sizeof b) == 0);
                     CHECK_EQ(b.io.slave, i);
                     due += time;
@@ -130,17 +130,17 @@ static void start_and_end(void)
     update(&b, 50);
     b.set.out[1][3] = 0x1111;
     b.lines.in[1][2] = 0x2222;
-    b.lines.connected = 0;                              /* it was connected at the start */
+    b.lines.connected = 0; /* it was connected at the start */
     CHECK_EQ(output(&b, 1, 3, 59), 0);
     CHECK_EQ(b.io.in[1][2], 0);
     CHECK_EQ(run(&b, 60), 0);
     CHECK_EQ(output(&b, 1, 3, 60), 0x8001);
     CHECK_EQ(b.io.in[1][2], 0x7FFE);
-    b.lines.connected = 5u | 1u << 31;                  /* back, but not at the start */
+    b.lines.connected = 5u | 1u << 31; /* back, but not at the start */
     CHECK_EQ(run(&b, 70), FAIL);
     b.lines.connected = 2;
     CHECK_EQ(b.io.in[1][2], 0x7FFE);
-    CHECK_EQ(run(&b, 80), 0);                           /* begun at 70 with the lines of then */
+    CHECK_EQ(run(&b, 80), 0); /* begun at 70 with the lines of then */
     CHECK_EQ(b.io.errors[1], 2);
     CHECK_EQ(run(&b, 90), 0);
     CHECK_EQ(b.io.in[1][2], 0x2222);
@@ -156,14 +156,14 @@ static void inputs(bool cut)
             struct bench b = bench(1, 7, 2);
             for (int k = 0; k < 4; k++)
                 b.set.edge[slave][k] = (enum remote_io_edge)edge;
-            memset(b.lines.in, 0xFF, sizeof b.lines.in);    /* the first one fires nothing */
+            memset(b.lines.in, 0xFF, sizeof b.lines.in); /* the first one fires nothing */
             update(&b, 0);
             CHECK_EQ(run(&b, 6), 0);
             for (int up = 0; up < 2; up++) {
                 bool fires = bit < 4 && edge != (up ? REMOTE_IO_FALL : REMOTE_IO_RISE);
                 uint32_t want = (uint32_t)fires << (4 * slave + bit % 4);
                 b.lines.in[slave][0] = (uint16_t)(0xFFFF ^ (up ? 0 : 1u << bit));
-                b.lines.in[slave][1 + i % 3] ^= 0xF;        /* other ports do not interrupt */
+                b.lines.in[slave][1 + i % 3] ^= 0xF; /* other ports do not interrupt */
                 b.lines.connected = cut ? 0 : 7;
                 CHECK_EQ(run(&b, 18 + 24 * up), cut ? FAIL : want);
                 b.lines.connected = 7;
@@ -188,7 +188,7 @@ static void failures(int32_t limit)
     int32_t errors = limit + 5;
     for (int round = 0; round < 2; round++) {
         b.lines.connected = 4;
-        CHECK_EQ(finish(&b), 0);                    /* begun while it was cut off */
+        CHECK_EQ(finish(&b), 0); /* begun while it was cut off */
         CHECK_EQ(finish(&b), 0);
         CHECK_EQ(b.io.ready, 4);
         CHECK_EQ(b.io.errors[2], ++errors);
@@ -215,7 +215,7 @@ static void safe_state(int32_t time, int32_t limit, uint32_t enabled, int how)
     run(&b, heard);
     b.set.enabled = how == 1 ? 6 : 7;
     b.set.on = how != 2;
-    b.set.retry_limit = 255 - limit;                /* the slave does not hear of it */
+    b.set.retry_limit = 255 - limit; /* the slave does not hear of it */
     update(&b, heard);
     run(&b, heard + time);
     CHECK_EQ(output(&b, 0, 0, heard), 0xABCD);
@@ -226,7 +226,7 @@ static void safe_state(int32_t time, int32_t limit, uint32_t enabled, int how)
     b.set.enabled = 1;
     b.lines.connected = 1;
     update(&b, heard + 2 * silence);
-    finish(&b);                                     /* may have begun in the cut */
+    finish(&b); /* may have begun in the cut */
     finish(&b);
     CHECK_EQ(output(&b, 0, 0, b.io.due - time), 0xABCD);
 }
@@ -239,7 +239,7 @@ static void fall_together(int32_t time, int32_t limit)
     update(&b, 0);
     run(&b, 9 * time);
     b.lines.connected = 5;
-    int64_t clock = (8 + 3 * (limit + 1)) * time;   /* its latest good one ended at 8 * time */
+    int64_t clock = (8 + 3 * (limit + 1)) * time; /* its latest good one ended at 8 * time */
     CHECK_EQ(run(&b, clock - 1), 0);
     CHECK_EQ(run(&b, clock), FAIL);
     CHECK_EQ(output(&b, 1, 2, clock - 1), 0xFFFF);
@@ -252,25 +252,25 @@ static void leave_and_return(void)
     struct bench b = bench(10, 7, 3);
     update(&b, 0);
     b.lines.connected = 6;
-    run(&b, 45);                                    /* slave 0 failed at 40; slave 1 since then */
+    run(&b, 45); /* slave 0 failed at 40; slave 1 since then */
     b.lines.in[2][0] = 1;
     b.set.enabled = 5;
     update(&b, 47);
-    CHECK_EQ(b.io.ready, 5);                        /* at once */
+    CHECK_EQ(b.io.ready, 5); /* at once */
     CHECK_EQ(b.io.exchanges, 4);
     CHECK_EQ(b.io.slave, 2);
     CHECK_EQ(remote_io_due(&b.io), 57);
     CHECK_EQ(run(&b, 57), 1 << 8);
     b.set.enabled = 6;
-    update(&b, 60);                                 /* drops slave 0's, begun at 57 */
+    update(&b, 60); /* drops slave 0's, begun at 57 */
     CHECK_EQ(b.io.slave, 1);
-    CHECK_EQ(b.io.errors[0] + 10 * b.io.in_a_row[0], 11);   /* stay to be read */
+    CHECK_EQ(b.io.errors[0] + 10 * b.io.in_a_row[0], 11); /* stay to be read */
     b.set.enabled = 7;
     b.lines.in[1][0] = 2;
     update(&b, 60);
     CHECK_EQ(b.io.errors[0] + b.io.in_a_row[0], 0);
     CHECK_EQ(remote_io_due(&b.io), 70);
-    b.set.on = false;                               /* off at the clock of an end, which is first */
+    b.set.on = false; /* off at the clock of an end, which is first */
     run(&b, 70);
     update(&b, 70);
     CHECK_EQ(b.io.exchanges, 6);
@@ -311,16 +311,16 @@ enum life { OUT, NEW, NEW_TOLD, READY, LOST };
 struct model {
     struct {
         enum life life;
-        int32_t   errors, row;
-        uint16_t  in[PORTS], terminal[PORTS];
-        int64_t   quiet, patience;              /* [clocks] */
+        int32_t errors, row;
+        uint16_t in[PORTS], terminal[PORTS];
+        int64_t quiet, patience; /* [clocks] */
     } slave[SLAVES];
-    int      turn;                              /* -1: idle */
-    int64_t  left;                              /* [clocks] of the exchange to go */
-    bool     good;
+    int turn;     /* -1: idle */
+    int64_t left; /* [clocks] of the exchange to go */
+    bool good;
     uint16_t in[PORTS], out[PORTS];
-    int64_t  patience;
-    int32_t  exchanges;
+    int64_t patience;
+    int32_t exchanges;
 };
 
 static void model_turn(const struct bench *b, struct model *m, int after)
@@ -448,13 +448,13 @@ static void field(uint64_t *seed, struct remote_io_lines *lines)
     else if (what < 13)
         lines->in[i][check_random(seed, 1, 3)] = (uint16_t)check_random(seed, 0, UINT16_MAX);
     else if (what == 13)
-        lines->connected ^= 1u << check_random(seed, 0, 3);     /* bit 3: no such slave */
+        lines->connected ^= 1u << check_random(seed, 0, 3); /* bit 3: no such slave */
 }
 
 static void scenario(uint64_t seed)
 {
     struct bench b = bench((int32_t)check_random(&seed, 1, 7), 7, 1);
-    struct model m = {.turn = -1};
+    struct model m = { .turn = -1 };
     for (int64_t clock = 0; clock < 1200; clock++) {
         int32_t row = m.turn >= 0 ? m.slave[m.turn].row : 0;
         uint32_t want = clock > 0 ? model_tick(&b, &m) : 0;
@@ -466,7 +466,7 @@ static void scenario(uint64_t seed)
         field(&seed, &b.lines);
         if (check_random(&seed, 0, 19) == 0)
             change(&seed, &b.set);
-        if (check_random(&seed, 0, 29) == 0) {      /* until then the scan is the old one */
+        if (check_random(&seed, 0, 29) == 0) { /* until then the scan is the old one */
             int turn = m.turn;
             update(&b, clock);
             model_write(&b, &m);
@@ -483,7 +483,7 @@ int main(void)
     start_and_end();
     inputs(false);
     inputs(true);
-    const int32_t limits[] = {0, 1, 3, 255};
+    const int32_t limits[] = { 0, 1, 3, 255 };
     for (int i = 0; i < 4; i++) {
         failures(limits[i]);
         fall_together(1 + 4 * i, limits[i]);

@@ -7,8 +7,9 @@
 
 enum { LENGTH = 10, T = 1 << LENGTH };
 
-static const struct single_buffer_config all_axes = {{true, true, true, true, true, true}, false};
-static const uint32_t open_mask[IRQ_PAGES] = {0x7F}, fifo_mask[IRQ_PAGES] = {0x3F};
+static const struct single_buffer_config all_axes = { { true, true, true, true, true, true },
+                                                      false };
+static const uint32_t open_mask[IRQ_PAGES] = { 0x7F }, fifo_mask[IRQ_PAGES] = { 0x3F };
 
 /* A card with DDA time 1024 clocks and open interrupts, at clock 0. */
 static struct single_buffer power_on(bool latched, const uint32_t mask[IRQ_PAGES])
@@ -36,7 +37,7 @@ static int64_t pulses_of(const struct single_buffer *card, int axis)
 static void direct_gaps(int64_t latency)
 {
     struct single_buffer card = power_on(false, fifo_mask);
-    const int32_t frame[AXES] = {100, -100, 0, 1023, -1023, 1};
+    const int32_t frame[AXES] = { 100, -100, 0, 1023, -1023, 1 };
     int64_t begin = 7;
     for (int k = 0; k < 20; k++) {
         single_buffer_advance(&card, begin);
@@ -44,7 +45,7 @@ static void direct_gaps(int64_t latency)
         CHECK_EQ(single_buffer_underflows(&card, 0), latency > 0 ? k : 0);
         CHECK_EQ(single_buffer_write_frame(&card, frame), EPCIO_OK);
         CHECK_EQ(card.gap[0], k * latency);
-        CHECK_EQ(card.gap[2], 0);                       /* never moves */
+        CHECK_EQ(card.gap[2], 0); /* never moves */
         CHECK_EQ(single_buffer_stock(&card), 1);
         single_buffer_acknowledge(&card, fifo_mask, fifo_mask);
         for (int64_t j = 1; j <= 100; j++) {
@@ -65,7 +66,7 @@ static void direct_gaps(int64_t latency)
         begin += T + latency;
     }
     CHECK_EQ(pulses_of(&card, 3), 20 * 1023);
-    single_buffer_advance(&card, begin + 50 * T);       /* and stands, for one underflow */
+    single_buffer_advance(&card, begin + 50 * T); /* and stands, for one underflow */
     CHECK_EQ(single_buffer_underflows(&card, 0), latency > 0 ? 20 : 1);
     CHECK_EQ(single_buffer_underflows(&card, 2), 0);
     CHECK_EQ(card.gap[0], 19 * latency);
@@ -76,7 +77,7 @@ static void direct_gaps(int64_t latency)
 static void latched_gaps(int64_t latency)
 {
     struct single_buffer card = power_on(true, fifo_mask);
-    const int32_t frame[AXES] = {100, -100, 0, 1023, -1023, 1};
+    const int32_t frame[AXES] = { 100, -100, 0, 1023, -1023, 1 };
     const int64_t each = (latency / T + 1) * T;
     CHECK_EQ(single_buffer_write_frame(&card, frame), EPCIO_OK);
     single_buffer_advance(&card, T - 1);
@@ -92,7 +93,7 @@ static void latched_gaps(int64_t latency)
         CHECK_EQ(single_buffer_underflows(&card, 0), latency < T ? 0 : k);
         CHECK_EQ(card.gap[0], k * (each - T));
         CHECK_EQ(card.gap[2], 0);
-        single_buffer_advance(&card, begin + 1);        /* 1023 of 1024: a pulse at once */
+        single_buffer_advance(&card, begin + 1); /* 1023 of 1024: a pulse at once */
         CHECK_EQ(pulses_of(&card, 3), k * 1023 + 1);
         single_buffer_advance(&card, begin + latency);
         single_buffer_acknowledge(&card, fifo_mask, fifo_mask);
@@ -106,9 +107,9 @@ static void write_around_the_end(void)
 {
     for (int late = -2; late <= 2; late++) {
         struct single_buffer card = power_on(false, open_mask);
-        struct bus_write w = {.seq = 1, .count = 1, .frame = {{9}}};
+        struct bus_write w = { .seq = 1, .count = 1, .frame = { { 9 } } };
         single_buffer_post(&card, &w);
-        CHECK_EQ(card.cmd_ack, 1);                      /* its clock has come: at once */
+        CHECK_EQ(card.cmd_ack, 1); /* its clock has come: at once */
         w.seq = 2;
         w.clock = T + late;
         single_buffer_post(&card, &w);
@@ -140,12 +141,15 @@ static void refusals(bool latched)
 {
     struct single_buffer card = power_on(latched, open_mask), before;
     card.config.active[0] = card.config.active[4] = false;
-    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){0, 5, 0, 1023, 0, -1023}), 0);
-    const int32_t frame[5][6] = {{0, 7}, {0, 0, 1024}, {0, 0, 0, INT32_MIN}, {0, 0, 0, 0, 1}, {-1}};
-    const struct epcio_refusal why[5] = {
-        {EPCIO_NOT_FREE, 1, 7}, {EPCIO_COMMAND_TOO_LARGE, 2, 1024},
-        {EPCIO_COMMAND_TOO_LARGE, 3, INT32_MIN}, {EPCIO_AXIS_UNUSED, 4, 1},
-        {EPCIO_AXIS_UNUSED, 0, -1}};
+    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){ 0, 5, 0, 1023, 0, -1023 }), 0);
+    const int32_t frame[5][6] = {
+        { 0, 7 }, { 0, 0, 1024 }, { 0, 0, 0, INT32_MIN }, { 0, 0, 0, 0, 1 }, { -1 }
+    };
+    const struct epcio_refusal why[5] = { { EPCIO_NOT_FREE, 1, 7 },
+                                          { EPCIO_COMMAND_TOO_LARGE, 2, 1024 },
+                                          { EPCIO_COMMAND_TOO_LARGE, 3, INT32_MIN },
+                                          { EPCIO_AXIS_UNUSED, 4, 1 },
+                                          { EPCIO_AXIS_UNUSED, 0, -1 } };
     for (int k = 0; k < 5; k++) {
         before = card;
         CHECK_EQ(single_buffer_write_frame(&card, frame[k]), why[k].status);
@@ -153,12 +157,12 @@ static void refusals(bool latched)
         card.refusal = before.refusal;
         CHECK(memcmp(&card, &before, sizeof card) == 0);
     }
-    const int32_t bad[8][2] = {{9, 1}, {16, 1}, {-1, 1}, {INT32_MIN, 1},
-                               {10, 0}, {10, 65536}, {10, -1}, {15, INT32_MAX}};
+    const int32_t bad[8][2] = { { 9, 1 },  { 16, 1 },     { -1, 1 },  { INT32_MIN, 1 },
+                                { 10, 0 }, { 10, 65536 }, { 10, -1 }, { 15, INT32_MAX } };
     for (int k = 0; k < 8; k++)
         CHECK_EQ(single_buffer_set_dda(&card, bad[k][0], bad[k][1]),
                  k < 4 ? EPCIO_BAD_LENGTH : EPCIO_BAD_DIVIDER);
-    struct bus_write w = {.seq = 1, .clock = 5, .count = -1};
+    struct bus_write w = { .seq = 1, .clock = 5, .count = -1 };
     CHECK_EQ(single_buffer_post(&card, &w), EPCIO_BAD_COUNT);
     w.count = BUS_FRAMES + 1;
     CHECK_EQ(single_buffer_post(&card, &w), EPCIO_BAD_COUNT);
@@ -177,24 +181,24 @@ static void shorter_length(void)
     struct single_buffer card = power_on(true, open_mask), before;
     CHECK_EQ(single_buffer_set_dda(&card, 15, 65535), EPCIO_OK);
     CHECK_EQ(single_buffer_set_dda(&card, 11, 1), EPCIO_OK);
-    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){0, -1024}), EPCIO_OK);
+    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){ 0, -1024 }), EPCIO_OK);
     before = card;
     CHECK_EQ(single_buffer_set_dda(&card, 10, 1), EPCIO_COMMAND_WAITS);
     CHECK(memcmp(&card, &before, sizeof card) == 0);
-    single_buffer_advance(&card, 2 * T);                /* taken: the register is empty */
+    single_buffer_advance(&card, 2 * T); /* taken: the register is empty */
     CHECK_EQ(single_buffer_set_dda(&card, 10, 1), EPCIO_OK);
     CHECK_EQ(single_buffer_set_dda(&card, 11, 1), EPCIO_OK);
-    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){0, 1023}), EPCIO_OK);
-    CHECK_EQ(single_buffer_set_dda(&card, 10, 1), EPCIO_OK);    /* it just fits */
+    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){ 0, 1023 }), EPCIO_OK);
+    CHECK_EQ(single_buffer_set_dda(&card, 10, 1), EPCIO_OK); /* it just fits */
     single_buffer_advance(&card, 5 * T);
     CHECK_EQ(pulses_of(&card, 1), -1);
     CHECK_EQ(dda_boundary(&card.dda), 6 * T);
-    card = power_on(false, open_mask);                  /* direct: the next command has it */
-    single_buffer_write_frame(&card, (int32_t[6]){1023});
+    card = power_on(false, open_mask); /* direct: the next command has it */
+    single_buffer_write_frame(&card, (int32_t[6]){ 1023 });
     CHECK_EQ(single_buffer_set_dda(&card, 11, 3), EPCIO_OK);
     single_buffer_advance(&card, T);
     CHECK_EQ(pulses_of(&card, 0), 1023);
-    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){2047}), EPCIO_OK);
+    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){ 2047 }), EPCIO_OK);
     CHECK_EQ(dda_boundary(&card.dda), T + 3 * 2048);
 }
 
@@ -202,12 +206,12 @@ static void shorter_length(void)
 static void emergency_stop(bool latched)
 {
     struct single_buffer card = power_on(latched, open_mask);
-    struct bus_write w = {.seq = 4, .clock = 3000, .count = 3, .frame = {{33}}};
-    single_buffer_write_frame(&card, (int32_t[6]){100});
+    struct bus_write w = { .seq = 4, .clock = 3000, .count = 3, .frame = { { 33 } } };
+    single_buffer_write_frame(&card, (int32_t[6]){ 100 });
     single_buffer_advance(&card, latched ? T + 10 : 10);
     single_buffer_acknowledge(&card, open_mask, open_mask);
     if (latched)
-        single_buffer_write_frame(&card, (int32_t[6]){50});
+        single_buffer_write_frame(&card, (int32_t[6]){ 50 });
     single_buffer_post(&card, &w);
     uint32_t pulls = card.irq.seq;
     single_buffer_clear(&card);
@@ -219,11 +223,11 @@ static void emergency_stop(bool latched)
     CHECK_EQ(single_buffer_stock(&card), latched ? 0 : 1);
     single_buffer_advance(&card, 5 * T + 5);
     CHECK_EQ(pulses_of(&card, 0), 100);
-    CHECK_EQ(single_buffer_underflows(&card, 0), 1);    /* the axis ran out, as on the EPCIO */
-    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){100}), EPCIO_OK);
+    CHECK_EQ(single_buffer_underflows(&card, 0), 1); /* the axis ran out, as on the EPCIO */
+    CHECK_EQ(single_buffer_write_frame(&card, (int32_t[6]){ 100 }), EPCIO_OK);
     single_buffer_advance(&card, 7 * T + 5);
-    CHECK_EQ(card.gap[0], 0);                           /* a new start */
-    single_buffer_clear(&card);                         /* nothing to drop: no interrupt */
+    CHECK_EQ(card.gap[0], 0);   /* a new start */
+    single_buffer_clear(&card); /* nothing to drop: no interrupt */
     CHECK_EQ(card.frames_refused, 3);
 }
 
@@ -231,17 +235,17 @@ static void emergency_stop(bool latched)
 static void frozen(void)
 {
     struct single_buffer card = power_on(false, open_mask);
-    single_buffer_write_frame(&card, (int32_t[6]){4});
+    single_buffer_write_frame(&card, (int32_t[6]){ 4 });
     single_buffer_advance(&card, 500);
     single_buffer_set_run(&card, false);
     single_buffer_advance(&card, 90000);
-    CHECK_EQ(pulses_of(&card, 0), 2);                   /* at 128, 384; next 640 */
+    CHECK_EQ(pulses_of(&card, 0), 2); /* at 128, 384; next 640 */
     single_buffer_set_run(&card, true);
-    single_buffer_advance(&card, 90000 + 524 + 6);      /* six clocks of waiting */
+    single_buffer_advance(&card, 90000 + 524 + 6); /* six clocks of waiting */
     single_buffer_set_run(&card, false);
     single_buffer_advance(&card, 200000);
     CHECK_EQ(single_buffer_underflows(&card, 0), 1);
-    single_buffer_write_frame(&card, (int32_t[6]){4});
+    single_buffer_write_frame(&card, (int32_t[6]){ 4 });
     CHECK_EQ(card.gap[0], 6);
     CHECK_EQ(single_buffer_stock(&card), 1);
     single_buffer_advance(&card, 300000);
@@ -262,18 +266,18 @@ static void frozen(void)
 static void conservation(bool latched, uint64_t seed)
 {
     struct single_buffer card = power_on(latched, open_mask);
-    int64_t sum[AXES] = {0}, free_at = 0;
+    int64_t sum[AXES] = { 0 }, free_at = 0;
     int32_t refused = 0;
     enum { WRITES = 4000 };
     for (int32_t seq = 1; seq <= WRITES; seq++) {
-        struct bus_write w = {.seq = seq, .count = 1};
+        struct bus_write w = { .seq = seq, .count = 1 };
         w.clock = card.clock + check_random(&seed, 0, 3 * T);
         for (int i = 0; i < AXES; i++)
             w.frame[0][i] = (int32_t)check_random(&seed, -1023, 1023);
         CHECK_EQ(single_buffer_post(&card, &w), EPCIO_OK);
         single_buffer_advance(&card, w.clock);
         CHECK_EQ(card.cmd_ack, seq);
-        bool is_free = w.clock >= free_at;      /* direct: its end; latched: the boundary after */
+        bool is_free = w.clock >= free_at; /* direct: its end; latched: the boundary after */
         if (is_free)
             free_at = latched ? (w.clock / T + 1) * T : w.clock + T;
         for (int i = 0; i < AXES && is_free; i++)
@@ -294,8 +298,8 @@ static void same(const struct single_buffer *card, const struct literal *m)
     bool equal = true;
     single_buffer_pulses(card, pulses);
     for (int i = 0; i < AXES; i++)
-        equal = equal && pulses[i] == m->out[i] && card->gap[i] == m->gap[i] &&
-                single_buffer_underflows(card, i) == m->underflows[i];
+        equal = equal && pulses[i] == m->out[i] && card->gap[i] == m->gap[i]
+                && single_buffer_underflows(card, i) == m->underflows[i];
     equal = equal && memcmp(&card->irq, &m->irq, sizeof m->irq) == 0;
     CHECK(equal);
     CHECK_EQ(single_buffer_stock(card), m->latched ? m->waits : m->running);
@@ -307,8 +311,9 @@ static void same(const struct single_buffer *card, const struct literal *m)
 /* A transaction of a host that looks sometimes, and is wrong sometimes. */
 static struct bus_write random_write(uint64_t *seed, int32_t seq, int64_t now)
 {
-    struct bus_write w = {.seq = seq, .clock = now + check_random(seed, -100, 1500),
-                          .count = check_random(seed, 0, 4) == 0 ? 2 : 1};
+    struct bus_write w = { .seq = seq,
+                           .clock = now + check_random(seed, -100, 1500),
+                           .count = check_random(seed, 0, 4) == 0 ? 2 : 1 };
     for (int k = 0; k < w.count; k++)
         for (int i = 0; i < LITERAL_UNUSED; i++)
             w.frame[k][i] = (int32_t)(check_random(seed, -1023, 1023) * check_random(seed, 0, 1));
@@ -323,7 +328,7 @@ static void random_host(struct literal *m, struct single_buffer card[2], uint64_
     const struct bus_write w = random_write(seed, m->ack + m->on_way + 1, m->now);
     const int32_t length = (int32_t)check_random(seed, 10, 11);
     const int32_t divider = (int32_t)check_random(seed, 1, 2);
-    const uint32_t flags[IRQ_PAGES] = {(uint32_t)check_random(seed, 1, 127)};
+    const uint32_t flags[IRQ_PAGES] = { (uint32_t)check_random(seed, 1, 127) };
     const int64_t what = m->run ? check_random(seed, 0, 40) : check_random(seed, 10, 24);
     bool post = what < 18 && m->on_way < BUS_DEPTH, set = what >= 18 && what < 22, fits = false;
     bool run = what >= 22 && what < 25, clear = what == 25, acknowledge = what > 25;
@@ -356,15 +361,20 @@ static void random_host(struct literal *m, struct single_buffer card[2], uint64_
 static void compare(bool latched, uint64_t seed, int64_t seen[3])
 {
     struct single_buffer card[2];
-    const struct single_buffer_config config = {{true, true, true, true, true, false}, latched};
-    struct literal m = {.latched = latched, .run = true, .length = LENGTH, .divider = 1,
-                        .next_length = LENGTH, .next_divider = 1, .irq.mask = {0x7F}};
+    const struct single_buffer_config config = { { true, true, true, true, true, false }, latched };
+    struct literal m = { .latched = latched,
+                         .run = true,
+                         .length = LENGTH,
+                         .divider = 1,
+                         .next_length = LENGTH,
+                         .next_divider = 1,
+                         .irq.mask = { 0x7F } };
     for (int k = 0; k < 2; k++) {
         single_buffer_reset(&card[k], &config);
         single_buffer_set_dda(&card[k], LENGTH, 1);
         single_buffer_set_mask(&card[k], open_mask);
     }
-    for (int64_t next = 0; m.now < 60000; ) {
+    for (int64_t next = 0; m.now < 60000;) {
         if (m.now == next) {
             single_buffer_advance(&card[1], m.now);
             CHECK(memcmp(&card[0], &card[1], sizeof card[0]) == 0);
@@ -383,7 +393,7 @@ static void compare(bool latched, uint64_t seed, int64_t seen[3])
 
 int main(void)
 {
-    const int64_t latency[] = {0, 1, 2, 77, T - 1, T, T + 1, 3 * T, 3 * T + 5};
+    const int64_t latency[] = { 0, 1, 2, 77, T - 1, T, T + 1, 3 * T, 3 * T + 5 };
     for (int i = 0; i < 9; i++) {
         direct_gaps(latency[i]);
         latched_gaps(latency[i]);
@@ -392,7 +402,7 @@ int main(void)
     shorter_length();
     frozen();
     for (int latched = 0; latched < 2; latched++) {
-        int64_t seen[3] = {0};
+        int64_t seen[3] = { 0 };
         refusals(latched);
         emergency_stop(latched);
         conservation(latched, 15485863);

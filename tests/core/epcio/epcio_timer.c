@@ -6,23 +6,23 @@
 
 static void exact_clocks(void)
 {
-    struct timer t = {0};
+    struct timer t = { 0 };
     CHECK_EQ(timer_due(&t), INT64_MAX);
-    timer_fire(&t);                                         /* off: nothing */
+    timer_fire(&t); /* off: nothing */
     CHECK_EQ(t.count, 0);
-    CHECK_EQ(timer_set(&t, true, 100000, 7), TIMER_OK);     /* 2.5 ms */
+    CHECK_EQ(timer_set(&t, true, 100000, 7), TIMER_OK); /* 2.5 ms */
     for (int n = 1; n <= 3; n++) {
         CHECK_EQ(timer_due(&t), 7 + n * 100000);
         timer_fire(&t);
         CHECK_EQ(t.count, n);
     }
-    CHECK_EQ(timer_set(&t, true, 100000, 300010), TIMER_OK);        /* the same: it runs on */
+    CHECK_EQ(timer_set(&t, true, 100000, 300010), TIMER_OK); /* the same: it runs on */
     CHECK_EQ(timer_due(&t), 400007);
-    CHECK_EQ(timer_set(&t, true, 50, 300011), TIMER_OK);            /* a new period: afresh */
+    CHECK_EQ(timer_set(&t, true, 50, 300011), TIMER_OK); /* a new period: afresh */
     CHECK_EQ(timer_due(&t), 300061);
     CHECK_EQ(timer_set(&t, false, 50, 300020), TIMER_OK);
     CHECK_EQ(timer_due(&t), INT64_MAX);
-    CHECK_EQ(timer_set(&t, false, TIMER_PERIOD_MAX, 300021), TIMER_OK);     /* kept for later */
+    CHECK_EQ(timer_set(&t, false, TIMER_PERIOD_MAX, 300021), TIMER_OK); /* kept for later */
     CHECK_EQ(timer_set(&t, true, TIMER_PERIOD_MAX, 300022), TIMER_OK);
     CHECK_EQ(timer_due(&t), 300022 + 4294967295);
     timer_fire(&t);
@@ -34,10 +34,10 @@ static void exact_clocks(void)
 /* Refused settings, on and off, change nothing; both ends of each range are taken. */
 static void ranges(void)
 {
-    const int64_t bad_period[] = {0, -1, TIMER_PERIOD_MAX + 1, INT64_MIN, INT64_MAX};
-    const int32_t bad_value[] = {0, -1, 65536, INT32_MIN, INT32_MAX};
-    struct timer t = {0}, t0;
-    struct watchdog w = {0}, w0;
+    const int64_t bad_period[] = { 0, -1, TIMER_PERIOD_MAX + 1, INT64_MIN, INT64_MAX };
+    const int32_t bad_value[] = { 0, -1, 65536, INT32_MIN, INT32_MAX };
+    struct timer t = { 0 }, t0;
+    struct watchdog w = { 0 }, w0;
     CHECK_EQ(timer_set(&t, true, 1, 3), TIMER_OK);
     CHECK_EQ(timer_set(&t, true, 4294967295, 3), TIMER_OK);
     CHECK_EQ(watchdog_set(&w, true, 1, 1), TIMER_OK);
@@ -63,8 +63,8 @@ static void ranges(void)
 /* One expiry by hand: timer of 10 clocks, value 3, reset for 25 clocks. */
 static void life_of_a_watchdog(void)
 {
-    struct watchdog w = {0};
-    CHECK(!watchdog_timer_fired(&w, 10));               /* off: counts nothing */
+    struct watchdog w = { 0 };
+    CHECK(!watchdog_timer_fired(&w, 10)); /* off: counts nothing */
     watchdog_set(&w, true, 3, 25);
     CHECK(!watchdog_timer_fired(&w, 20));
     CHECK(!watchdog_timer_fired(&w, 30));
@@ -72,24 +72,24 @@ static void life_of_a_watchdog(void)
     CHECK(!watchdog_timer_fired(&w, 40));
     CHECK(!watchdog_timer_fired(&w, 50));
     CHECK_EQ(watchdog_due(&w), INT64_MAX);
-    watchdog_set(&w, true, 3, 26);                      /* a new reset period keeps the count */
+    watchdog_set(&w, true, 3, 26); /* a new reset period keeps the count */
     CHECK(watchdog_timer_fired(&w, 60));
     CHECK(w.expired && w.resetting);
-    watchdog_refresh(&w);                               /* at the clock of expiry: late */
-    watchdog_set(&w, true, 2, 5);                       /* neither ends nor moves anything */
+    watchdog_refresh(&w);         /* at the clock of expiry: late */
+    watchdog_set(&w, true, 2, 5); /* neither ends nor moves anything */
     CHECK(w.expired && w.resetting);
     CHECK_EQ(watchdog_due(&w), 86);
     CHECK(!watchdog_timer_fired(&w, 70));
     watchdog_end(&w);
-    CHECK(w.expired && !w.resetting);                   /* latched */
+    CHECK(w.expired && !w.resetting); /* latched */
     CHECK_EQ(watchdog_due(&w), INT64_MAX);
-    CHECK(!watchdog_timer_fired(&w, 90));               /* expires once */
+    CHECK(!watchdog_timer_fired(&w, 90)); /* expires once */
     watchdog_refresh(&w);
     CHECK(!w.expired);
-    CHECK(!watchdog_timer_fired(&w, 100));              /* counts anew, to the new value */
+    CHECK(!watchdog_timer_fired(&w, 100)); /* counts anew, to the new value */
     CHECK(watchdog_timer_fired(&w, 110));
     CHECK_EQ(watchdog_due(&w), 115);
-    watchdog_set(&w, false, 2, 5);                      /* off clears all in the reset period */
+    watchdog_set(&w, false, 2, 5); /* off clears all in the reset period */
     CHECK(!w.expired && !w.resetting);
     CHECK_EQ(watchdog_due(&w), INT64_MAX);
     watchdog_set(&w, true, 2, 5);
@@ -101,8 +101,8 @@ static void life_of_a_watchdog(void)
 static void refresh_window(int64_t period, int32_t value)
 {
     for (int64_t at = 0; at < value * period; at++) {
-        struct timer t = {0};
-        struct watchdog w = {0};
+        struct timer t = { 0 };
+        struct watchdog w = { 0 };
         timer_set(&t, true, period, 0);
         watchdog_set(&w, true, value, 1);
         while (timer_due(&t) <= at) {
@@ -121,10 +121,10 @@ static void refresh_window(int64_t period, int32_t value)
 
 /* Both, counted down clock by clock. */
 struct model {
-    bool    timer_on, dog_on, expired;
-    int64_t period, to_fire, fired;         /* [clocks] [clocks] [firings] */
-    int64_t reset_period, to_end;           /* [clocks]; to_end 0: no reset period runs */
-    int32_t value, to_expire;               /* [firings] */
+    bool timer_on, dog_on, expired;
+    int64_t period, to_fire, fired; /* [clocks] [clocks] [firings] */
+    int64_t reset_period, to_end;   /* [clocks]; to_end 0: no reset period runs */
+    int32_t value, to_expire;       /* [firings] */
 };
 
 /* One clock passes; true if the watchdog expires. */
@@ -189,7 +189,7 @@ static void host(struct model *m, struct timer *t, struct watchdog *w, uint64_t 
         model_set_dog(m, on, value, reset);
         CHECK_EQ(watchdog_set(w, on, value, reset), TIMER_OK);
         break;
-    case 2:                                 /* level registers written again */
+    case 2: /* level registers written again */
         CHECK_EQ(timer_set(t, m->timer_on, m->period, clock), TIMER_OK);
         CHECK_EQ(watchdog_set(w, m->dog_on, m->value, m->reset_period), TIMER_OK);
         break;
@@ -197,15 +197,21 @@ static void host(struct model *m, struct timer *t, struct watchdog *w, uint64_t 
         model_set_dog(m, m->dog_on, m->value, reset);
         CHECK_EQ(watchdog_set(w, m->dog_on, m->value, reset), TIMER_OK);
         break;
-    case 4: case 5: case 6: case 7: case 8: case 9: case 10: case 11:
+    case 4:
+    case 5:
+    case 6:
+    case 7:
+    case 8:
+    case 9:
+    case 10:
+    case 11:
         if (m->to_end == 0) {
             m->expired = false;
             m->to_expire = m->value;
         }
         watchdog_refresh(w);
         break;
-    default:
-        break;
+    default: break;
     }
 }
 
@@ -213,9 +219,9 @@ static void host(struct model *m, struct timer *t, struct watchdog *w, uint64_t 
 static void against_model(uint64_t seed, int *expiries, int *together)
 {
     bool end_first = seed % 2 == 0;
-    struct model m = {.period = 5, .value = 2, .reset_period = 10};
-    struct timer t = {0};
-    struct watchdog w = {0};
+    struct model m = { .period = 5, .value = 2, .reset_period = 10 };
+    struct timer t = { 0 };
+    struct watchdog w = { 0 };
     timer_set(&t, false, m.period, 0);
     watchdog_set(&w, false, m.value, m.reset_period);
     for (int64_t clock = 1; clock <= 5000; clock++) {
@@ -253,7 +259,7 @@ int main(void)
             refresh_window(period, value);
     for (uint64_t seed = 1; seed <= 100; seed++)
         against_model(seed * 32452843, &expiries, &together);
-    CHECK(expiries > 1000);         /* the scenarios reach what they are about */
+    CHECK(expiries > 1000); /* the scenarios reach what they are about */
     CHECK(together > 100);
     return check_result();
 }

@@ -5,7 +5,7 @@ static void refill(struct epcio *card, int frames, int64_t clock)
 {
     epcio_advance(card, clock);
     for (int k = 0; k < frames; k++)
-        CHECK_EQ(epcio_write_frame(card, (int32_t[6]){100, -100, 1, 0, 1023, -1023}), EPCIO_OK);
+        CHECK_EQ(epcio_write_frame(card, (int32_t[6]){ 100, -100, 1, 0, 1023, -1023 }), EPCIO_OK);
     card_acknowledge(card, IRQ_DDA, 0x3F, 1);
 }
 
@@ -19,7 +19,7 @@ static void minimum_three_write_four(void)
 {
     const int64_t T = 1024;
     struct epcio card = card_stocked(8, 3);
-    epcio_advance(&card, T);                /* one into the DDA, 7 in stock */
+    epcio_advance(&card, T); /* one into the DDA, 7 in stock */
     CHECK_EQ(card.fifo[0].stock, 7);
     for (int round = 0; round < 5; round++) {
         int64_t begin = T + 4 * T * round;
@@ -67,7 +67,7 @@ static void bus_at_the_boundary(void)
 {
     for (int early = 0; early < 2; early++) {
         struct epcio card = card_stocked(1, 0);
-        struct bus_write w = {.seq = 5, .clock = 2048 - early, .count = 1, .frame = {{33}}};
+        struct bus_write w = { .seq = 5, .clock = 2048 - early, .count = 1, .frame = { { 33 } } };
         epcio_post(&card, &w);
         epcio_advance(&card, 2048);
         CHECK_EQ(card.fifo[0].stock, 1 - early);
@@ -122,15 +122,15 @@ static void doubled_points(void)
 /* The interrupt is an edge: none at rest, none while the stock stays low, one per fall. */
 static void edge_of_the_stock(void)
 {
-    struct epcio card = card_stocked(2, 3);          /* never above the minimum */
+    struct epcio card = card_stocked(2, 3); /* never above the minimum */
     epcio_advance(&card, 100 * 1024);
     CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0);
     card = card_stocked(6, 3);
-    epcio_set_minimum(&card, 6);                /* the minimum rises to the stock */
+    epcio_set_minimum(&card, 6); /* the minimum rises to the stock */
     CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0x3F);
     CHECK_EQ(card.irq.seq, 1);
     card = card_stocked(6, 3);
-    epcio_clear(&card);                         /* the stock falls to nothing */
+    epcio_clear(&card); /* the stock falls to nothing */
     CHECK_EQ(card.irq.flags[IRQ_DDA] & 0x3F, 0x3F);
     CHECK_EQ(card.fifo[0].stock, 0);
 }
@@ -151,7 +151,7 @@ static void watchdog_at_the_boundary(void)
         CHECK(card.watchdog.expired);
         CHECK_EQ(card.irq.flags[IRQ_DDA] >> IRQ_DDA_CYCLE & 1, !early);
         epcio_pulses(&card, pulses);
-        CHECK_EQ(pulses[0], early ? 98 : 100);      /* 100 * 1004 / 1024 = 98.05 */
+        CHECK_EQ(pulses[0], early ? 98 : 100); /* 100 * 1004 / 1024 = 98.05 */
         epcio_advance(&card, 9000);
         CHECK_EQ(card.irq.flags[IRQ_DDA] >> IRQ_DDA_CYCLE & 1, !early);
     }

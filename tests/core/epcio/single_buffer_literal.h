@@ -11,15 +11,15 @@
 enum { AXES = EPCIO_AXES, LITERAL_UNUSED = 5, LITERAL_FIFO = 0x1F };
 
 struct literal {
-    bool    latched, run, running, waits, stopped;
+    bool latched, run, running, waits, stopped;
     int64_t now;
     int32_t length, divider, next_length, next_divider;
-    int64_t elapsed;                    /* [clocks] of this DDA time, or of the wait */
+    int64_t elapsed; /* [clocks] of this DDA time, or of the wait */
     int32_t acc[AXES], command[AXES], waiting[AXES], last[AXES], underflows[AXES];
     int64_t out[AXES], gap[AXES], stood;
     struct irq irq;
     struct bus_write coming[BUS_DEPTH];
-    int     on_way;
+    int on_way;
     int32_t ack, taken, refused;
 };
 
@@ -59,7 +59,7 @@ static void literal_clock(struct literal *m)
     m->elapsed++;
     if (!m->running) {
         m->stood++;
-        for (int i = 0; i < AXES && !m->latched; i++)       /* the first clock of the wait */
+        for (int i = 0; i < AXES && !m->latched; i++) /* the first clock of the wait */
             m->underflows[i] += m->stood == 1 && m->last[i] != 0;
         if (!m->latched)
             return;

@@ -8,15 +8,16 @@
 enum { PERIOD = 1000, SENT = 6000 };
 
 /* No delay and a line so fast that bytes cross within two instants. */
-static const struct ethernet_config quick = {
-    .pipe = {.rate = 10000000000, .segment = 1460}, .connect = 3 * PERIOD, .away = 5 * PERIOD};
+static const struct ethernet_config quick = { .pipe = { .rate = 10000000000, .segment = 1460 },
+                                              .connect = 3 * PERIOD,
+                                              .away = 5 * PERIOD };
 
 /* Ends that write and read as the ring allows. */
 struct ends {
     struct ethernet_seen seen[ETHERNET_ENDS];
     int32_t connection;
-    int64_t got[ETHERNET_ENDS], sent[ETHERNET_ENDS];    /* over all connections */
-    bool wrong;                                         /* another byte than the other end's */
+    int64_t got[ETHERNET_ENDS], sent[ETHERNET_ENDS]; /* over all connections */
+    bool wrong;                                      /* another byte than the other end's */
 };
 
 static uint8_t byte_of(int end, int32_t n)
@@ -30,16 +31,16 @@ static void act(struct ends *s, int end, const struct ethernet *e)
     struct ethernet_seen *seen = &s->seen[end];
     uint8_t bytes[BYTE_RING_BYTES];
     const struct ethernet_shown *shown = &e->shown[end];
-    const size_t n = byte_ring_look(shown->rx_words, shown->rx_count, seen->rx_taken, bytes,
-                                    sizeof bytes);
+    const size_t n =
+        byte_ring_look(shown->rx_words, shown->rx_count, seen->rx_taken, bytes, sizeof bytes);
     for (size_t i = 0; i < n; i++)
         s->wrong |= bytes[i] != byte_of(1 - end, seen->rx_taken + (int32_t)i);
     seen->rx_taken += (int32_t)n;
     s->got[end] += (int64_t)n;
     for (int32_t k = 0; k < 200; k++) {
         const uint8_t byte = byte_of(end, seen->tx_count);
-        s->sent[end] += (int64_t)byte_ring_put(seen->tx_words, &seen->tx_count, shown->tx_taken,
-                                               &byte, 1);
+        s->sent[end] +=
+            (int64_t)byte_ring_put(seen->tx_words, &seen->tx_count, shown->tx_taken, &byte, 1);
     }
 }
 
@@ -228,7 +229,7 @@ static void check_cut_behind(int end, int64_t first)
         struct ethernet_config c = quick;
         struct ethernet e;
         struct ends s;
-        int64_t at_cut[3] = {0};
+        int64_t at_cut[3] = { 0 };
         both_want(&s);
         c.cut_behind[end][place] = 1700;
         c.cut_behind[end][(place + 1) % ETHERNET_CUTS] = first;

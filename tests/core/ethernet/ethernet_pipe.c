@@ -8,7 +8,8 @@
 static const int64_t SECOND = 1000000000;
 
 static const struct ether_config plain = {
-    .rate = 100000000, .delay = 700, .segment = 536, .overhead = 78};
+    .rate = 100000000, .delay = 700, .segment = 536, .overhead = 78
+};
 
 static void put(struct ether_pipe *p, size_t n)
 {
@@ -71,7 +72,7 @@ static void check_starts(void)
 /* A line of 3 bit/s takes a third of a second for a bit, up to the next whole nanosecond. */
 static void check_rounds_up(void)
 {
-    const struct ether_config slow = {.rate = 3, .segment = 2, .overhead = 0};
+    const struct ether_config slow = { .rate = 3, .segment = 2, .overhead = 0 };
     struct ether_pipe p;
     ether_pipe_start(&p, 1);
     put(&p, 1);
@@ -81,7 +82,7 @@ static void check_rounds_up(void)
     put(&p, 2);
     ether_pipe_send(&p, &slow, 0, 1);
     check_arrival(&p, 5333333334, 2);
-    const struct ether_config even = {.rate = 8, .segment = 1, .overhead = 2};
+    const struct ether_config even = { .rate = 8, .segment = 1, .overhead = 2 };
     ether_pipe_clear(&p, 0);
     put(&p, 1);
     ether_pipe_send(&p, &even, 0, 1);
@@ -94,7 +95,7 @@ static void check_jitter(void)
 {
     struct ether_config c = plain;
     struct ether_pipe p;
-    int times[5] = {0};
+    int times[5] = { 0 };
     c.jitter = 4;
     ether_pipe_start(&p, 5);
     for (int i = 0; i < 10000; i++) {
@@ -113,7 +114,7 @@ static void check_jitter(void)
 /* A state whose second draw of a million is `want`; the first is the jitter's. */
 static uint64_t before_draw(int64_t want)
 {
-    uint64_t two[2] = {1, 1}, state = 1;
+    uint64_t two[2] = { 1, 1 }, state = 1;
     while (check_random(&state, 0, 999999) != want || two[0] == 1) {
         two[0] = two[1];
         two[1] = state;
@@ -124,9 +125,14 @@ static uint64_t before_draw(int64_t want)
 /* A loss of n of a million takes the draws 0 .. n - 1: a stall, behind which the others wait. */
 static void check_loss(void)
 {
-    static const struct { int64_t draw, loss; bool lost; } all[] = {
-        {0, 0, false}, {0, 1, true}, {1, 1, false}, {1, 2, true}, {499999, 500000, true},
-        {500000, 500000, false}, {999999, 999999, false}, {999999, 1000000, true},
+    static const struct {
+        int64_t draw, loss;
+        bool lost;
+    } all[] = {
+        { 0, 0, false },           { 0, 1, true },
+        { 1, 1, false },           { 1, 2, true },
+        { 499999, 500000, true },  { 500000, 500000, false },
+        { 999999, 999999, false }, { 999999, 1000000, true },
     };
     struct ether_config c = plain;
     c.stall = SECOND;

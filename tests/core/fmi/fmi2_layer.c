@@ -1,5 +1,5 @@
 /* The FMI layer as FMI 2.0. */
-#define FMI_VERSION 2
+#define FMI_VERSION     2
 #define _POSIX_C_SOURCE 200809L /* kinds of files, fmu_file.h */
 #include "fmi_dummy.h"
 #include "fmi.inc"
@@ -7,7 +7,7 @@
 static void logger(void *environment, fmi2String name, fmi2Status status, fmi2String category,
                    fmi2String message, ...);
 
-static const fmi2CallbackFunctions callbacks = {logger, NULL, NULL, NULL, NULL};
+static const fmi2CallbackFunctions callbacks = { logger, NULL, NULL, NULL, NULL };
 
 static void *call_instantiate(const char *name, const char *token, const char *resources)
 {
@@ -20,24 +20,48 @@ static int call_enter(void *c, double start, double stop)
     return status ? status : (int)fmi2EnterInitializationMode(c);
 }
 
-static void call_free(void *c) { fmi2FreeInstance(c); }
-static int call_exit(void *c) { return fmi2ExitInitializationMode(c); }
-static int call_step(void *c, double t, double h) { return fmi2DoStep(c, t, h, 1); }
-static int call_terminate(void *c) { return fmi2Terminate(c); }
-static int call_reset(void *c) { return fmi2Reset(c); }
-static int call_get_state(void *c, void **s) { return fmi2GetFMUstate(c, s); }
-static int call_set_state(void *c, void *s) { return fmi2SetFMUstate(c, s); }
-static int call_free_state(void *c, void **s) { return fmi2FreeFMUstate(c, s); }
+static void call_free(void *c)
+{
+    fmi2FreeInstance(c);
+}
+static int call_exit(void *c)
+{
+    return fmi2ExitInitializationMode(c);
+}
+static int call_step(void *c, double t, double h)
+{
+    return fmi2DoStep(c, t, h, 1);
+}
+static int call_terminate(void *c)
+{
+    return fmi2Terminate(c);
+}
+static int call_reset(void *c)
+{
+    return fmi2Reset(c);
+}
+static int call_get_state(void *c, void **s)
+{
+    return fmi2GetFMUstate(c, s);
+}
+static int call_set_state(void *c, void *s)
+{
+    return fmi2SetFMUstate(c, s);
+}
+static int call_free_state(void *c, void **s)
+{
+    return fmi2FreeFMUstate(c, s);
+}
 
 static int call_set_real(void *c, unsigned ref, size_t n, const double *x)
 {
-    const unsigned refs[3] = {ref, ref + 1, ref + 2};
+    const unsigned refs[3] = { ref, ref + 1, ref + 2 };
     return fmi2SetReal(c, refs, n, x);
 }
 
 static int call_get_real(void *c, unsigned ref, size_t n, double *x)
 {
-    const unsigned refs[3] = {ref, ref + 1, ref + 2};
+    const unsigned refs[3] = { ref, ref + 1, ref + 2 };
     return fmi2GetReal(c, refs, n, x);
 }
 
@@ -48,18 +72,18 @@ static int call_get_y(void *c, double *y)
 
 static int call_set_n(void *c, int n)
 {
-    return fmi2SetInteger(c, &(unsigned){REF_N}, 1, &n);
+    return fmi2SetInteger(c, &(unsigned){ REF_N }, 1, &n);
 }
 
 static int call_set_name(void *c, const char *text)
 {
-    return fmi2SetString(c, &(unsigned){REF_NAME}, 1, &text);
+    return fmi2SetString(c, &(unsigned){ REF_NAME }, 1, &text);
 }
 
 static const char *call_get_name(void *c)
 {
     const char *text = NULL;
-    return fmi2GetString(c, &(unsigned){REF_NAME}, 1, &text) == fmi2OK ? text : "";
+    return fmi2GetString(c, &(unsigned){ REF_NAME }, 1, &text) == fmi2OK ? text : "";
 }
 
 static int call_log(void *c, bool on, size_t n, const char *const *names)
@@ -117,8 +141,8 @@ static void test_own(void)
     CHECK_REFUSED(fmi2SetRealInputDerivatives(c, NULL, 0, NULL, NULL), "interpolate");
     CHECK_REFUSED(fmi2GetRealOutputDerivatives(c, NULL, 0, NULL, NULL), "no derivatives");
     CHECK_REFUSED(fmi2GetIntegerStatus(c, fmi2DoStepStatus, NULL), "no status is an integer");
-    int on[2] = {2, 0}, back[2];
-    const unsigned refs[2] = {REF_ON, REF_ON + 1};
+    int on[2] = { 2, 0 }, back[2];
+    const unsigned refs[2] = { REF_ON, REF_ON + 1 };
     CHECK(fmi2SetBoolean(c, refs, 2, on) == fmi2OK && fmi2GetBoolean(c, refs, 2, back) == fmi2OK);
     CHECK(back[0] == fmi2True && back[1] == fmi2False);
     call_free(c);

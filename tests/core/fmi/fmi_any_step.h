@@ -22,14 +22,15 @@ static void *make_strict(double start)
  * points as the step. */
 enum master { MULTIPLIES, ADDS, SUBTRACTS, ADDS_AND_SUBTRACTS, MASTERS };
 
-struct clock { double start, size, t; int64_t k; };
+struct clock {
+    double start, size, t;
+    int64_t k;
+};
 
 static double clock_step(struct clock *m, enum master kind)
 {
     const double next = m->start + (double)(m->k + 1) * m->size, sum = m->t + m->size;
-    return kind == SUBTRACTS            ? next - m->t
-           : kind == ADDS_AND_SUBTRACTS ? sum - m->t
-                                        : m->size;
+    return kind == SUBTRACTS ? next - m->t : kind == ADDS_AND_SUBTRACTS ? sum - m->t : m->size;
 }
 
 static void clock_go(struct clock *m, enum master kind)
@@ -43,7 +44,7 @@ static void clock_go(struct clock *m, enum master kind)
 static void check_near(double start, double size, int64_t count, enum master kind)
 {
     void *c = make_running(start, -1.0);
-    struct clock m = {start, size, start, 0};
+    struct clock m = { start, size, start, 0 };
     int64_t before = 0;
     for (int64_t i = 0; i < count; i++) {
         if (call_step(c, m.t, clock_step(&m, kind)) != 0) {
@@ -68,8 +69,18 @@ static void check_near(double start, double size, int64_t count, enum master kin
 static void test_every_step_ends_at_the_nearest_tick(void)
 {
     const double sizes[] = {
-        1e-3 / 3.0, 1e-7 + 1e-12, 1e-7 + 1e-15, 1.4142135623730951e-5, 3.141592653589793e-9,
-        12.5e-9, 1e-4 - 2e-11, 12.4e-9, 0.7e-9, 37.5e-9, 1.0 / 44100.0, 1.0 / 60.0,
+        1e-3 / 3.0,
+        1e-7 + 1e-12,
+        1e-7 + 1e-15,
+        1.4142135623730951e-5,
+        3.141592653589793e-9,
+        12.5e-9,
+        1e-4 - 2e-11,
+        12.4e-9,
+        0.7e-9,
+        37.5e-9,
+        1.0 / 44100.0,
+        1.0 / 60.0,
     };
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
         for (int kind = 0; kind < MASTERS; kind++) {
@@ -78,7 +89,7 @@ static void test_every_step_ends_at_the_nearest_tick(void)
             check_near(-0.1, sizes[i], 20000, kind);
         }
     }
-    check_near(0.0, 1e-3 / 3.0, 10800000, ADDS);      /* an hour */
+    check_near(0.0, 1e-3 / 3.0, 10800000, ADDS); /* an hour */
     for (int kind = 0; kind < MASTERS; kind++) { /* two digits beyond those of the clock */
         check_near(1000.0, 1e-7 + 5e-13, 1000000, kind);
     }
@@ -119,7 +130,7 @@ static void check_whole(double start, enum master kind)
     void *c = make_running(start, -1.0);
     CHECK(call_step(c, start, 0.4 * TICK) == 0 && inside(c) == 0);
     const double begin = start + 0.4 * TICK;
-    struct clock m = {begin, 1e-4, begin, 0};
+    struct clock m = { begin, 1e-4, begin, 0 };
     for (int i = 1; i <= 4000000; i++) {
         if (call_step(c, m.t, clock_step(&m, kind)) != 0 || inside(c) != INT64_C(100000) * i) {
             CHECK(!"a whole step is other ticks");
@@ -151,7 +162,7 @@ static void test_a_step_below_half_a_tick(void)
     void *c = make_running(1.0, -1.0);
     double y = 0.0;
     for (int i = 0; i < 8; i++) { /* 0.29, 0.58, 0.87 ... 2.32 ticks */
-        static const int ticks[8] = {0, 1, 1, 1, 1, 2, 2, 2};
+        static const int ticks[8] = { 0, 1, 1, 1, 1, 2, 2, 2 };
         CHECK(call_step(c, 1.0 + 0.29 * i * TICK, 0.29 * TICK) == 0);
         CHECK(inside(c) == ticks[i] * FMU_TICK_NS);
         CHECK(y_of(c) == 2.0 + 2.0 * (double)inside(c) && y_of(c) >= y);
@@ -204,7 +215,7 @@ static void test_a_state_between_ticks(void)
 static void test_strict_steps(void)
 {
     void *c = make_strict(10.0);
-    const double bad[] = {0.0, -1e-3, 1e-9, 12e-9, 1e-3 + 1e-9, 1e-3 / 3.0, NAN, INFINITY};
+    const double bad[] = { 0.0, -1e-3, 1e-9, 12e-9, 1e-3 + 1e-9, 1e-3 / 3.0, NAN, INFINITY };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         CHECK_REFUSED(call_step(c, 10.0, bad[i]), "s is not a positive whole multiple of 25 ns");
     }
@@ -241,7 +252,7 @@ static void test_reset_forgets_the_drift(void)
     void *c = make_strict(0.0);
     const double h = 1e-3 + 1e-12;
     double t = 0.0;
-    for (int i = 0; i < 20000; i++, t += h) {   /* 0.8 ticks in all */
+    for (int i = 0; i < 20000; i++, t += h) { /* 0.8 ticks in all */
         CHECK(call_step(c, t, h) == 0);
     }
     CHECK(inside(c) == INT64_C(20000000000) && call_reset(c) == 0);

@@ -7,22 +7,22 @@
 #include <string.h>
 
 static char said[8192]; /* the latest message */
-static int  failures;
+static int failures;
 
-#define CHECK(condition)                                                                          \
-    do {                                                                                          \
-        if (!(condition)) {                                                                       \
-            printf("%s:%d: %s (message: %s)\n", __FILE__, __LINE__, #condition, said);            \
-            failures++;                                                                           \
-        }                                                                                         \
+#define CHECK(condition) \
+    do { \
+        if (!(condition)) { \
+            printf("%s:%d: %s (message: %s)\n", __FILE__, __LINE__, #condition, said); \
+            failures++; \
+        } \
     } while (0)
 
 /* Refused with these words in the message. */
-#define CHECK_REFUSED(call, words)                                                                \
-    do {                                                                                          \
-        said[0] = '\0';                                                                           \
-        CHECK((call) == 3);                                                                       \
-        CHECK(strstr(said, words));                                                               \
+#define CHECK_REFUSED(call, words) \
+    do { \
+        said[0] = '\0'; \
+        CHECK((call) == 3); \
+        CHECK(strstr(said, words)); \
     } while (0)
 
 static void *make(void)
@@ -42,7 +42,7 @@ static void *make_running(double start, double stop)
 
 static double y_of(void *c)
 {
-    double y[2] = {0};
+    double y[2] = { 0 };
     CHECK(call_get_y(c, y) == 0);
     return y[0];
 }
@@ -50,8 +50,16 @@ static double y_of(void *c)
 /* Every sequence of calls: the layer must accept exactly what this table of the standards allows.
  * Rows: where the instance stands. */
 enum call {
-    ENTER, EXIT, STEP, TERMINATE, RESET,
-    SET_GAIN, SET_TRIM, SET_U, GET_GAIN, GET_Y,
+    ENTER,
+    EXIT,
+    STEP,
+    TERMINATE,
+    RESET,
+    SET_GAIN,
+    SET_TRIM,
+    SET_U,
+    GET_GAIN,
+    GET_Y,
     CALLS
 };
 enum stand { NEW, INITIALIZING, RUNNING, ENDED, FAILED };
@@ -73,7 +81,7 @@ static bool allowed(enum stand s, enum call call)
 
 static int perform(void *c, enum call call, double time)
 {
-    double value = 1.0, y[2], u[3] = {1.0, 2.0, 3.0};
+    double value = 1.0, y[2], u[3] = { 1.0, 2.0, 3.0 };
     switch (call) {
     case ENTER:     return call_enter(c, 0.0, -1.0);
     case EXIT:      return call_exit(c);
@@ -91,12 +99,13 @@ static int perform(void *c, enum call call, double time)
 static void test_order_of_calls(void)
 {
     static const enum stand after[CALLS] = {
-        [ENTER] = INITIALIZING, [EXIT] = RUNNING, [TERMINATE] = ENDED, [RESET] = NEW};
+        [ENTER] = INITIALIZING, [EXIT] = RUNNING, [TERMINATE] = ENDED, [RESET] = NEW
+    };
     unsigned random = 1; /* linear congruential generator of the C standard's example */
     void *c = make();
     enum stand s = NEW;
     double time = 0.0;
-    int seen[FAILED][CALLS] = {0};
+    int seen[FAILED][CALLS] = { 0 };
     for (int i = 0; i < 20000; i++) {
         random = random * 1103515245u + 12345u;
         enum call call = (random >> 16) % CALLS;
@@ -136,13 +145,13 @@ static void test_messages_of_wrong_order(void)
 static void test_values_are_refused_whole(void)
 {
     void *c = make();
-    const double good[3] = {7.0, 8.0, 9.0}, bad[3] = {4.0, NAN, 6.0}, high = 101.0, low = -1.0;
+    const double good[3] = { 7.0, 8.0, 9.0 }, bad[3] = { 4.0, NAN, 6.0 }, high = 101.0, low = -1.0;
     double back[3];
     CHECK(call_set_real(c, REF_U, 3, good) == 0);
     CHECK_REFUSED(call_set_real(c, REF_U, 3, bad), "u element 2 = ");
     CHECK(strstr(said, "not finite"));
     CHECK(call_get_real(c, REF_U, 3, back) == 0 && memcmp(back, good, sizeof back) == 0);
-    const double infinite[3] = {0.0, 0.0, -INFINITY};
+    const double infinite[3] = { 0.0, 0.0, -INFINITY };
     CHECK_REFUSED(call_set_real(c, REF_U, 3, infinite), "u element 3 = -inf is not finite");
     CHECK_REFUSED(call_set_real(c, REF_GAIN, 1, &high), "gain = 101 is above its maximum 100");
     CHECK_REFUSED(call_set_real(c, REF_GAIN, 1, &low), "gain = -1 is below its minimum 0");
@@ -167,7 +176,7 @@ static void test_values_are_refused_whole(void)
 static void test_start_on_demand(void)
 {
     void *c = make();
-    double gain = 5.0, u[3] = {10.0, 0.0, 0.0}, y[2];
+    double gain = 5.0, u[3] = { 10.0, 0.0, 0.0 }, y[2];
     CHECK(call_enter(c, 0.0, -1.0) == 0);
     CHECK(y_of(c) == 2.0);
     int before = opens;
@@ -205,7 +214,7 @@ static void test_a_start_finds_cleared_memory(void)
 static void test_steps(void)
 {
     void *c = make_running(10.0, 10.5);
-    const double bad[] = {0.0, -1e-3, NAN, INFINITY, -INFINITY, 1e300};
+    const double bad[] = { 0.0, -1e-3, NAN, INFINITY, -INFINITY, 1e300 };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         CHECK_REFUSED(call_step(c, 10.0, bad[i]), "communicationStepSize");
     }
@@ -215,7 +224,7 @@ static void test_steps(void)
     CHECK(y_of(c) == 2.0);
     CHECK(call_step(c, 10.0, 0.1) == 0 && y_of(c) == 2.0 + 2.0 * 1e8);
     CHECK(call_step(c, 10.1, 0.4 - 1e-15) == 0);
-    const double u[3] = {66.0, 0.0, 0.0};
+    const double u[3] = { 66.0, 0.0, 0.0 };
     call_free(c);
     c = make_running(0.0, -1.0);
     CHECK(call_set_real(c, REF_U, 3, u) == 0);
@@ -251,7 +260,7 @@ static void test_an_hour_of_added_doubles(void)
 static void test_logging(void)
 {
     void *c = make();
-    const char *events[] = {"logEvents"}, *unknown[] = {"logEvents", "logAll"};
+    const char *events[] = { "logEvents" }, *unknown[] = { "logEvents", "logAll" };
     said[0] = '\0';
     CHECK(call_enter(c, 0.0, -1.0) == 0 && y_of(c) == 2.0 && !said[0]); /* switched off */
     CHECK_REFUSED(call_log(c, true, 2, unknown), "unknown log category \"logAll\"");
@@ -300,7 +309,7 @@ static void test_states(void)
 /* A tunable parameter is none that a blob is made of: with another value of it the blob stays. */
 static void test_state_with_another_tunable(void)
 {
-    void *c = make_running(0.0, -1.0), *state[2] = {NULL, NULL};
+    void *c = make_running(0.0, -1.0), *state[2] = { NULL, NULL };
     const double trim = 7.0;
     CHECK(call_get_state(c, &state[0]) == 0);
     CHECK(call_set_real(c, REF_TRIM, 1, &trim) == 0 && call_get_state(c, &state[1]) == 0);
@@ -367,7 +376,7 @@ static void check_pairs(void *c, const char *bytes, size_t size)
     for (size_t i = offsetof(struct fmi_snapshot, mode) / sizeof *w; i < words; i++) {
         for (size_t k = i + 1; k < words; k++) {
             const uint64_t a = w[i], b = w[k];
-            const uint64_t to[][2] = {{b, a}, {a ^ 1u << 7, b ^ 1u << 7}, {a + 1, b - 1}};
+            const uint64_t to[][2] = { { b, a }, { a ^ 1u << 7, b ^ 1u << 7 }, { a + 1, b - 1 } };
             for (int n = a == b; n < 3; n++) {
                 w[i] = to[n][0];
                 w[k] = to[n][1];
@@ -395,7 +404,7 @@ static void check_other(void *c, const char *bytes, size_t size, size_t at, char
 static void test_damaged_states(void)
 {
     void *c = make_running(0.0, -1.0), *state = NULL;
-    char bytes[4096], longer[4096] = {0};
+    char bytes[4096], longer[4096] = { 0 };
     CHECK(call_step(c, 0.0, 1e-3) == 0 && call_get_state(c, &state) == 0);
     const size_t size = call_state_size(c, state);
     CHECK(size + 64 <= sizeof longer && call_serialize(c, state, bytes, size) == 0);
@@ -449,9 +458,17 @@ static void test_instantiate(void)
     CHECK(!call_instantiate("", FMU_TOKEN, ""));
     CHECK(!call_instantiate("one", NULL, ""));
     static const char *const folders[][2] = {
-        {"/a b", "/a b/"}, {"/a/", "/a/"}, {NULL, ""}, {"", ""}, {"http://host/a", ""},
-        {"file:/a", "/a/"}, {"file:///a%20b%2fc", "/a b/c/"}, {"file://localhost/a/", "/a/"},
-        {"file:///100%", "/100%/"}, {"file:///%zz%4", "/%zz%4/"}, {"/plain%20", "/plain%20/"},
+        { "/a b", "/a b/" },
+        { "/a/", "/a/" },
+        { NULL, "" },
+        { "", "" },
+        { "http://host/a", "" },
+        { "file:/a", "/a/" },
+        { "file:///a%20b%2fc", "/a b/c/" },
+        { "file://localhost/a/", "/a/" },
+        { "file:///100%", "/100%/" },
+        { "file:///%zz%4", "/%zz%4/" },
+        { "/plain%20", "/plain%20/" },
     };
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
         void *c = call_instantiate("one", FMU_TOKEN, folders[i][0]);

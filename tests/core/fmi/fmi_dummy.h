@@ -21,51 +21,58 @@
 #define FMU_NREFS      13
 
 struct vars {
-    char    name[FMU_STRING_MAX];
-    double  gain;
-    double  trim;
-    double  u[3];
+    char name[FMU_STRING_MAX];
+    double gain;
+    double trim;
+    double u[3];
     int32_t n;
-    bool    on[2];
-    double  y[2];
+    bool on[2];
+    double y[2];
     int32_t steps;
-    bool    strict_step;
+    bool strict_step;
 };
 
 enum {
-    REF_NAME, REF_GAIN, REF_TRIM, REF_U, REF_N = 6, REF_ON, REF_Y = 9, REF_STEPS = 11, REF_STRICT
+    REF_NAME,
+    REF_GAIN,
+    REF_TRIM,
+    REF_U,
+    REF_N = 6,
+    REF_ON,
+    REF_Y = 9,
+    REF_STEPS = 11,
+    REF_STRICT
 };
 
-static const struct vars vars_start = {.name = "good", .gain = 2.0, .u = {1.0, 2.0, 3.0}};
+static const struct vars vars_start = { .name = "good", .gain = 2.0, .u = { 1.0, 2.0, 3.0 } };
 
 static const struct var_info var_table[FMU_NVARS] = {
-    {"name", 0, 1, offsetof(struct vars, name), VAR_STRING, CAUSE_PARAMETER, VARY_FIXED,
-     -DBL_MAX, DBL_MAX},
-    {"gain", 1, 1, offsetof(struct vars, gain), VAR_F64, CAUSE_PARAMETER, VARY_FIXED, 0.0, 100.0},
-    {"trim", 2, 1, offsetof(struct vars, trim), VAR_F64, CAUSE_PARAMETER, VARY_TUNABLE,
-     -DBL_MAX, DBL_MAX},
-    {"u", 3, 3, offsetof(struct vars, u), VAR_F64, CAUSE_INPUT, VARY_DISCRETE, -DBL_MAX,
-     DBL_MAX},
-    {"n", 6, 1, offsetof(struct vars, n), VAR_I32, CAUSE_INPUT, VARY_DISCRETE, -5, 5},
-    {"on", 7, 2, offsetof(struct vars, on), VAR_BOOL, CAUSE_INPUT, VARY_DISCRETE, -DBL_MAX,
-     DBL_MAX},
-    {"y", 9, 2, offsetof(struct vars, y), VAR_F64, CAUSE_OUTPUT, VARY_CONTINUOUS, -DBL_MAX,
-     DBL_MAX},
-    {"steps", 11, 1, offsetof(struct vars, steps), VAR_I32, CAUSE_LOCAL, VARY_DISCRETE, -DBL_MAX,
-     DBL_MAX},
-    {"strict_step", 12, 1, offsetof(struct vars, strict_step), VAR_BOOL, CAUSE_PARAMETER,
-     VARY_FIXED, -DBL_MAX, DBL_MAX},
+    { "name", 0, 1, offsetof(struct vars, name), VAR_STRING, CAUSE_PARAMETER, VARY_FIXED, -DBL_MAX,
+      DBL_MAX },
+    { "gain", 1, 1, offsetof(struct vars, gain), VAR_F64, CAUSE_PARAMETER, VARY_FIXED, 0.0, 100.0 },
+    { "trim", 2, 1, offsetof(struct vars, trim), VAR_F64, CAUSE_PARAMETER, VARY_TUNABLE, -DBL_MAX,
+      DBL_MAX },
+    { "u", 3, 3, offsetof(struct vars, u), VAR_F64, CAUSE_INPUT, VARY_DISCRETE, -DBL_MAX, DBL_MAX },
+    { "n", 6, 1, offsetof(struct vars, n), VAR_I32, CAUSE_INPUT, VARY_DISCRETE, -5, 5 },
+    { "on", 7, 2, offsetof(struct vars, on), VAR_BOOL, CAUSE_INPUT, VARY_DISCRETE, -DBL_MAX,
+      DBL_MAX },
+    { "y", 9, 2, offsetof(struct vars, y), VAR_F64, CAUSE_OUTPUT, VARY_CONTINUOUS, -DBL_MAX,
+      DBL_MAX },
+    { "steps", 11, 1, offsetof(struct vars, steps), VAR_I32, CAUSE_LOCAL, VARY_DISCRETE, -DBL_MAX,
+      DBL_MAX },
+    { "strict_step", 12, 1, offsetof(struct vars, strict_step), VAR_BOOL, CAUSE_PARAMETER,
+      VARY_FIXED, -DBL_MAX, DBL_MAX },
 };
 
-static const uint16_t var_of_ref[FMU_NREFS] = {0, 1, 2, 3, 3, 3, 4, 5, 5, 6, 6, 7, 8};
+static const uint16_t var_of_ref[FMU_NREFS] = { 0, 1, 2, 3, 3, 3, 4, 5, 5, 6, 6, 7, 8 };
 
 enum { KEPT = 100 };
 
 struct model {
-    double  sum[2];
+    double sum[2];
     int32_t at;
-    int32_t first, used;    /* of `kept`, a ring: what is not in use holds nothing that is read */
-    double  kept[KEPT];
+    int32_t first, used; /* of `kept`, a ring: what is not in use holds nothing that is read */
+    double kept[KEPT];
 };
 
 #define MODEL_BLOB

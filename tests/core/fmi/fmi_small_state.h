@@ -6,7 +6,7 @@
 /* Equal values are equal bytes: nothing is left of a longer string. */
 static void test_states_of_equal_values(void)
 {
-    void *c[2] = {make(), make()}, *state[2] = {NULL, NULL};
+    void *c[2] = { make(), make() }, *state[2] = { NULL, NULL };
     char bytes[2][4096];
     size_t size = 0;
     CHECK(call_set_name(c[1], "a much longer name than before") == 0);

@@ -9,7 +9,9 @@
 
 enum { SIZE = 12, EACH = 4, FLAGS = 5, WORDS = 17 };
 
-struct element { int64_t word[WORDS]; };  /* worth its place in the list, alone */
+struct element {
+    int64_t word[WORDS];
+}; /* worth its place in the list, alone */
 
 struct model {
     int64_t before;
@@ -25,7 +27,11 @@ struct model {
     int32_t begin;
     struct element flagged[FLAGS * EACH - 1];
     uint8_t flag[FLAGS];
-    struct { int64_t own; struct element inner[SIZE]; int32_t inside; } part;
+    struct {
+        int64_t own;
+        struct element inner[SIZE];
+        int32_t inside;
+    } part;
     int32_t state;
     struct element behind[SIZE];
     int32_t last;
@@ -36,18 +42,18 @@ struct state {
     struct model m;
 };
 
-#define MODEL_IN_USE                                                                              \
-    FMU_LIST(list, used)                                                                          \
-    FMU_RING(ring, first, count, 0)                                                               \
-    FMU_RING(kept, head, ahead, 3)                                                                \
-    FMU_BETWEEN(between, from, to, 1)                                                             \
-    FMU_TO_END(tail, begin)                                                                       \
-    FMU_FLAGS(flagged, EACH, flag)                                                                \
-    FMU_WHEN(part, state, 2, 3)                                                                   \
-    FMU_LIST(part.inner, part.inside)                                                             \
+#define MODEL_IN_USE \
+    FMU_LIST(list, used) \
+    FMU_RING(ring, first, count, 0) \
+    FMU_RING(kept, head, ahead, 3) \
+    FMU_BETWEEN(between, from, to, 1) \
+    FMU_TO_END(tail, begin) \
+    FMU_FLAGS(flagged, EACH, flag) \
+    FMU_WHEN(part, state, 2, 3) \
+    FMU_LIST(part.inner, part.inside) \
     FMU_LIST(behind, last)
 
-static const struct fmu_row rows[] = {MODEL_IN_USE};
+static const struct fmu_row rows[] = { MODEL_IN_USE };
 static struct state s;
 static bool left[sizeof(struct state)], want[sizeof(struct state)];
 
@@ -69,23 +75,31 @@ static void expect(void)
     const bool whole = m->state >= 2 && m->state <= 3;
     memset(want, 0, sizeof want);
     for (int i = 0; i < SIZE; i++) {
-        if (i >= m->used) leave(m->list, i);
-        if (!lies(i, m->first, m->count)) leave(m->ring, i);
-        if (!lies(i, m->head + SIZE - 3, m->ahead + 3)) leave(m->kept, i);
-        if (!lies(i, m->from, m->to - m->from + 1)) leave(m->between, i);
-        if (i < m->begin) leave(m->tail, i);
-        if (whole && i >= m->part.inside) leave(m->part.inner, i);
-        if (i >= m->last) leave(m->behind, i);
+        if (i >= m->used)
+            leave(m->list, i);
+        if (!lies(i, m->first, m->count))
+            leave(m->ring, i);
+        if (!lies(i, m->head + SIZE - 3, m->ahead + 3))
+            leave(m->kept, i);
+        if (!lies(i, m->from, m->to - m->from + 1))
+            leave(m->between, i);
+        if (i < m->begin)
+            leave(m->tail, i);
+        if (whole && i >= m->part.inside)
+            leave(m->part.inner, i);
+        if (i >= m->last)
+            leave(m->behind, i);
     }
     for (int i = 0; i < FLAGS * EACH - 1; i++)
-        if (!m->flag[i / EACH]) leave(m->flagged, i);
+        if (!m->flag[i / EACH])
+            leave(m->flagged, i);
     if (!whole)
         memset(want + offsetof(struct state, m.part), true, sizeof m->part);
 }
 
 static void compare(void)
 {
-    enum { BASE = 4096 };   /* as if it lay there in the state of a system */
+    enum { BASE = 4096 }; /* as if it lay there in the state of a system */
     struct fmu_span span[FMU_SPANS];
     const size_t n = fmu_spans(&s, BASE, rows, sizeof rows / sizeof *rows, span, 0);
     memset(left, 0, sizeof left);

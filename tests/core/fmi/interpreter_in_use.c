@@ -11,7 +11,7 @@ struct state {
     struct model m;
 };
 
-static const struct fmu_row rows[] = {INTERPRETER_IN_USE(in)};
+static const struct fmu_row rows[] = { INTERPRETER_IN_USE(in) };
 
 static const char text[] =
     "O100 SUB\n#<deep>=[#1+1]\nG1 X[#<deep>] Y#64 F600\nO101 IF [#1 GT 1]\nO100 CALL [#1-1]\n"

@@ -9,15 +9,17 @@
 #include "fmu_recorder.h"
 
 static struct {
-    double  six[6], one, two[2], late;
+    double six[6], one, two[2], late;
     int32_t count, counts[6];
-    bool    on, many[6];
+    bool on, many[6];
 } now;
 
 static const struct recorder_column columns[] = {
-    {"a.six", now.six, 'd', 6},      {"a.count", &now.count, 'i', 1}, {"a.many", now.many, 'b', 6},
-    {"b.one", &now.one, 'd', 1},     {"b.two", now.two, 'd', 2},      {"b.on", &now.on, 'b', 1},
-    {"b.counts", now.counts, 'i', 6}, {"c.late", &now.late, 'd', 1}};
+    { "a.six", now.six, 'd', 6 },       { "a.count", &now.count, 'i', 1 },
+    { "a.many", now.many, 'b', 6 },     { "b.one", &now.one, 'd', 1 },
+    { "b.two", now.two, 'd', 2 },       { "b.on", &now.on, 'b', 1 },
+    { "b.counts", now.counts, 'i', 6 }, { "c.late", &now.late, 'd', 1 }
+};
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
 /* The values of row k: every element another. */
@@ -63,7 +65,7 @@ static struct recorder *begin(void)
 
 static int64_t size_of(const char *signal)
 {
-    file_stat s = {0};
+    file_stat s = { 0 };
     snprintf(inside, sizeof inside, "%s/%s.npy", folder, signal);
     return file_look_at_link(inside, &s) == 0 ? (int64_t)s.st_size : -1;
 }
@@ -122,7 +124,7 @@ static void test_restored(void)
 /* No room: told with the file, nothing is left, and what comes after it is refused, too. */
 static void test_full(const char *part)
 {
-    const struct rlimit little = {3000000, RLIM_INFINITY};
+    const struct rlimit little = { 3000000, RLIM_INFINITY };
     struct rlimit before;
     signal(SIGXFSZ, SIG_IGN);
     getrlimit(RLIMIT_FSIZE, &before);
@@ -159,7 +161,7 @@ static void test_refused(void)
     CHECK(!recorder_open("", columns, COLUMNS, 1e-4, why, sizeof why) && strstr(why, "a name"));
     CHECK(!recorder_open("/nowhere/at/all", columns, COLUMNS, 1e-4, why, sizeof why));
     CHECK(strstr(why, "cannot write /nowhere/at/all: No such file"));
-    const struct recorder_column wrong = {"no/such", &now.one, 'd', 1};
+    const struct recorder_column wrong = { "no/such", &now.one, 'd', 1 };
     CHECK(!recorder_open(folder, &wrong, 1, 1e-4, why, sizeof why));
     CHECK(strstr(why, "no/such.npy: No such file"));
 }

@@ -3,10 +3,8 @@
 
 #include "check.h"
 
-static const double reals[] = {
-    0.0, -0.0, 1.0, -1.0, DBL_MAX, -DBL_MAX, DBL_MIN, 5e-324, -5e-324, 1e300, NAN, -NAN, INFINITY,
-    -INFINITY
-};
+static const double reals[] = { 0.0,    -0.0,    1.0,   -1.0, DBL_MAX, -DBL_MAX, DBL_MIN,
+                                5e-324, -5e-324, 1e300, NAN,  -NAN,    INFINITY, -INFINITY };
 static const int32_t wholes[] = { 0, 1, -1, 2, 62, 63, 65535, 65536, INT32_MAX, INT32_MIN };
 enum { REALS = sizeof reals / sizeof *reals, WHOLES = sizeof wholes / sizeof *wholes };
 

@@ -6,11 +6,11 @@ enum { INTERRUPTS = 1000000 };
 /* The write that answers an interrupt: the free memory, slots and pulses at random. */
 static struct fpga_write answer(const struct fpga *card, uint64_t *random, int64_t *sum)
 {
-    const int32_t memory = card->playing >= 0 ? 1 - card->playing
-                                              : (int32_t)check_random(random, 0, 1);
-    struct fpga_write w = {.memory = memory, .slots = (int32_t)check_random(random, 1, 24)};
+    const int32_t memory =
+        card->playing >= 0 ? 1 - card->playing : (int32_t)check_random(random, 0, 1);
+    struct fpga_write w = { .memory = memory, .slots = (int32_t)check_random(random, 1, 24) };
     for (int32_t k = 0; k < w.slots; k++) {
-        int32_t n[FPGA_SLOT_AXES] = {0};
+        int32_t n[FPGA_SLOT_AXES] = { 0 };
         for (int i = 0; i < FPGA_AXES; i++) {
             n[i] = (int32_t)check_random(random, -49, 49);
             sum[i] += n[i];
@@ -23,7 +23,7 @@ static struct fpga_write answer(const struct fpga *card, uint64_t *random, int64
 int main(void)
 {
     uint64_t random = 14;
-    int64_t sum[FPGA_AXES] = {0}, before[FPGA_AXES] = {0}, pulses[FPGA_AXES];
+    int64_t sum[FPGA_AXES] = { 0 }, before[FPGA_AXES] = { 0 }, pulses[FPGA_AXES];
     int64_t deadline = 0, early = 0;
     struct fpga card = rig_card();
     fpga_advance(&card, 4000);
@@ -32,8 +32,8 @@ int main(void)
         /* mostly before the end of the memory that plays, sometimes far behind it */
         const int64_t latency = check_random(&random, 0, check_random(&random, 0, 3) ? 2400 : 7000);
         w.clock = card.irq.clock + latency;
-        const int64_t end = card.playing < 0
-                            ? 0 : card.start + card.memory[card.playing].slots * (int64_t)SLOT;
+        const int64_t end =
+            card.playing < 0 ? 0 : card.start + card.memory[card.playing].slots * (int64_t)SLOT;
         deadline += end && w.clock >= end;
         early += end && w.clock < end;
         fpga_post_write(&card, &w);

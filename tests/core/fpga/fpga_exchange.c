@@ -31,11 +31,11 @@ static void changes(void)
 {
     struct fpga card = rig_card();
     fpga_advance(&card, 1001);
-    fpga_change_input(&card, 0, 1010);  /* on its way: 0 -> 1 */
+    fpga_change_input(&card, 0, 1010); /* on its way: 0 -> 1 */
     fpga_advance(&card, 1020);
-    fpga_change_input(&card, 0, 1250);  /* has been 1 since; back at 1250 */
+    fpga_change_input(&card, 0, 1250); /* has been 1 since; back at 1250 */
     fpga_change_input(&card, 1, 1260);
-    fpga_change_input(&card, 1, 1270);  /* before its clock: it does not come at all */
+    fpga_change_input(&card, 1, 1270); /* before its clock: it does not come at all */
     fpga_change_input(&card, 2, 0);
     CHECK_EQ(fpga_inputs_changed(&card, 4), 0);
     fpga_advance(&card, 1200);
@@ -43,7 +43,7 @@ static void changes(void)
     fpga_advance(&card, 1400);
     CHECK_EQ(card.inputs.image, 4);
     CHECK_EQ(card.late, 0);
-    fpga_change_input(&card, 3, 1400);  /* that exchange is over */
+    fpga_change_input(&card, 3, 1400); /* that exchange is over */
     fpga_change_input(&card, 4, 1401);
     CHECK_EQ(card.late, 1);
     fpga_advance(&card, 1599);
@@ -57,8 +57,10 @@ static void outputs(void)
 {
     struct fpga card = rig_card();
     const struct fpga_entry e[] = {
-        {.clock = 601, .mask = 3, .value = 2}, {.clock = 600, .mask = 1, .value = 5},
-        {.clock = 601, .mask = 2, .value = 0}, {.clock = 0, .mask = 0xf0, .value = 0xff},
+        { .clock = 601, .mask = 3, .value = 2 },
+        { .clock = 600, .mask = 1, .value = 5 },
+        { .clock = 601, .mask = 2, .value = 0 },
+        { .clock = 0, .mask = 0xf0, .value = 0xff },
     };
     fpga_advance(&card, 300);
     for (int i = 0; i < 4; i++)
@@ -75,7 +77,7 @@ static void outputs(void)
     CHECK_EQ(card.output_clock[1], 0);
     CHECK_EQ(card.output_clock[7], 400);
     for (int i = 0; i < FPGA_WAITING; i++)
-        CHECK_EQ(fpga_post_entry(&card, &(struct fpga_entry){5000 - i, 1, 1}), FPGA_OK);
+        CHECK_EQ(fpga_post_entry(&card, &(struct fpga_entry){ 5000 - i, 1, 1 }), FPGA_OK);
     CHECK_EQ(fpga_post_entry(&card, &e[0]), FPGA_ON_THE_WAY);
     CHECK_EQ(card.refused, 1);
     fpga_advance(&card, 5000);
@@ -87,11 +89,12 @@ static void outputs(void)
 static void analog(void)
 {
     struct fpga card = rig_card();
-    const double step = 10.0 / 32768, volts[8] = {10.0, -10.0, 1e9, -1e9, step, 0.4 * step,
-                                                  0.6 * step, -3.3};
-    const double want[8] = {10.0 - step, -10.0, 10.0 - step, -10.0, step, 0.0, step,
-                            -10813 * step};
-    struct fpga_ao a = {.clock = 201};
+    const double step = 10.0 / 32768,
+                 volts[8] = { 10.0, -10.0, 1e9, -1e9, step, 0.4 * step, 0.6 * step, -3.3 };
+    const double want[8] = {
+        10.0 - step, -10.0, 10.0 - step, -10.0, step, 0.0, step, -10813 * step
+    };
+    struct fpga_ao a = { .clock = 201 };
     for (int i = 0; i < 8; i++)
         a.volts[i] = volts[i];
     CHECK_EQ(fpga_post_ao(&card, &a), FPGA_OK);
@@ -100,7 +103,7 @@ static void analog(void)
     fpga_advance(&card, 400);
     fpga_set_ai(&card, volts);
     fpga_advance(&card, 4000);
-    fpga_set_ai(&card, (double[8]){0});
+    fpga_set_ai(&card, (double[8]){ 0 });
     for (int i = 0; i < 8; i++) {
         CHECK_NEAR(card.ao[i], want[i], 1e-12);
         CHECK_NEAR(card.irq.ai[i], want[i], 1e-12);

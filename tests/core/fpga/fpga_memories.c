@@ -101,7 +101,7 @@ static void late_marks(void)
     v.clock = 2599;
     fpga_post_write(&card, &v);
     CHECK_EQ(card.late, 1);
-    struct fpga_entry e = {.clock = 2601, .mask = 1, .value = 1};
+    struct fpga_entry e = { .clock = 2601, .mask = 1, .value = 1 };
     fpga_post_entry(&card, &e);
     CHECK_EQ(card.late, 1);
     e.clock = 2600;
@@ -113,7 +113,7 @@ static void refusals(void)
 {
     struct fpga card = rig_card();
     struct fpga_write w = rig_write(0, 128, 1, 10), bad = rig_write(1, 3, 2, 10);
-    fpga_slot_pack(bad.words + 4, (int32_t[8]){0, 0, -50}, FPGA_COUNTS);
+    fpga_slot_pack(bad.words + 4, (int32_t[8]){ 0, 0, -50 }, FPGA_COUNTS);
     fpga_post_write(&card, &w);
     fpga_post_write(&card, &bad);
     fpga_post_write(&card, &w); /* full and waits */
@@ -129,7 +129,7 @@ static void refusals(void)
     CHECK_EQ(card.refusal.status, FPGA_BAD_SLOT);
     CHECK_EQ(card.refusal.at.slot, 2);
     CHECK_EQ(card.refusal.at.axis, 2);
-    fpga_slot_pack(bad.words + 4, (int32_t[8]){0, 0, -49}, FPGA_COUNTS);
+    fpga_slot_pack(bad.words + 4, (int32_t[8]){ 0, 0, -49 }, FPGA_COUNTS);
     fpga_post_write(&card, &bad);
     fpga_advance(&card, 302);
     CHECK_EQ(card.refused, 3);

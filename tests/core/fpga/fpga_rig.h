@@ -10,7 +10,10 @@ enum { SLOT = 200 };
 static inline struct fpga rig_card(void)
 {
     const struct fpga_config config = {
-        .slot_clocks = SLOT, .irq_every = 20 * SLOT, .alarm_stops = true, .stop_servo_off = true,
+        .slot_clocks = SLOT,
+        .irq_every = 20 * SLOT,
+        .alarm_stops = true,
+        .stop_servo_off = true,
     };
     struct fpga card;
     fpga_reset(&card, &config);
@@ -22,9 +25,9 @@ static inline struct fpga rig_card(void)
 static inline struct fpga_write rig_write(int32_t memory, int32_t slots, int32_t n, int64_t clock)
 {
     static int32_t seq;
-    struct fpga_write w = {.seq = ++seq, .clock = clock, .memory = memory, .slots = slots};
+    struct fpga_write w = { .seq = ++seq, .clock = clock, .memory = memory, .slots = slots };
     for (int32_t k = 0; k < slots; k++)
-        fpga_slot_pack(w.words + 2 * k, (int32_t[8]){n, 0, 0, 0, 0, -n}, FPGA_COUNTS);
+        fpga_slot_pack(w.words + 2 * k, (int32_t[8]){ n, 0, 0, 0, 0, -n }, FPGA_COUNTS);
     return w;
 }
 

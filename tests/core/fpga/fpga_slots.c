@@ -6,12 +6,12 @@
 static void packing(void)
 {
     int32_t word[2], back[8];
-    fpga_slot_pack(word, (int32_t[8]){1, -1, 49, -49, 2, -3}, FPGA_COUNTS);
+    fpga_slot_pack(word, (int32_t[8]){ 1, -1, 49, -49, 2, -3 }, FPGA_COUNTS);
     CHECK_EQ((uint32_t)word[0], 0xcf31ff01);
     CHECK_EQ((uint32_t)word[1], 0x0000fd02);
     CHECK_EQ(fpga_slot_unpack(word, FPGA_COUNTS, 49, back), -1);
     CHECK_EQ(back[0] + 100 * back[1] + 10000 * back[3], 1 - 100 - 490000);
-    fpga_slot_pack(word, (int32_t[8]){1, -1, 0, -1, 0, 1}, FPGA_BITS);
+    fpga_slot_pack(word, (int32_t[8]){ 1, -1, 0, -1, 0, 1 }, FPGA_BITS);
     CHECK_EQ((uint32_t)word[0], 0x03000301);
     CHECK_EQ((uint32_t)word[1], 0x00000100);
     CHECK_EQ(fpga_slot_unpack(word, FPGA_BITS, 1, back), -1);
@@ -26,7 +26,7 @@ static void bytes(void)
     CHECK_EQ(fpga_slot_most(FPGA_COUNTS, 4000), 127);
     for (int axis = 0; axis < FPGA_SLOT_AXES; axis++) {
         for (int byte = 0; byte < 256; byte++) {
-            int32_t word[2] = {0, 0}, n[8];
+            int32_t word[2] = { 0, 0 }, n[8];
             word[axis / 4] = (int32_t)((uint32_t)byte << 8 * (axis % 4));
             const int value = byte < 128 ? byte : byte - 256;
             const bool counts = value >= -49 && value <= 49 && (axis < 6 || !byte);

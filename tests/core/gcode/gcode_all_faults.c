@@ -32,14 +32,14 @@ static void no_cascades(void)
 {
     lines_are("G1 X1\nM2\n", (int[]){ 0 });
     LINES("G1 X5 Q3 F600\nY2\nX1 $ Y3\nG91 X1 Z\nX2 K1\nM2\nX5 nonsense\n", 1, 3, 4, 5);
-    LINES("X5\nX6\nY7\n", 1);                       /* as if G1 were in force */
+    LINES("X5\nX6\nY7\n", 1); /* as if G1 were in force */
     LINES("G1 X[1/0] Y5\nG91 Y1\nG90 Y[#<a>]\n#<b>=[1/0]\nX3\n", 1, 3, 4);
     LINES("G20 $\nG1 X1 F600000\nX2\nG21 X900000\nX900001\nX0\nX1\nX900000\n", 1, 2, 4, 8);
-    LINES("G1 Z701\nX2 Z702\nZ703\nZ0\nX5\nZ701\n", 1, 6);   /* still outside is told once */
+    LINES("G1 Z701\nX2 Z702\nZ703\nZ0\nX5\nZ701\n", 1, 6); /* still outside is told once */
     LINES("o1 whil [1]\nG1 X1\no1 endwhile\nX2 Q5\n", 1, 4);
-    LINES("o1 repeat [50]\nG1 X1 Q5\no1 endrepeat\nX2 R\n", 2, 4);  /* a line once */
+    LINES("o1 repeat [50]\nG1 X1 Q5\no1 endrepeat\nX2 R\n", 2, 4); /* a line once */
     LINES("o5 call\nG1 X1\nM98 P7\nX2\nM99.5\nM30\n", 1, 3, 5);
-    LINES("G2 X10 Y0 I6\nG1 X20\nG2 X30 R5\n", 1);  /* the arc's end is where its words lead */
+    LINES("G2 X10 Y0 I6\nG1 X20\nG2 X30 R5\n", 1); /* the arc's end is where its words lead */
 }
 
 static void places(void)
@@ -88,10 +88,12 @@ static void notes(void)
 /* Where there are but axes and outputs: what a program asks for in vain, each once. */
 static void bare(void)
 {
-    static const struct { enum fault what; int line, at; } rows[] = {
-        { FAULT_NOTE_MERGE, 1, 9 },    { FAULT_NOTE_SPINDLE, 3, 0 },
-        { FAULT_NOTE_COOLANT, 3, 7 },   { FAULT_NOTE_COMMENT, 4, 0 },
-        { FAULT_NOTE_OVERRIDE, 5, 0 },
+    static const struct {
+        enum fault what;
+        int line, at;
+    } rows[] = {
+        { FAULT_NOTE_MERGE, 1, 9 },   { FAULT_NOTE_SPINDLE, 3, 0 },  { FAULT_NOTE_COOLANT, 3, 7 },
+        { FAULT_NOTE_COMMENT, 4, 0 }, { FAULT_NOTE_OVERRIDE, 5, 0 },
     };
     struct reader x;
 
@@ -108,7 +110,7 @@ static void bare(void)
     interpreter_check_all(&x.in, &x.program, &list);
     CHECK_EQ(list.notes, 1);
     begin(&x, "(PRINT, 1)\n(PRINT, 2)\n(PRINT, 3)\n(PRINT, 4)\n(PRINT, 5)\n(PRINT, 6)\n"
-              "(PRINT, 7)\n(PRINT, 8)\n(PRINT, 9)\n(PRINT, 10)\n");     /* read at once */
+              "(PRINT, 7)\n(PRINT, 8)\n(PRINT, 9)\n(PRINT, 10)\n"); /* read at once */
     interpreter_check_all(&x.in, &x.program, &list);
     CHECK(list.notes == 1 && list.note[0].line == 1);
 }
@@ -117,10 +119,13 @@ static void bare(void)
  * which a tap never is. The note is for an F by which something else may move. */
 static void taps(void)
 {
-    static const struct { const char *text; int fault, at, note; } rows[] = {
+    static const struct {
+        const char *text;
+        int fault, at, note;
+    } rows[] = {
         { "S9000 M3 G0 Z5\nG84 X2 Z-1 R2 F90000\n", 2, 14, 0 },
         { "S9000 M4 G0 Z5\nG74 X2 Z-1 R2 F90000\n", 2, 14, 0 },
-        { "S9000 M4 G0 Z5\nG84 X2 Z-1 R2 F90000\n", 2, 14, 0 },     /* turns the wrong way */
+        { "S9000 M4 G0 Z5\nG84 X2 Z-1 R2 F90000\n", 2, 14, 0 }, /* turns the wrong way */
         { "S9000 M3 G0 Z5 F600\nG84 X2 Z-1 R2\nX3 F90000\n", 3, 3, 0 },
         { "G95 F10 S9000 M3 G0 Z5\nG84 X2 Z-1 R2\n", 2, 0, 0 },
         { "S9000 M3 G0 Z5 F90000\nG84 X2 Z-1 R2\n", 2, 0, 1 },

@@ -19,7 +19,7 @@ static void posted(bool inch, bool by_radius, double *largest)
     for (int i = 0; i < ARCS; i++) {
         const double r = exp(check_real(&seed, log(0.2), log(200.0))) / size;
         const double a = check_real(&seed, 0.0, 6.28), turn = check_real(&seed, 0.3, 3.14159);
-        const double b = i % 4 ? a + turn : a + acos(-1.0);     /* and many half circles */
+        const double b = i % 4 ? a + turn : a + acos(-1.0); /* and many half circles */
         const double x0 = rounded(r * cos(a), unit), y0 = rounded(r * sin(a), unit);
         const double x1 = rounded(r * cos(b), unit), y1 = rounded(r * sin(b), unit);
         char text[200];
@@ -50,9 +50,9 @@ static void posted(bool inch, bool by_radius, double *largest)
         double at[AXES], slope[AXES];
         *largest = fmax(*largest, fabs(p->growth));
         CHECK(p->sweep > 0.0 && p->sweep < 2.0 * acos(-1.0) + 1e-6);
-        path_at(p, 0.5 * p->length, at, slope);     /* half of the change in the middle */
-        CHECK_NEAR(hypot(at[0] - p->centre[0], at[1] - p->centre[1]),
-                   p->radius + 0.5 * p->growth, 1e-9);
+        path_at(p, 0.5 * p->length, at, slope); /* half of the change in the middle */
+        CHECK_NEAR(hypot(at[0] - p->centre[0], at[1] - p->centre[1]), p->radius + 0.5 * p->growth,
+                   1e-9);
         path_at(p, p->length, at, slope);
         CHECK_NEAR(at[0], x1 * size, 1e-9);
         CHECK_NEAR(at[1], y1 * size, 1e-9);
@@ -78,7 +78,7 @@ static void bounds(void)
 
     CHECK(accepted("G21", 5.0, 0.0282, usual));
     CHECK(!accepted("G21", 5.0, 0.0284, usual));
-    CHECK(accepted("G21", 500.0, 0.4995, usual));   /* a thousandth */
+    CHECK(accepted("G21", 500.0, 0.4995, usual)); /* a thousandth */
     CHECK(!accepted("G21", 500.0, 0.502, usual));
     CHECK(accepted("G21", 680.0, -0.67, usual));
     CHECK(accepted("G20", 0.2, 0.00282, usual));

@@ -28,11 +28,11 @@ static double distance(const struct part *m, const double q[2])
         const double x = m->end[0] - m->start[0], y = m->end[1] - m->start[1];
         const double l = hypot(x, y);
         const double t = ((q[0] - m->start[0]) * x + (q[1] - m->start[1]) * y) / l;
-        return t > 0.0 && t < l
-             ? fabs((q[0] - m->start[0]) * y - (q[1] - m->start[1]) * x) / l : ends;
+        return t > 0.0 && t < l ? fabs((q[0] - m->start[0]) * y - (q[1] - m->start[1]) * x) / l
+                                : ends;
     }
-    const double pi = acos(-1.0), radius = hypot(m->start[0] - m->centre[0],
-                                                 m->start[1] - m->centre[1]);
+    const double pi = acos(-1.0),
+                 radius = hypot(m->start[0] - m->centre[0], m->start[1] - m->centre[1]);
     const double from = atan2(m->start[1] - m->centre[1], m->start[0] - m->centre[0]);
     double to = atan2(m->end[1] - m->centre[1], m->end[0] - m->centre[0]) - from;
     double at = atan2(q[1] - m->centre[1], q[0] - m->centre[0]) - from;
@@ -55,7 +55,7 @@ static void contour(char *text, const char *code, double diameter, struct part m
         const double corner = fmin(2.4, 3.1 - before - sweep);
         const double length = i ? random_between(3.0, 14.0) : 10.0;
         m[i] = (struct part){ .arc = arc, .start = { x, y } };
-        if (i > 0 && random_between(0.0, 1.0) < 0.8) {      /* else on without a corner */
+        if (i > 0 && random_between(0.0, 1.0) < 0.8) { /* else on without a corner */
             way += random_between(-corner, corner);
         }
         before = sweep;
@@ -92,9 +92,9 @@ static bool driven(const char *text, const struct part m[MOTIONS], double radius
         CHECK_NEAR(x.c.path.start[1], at[1], 0.0);
         memcpy(at, x.c.path.end, sizeof at);
         const int i = x.c.line - 3;
-        const bool corner = i > 0 && i < MOTIONS && x.c.path.arc &&    /* with the one before */
-                            hypot(x.c.path.centre[0] - m[i].start[0],
-                                  x.c.path.centre[1] - m[i].start[1]) < 1e-9;
+        const bool corner =
+            i > 0 && i < MOTIONS && x.c.path.arc && /* with the one before */
+            hypot(x.c.path.centre[0] - m[i].start[0], x.c.path.centre[1] - m[i].start[1]) < 1e-9;
         for (int k = 0; k <= SAMPLES && i > 0 && i < MOTIONS; k++) {
             double place[AXES], slope[AXES], least = 1e9;
             path_at(&x.c.path, x.c.path.length * k / SAMPLES, place, slope);
@@ -164,7 +164,7 @@ static void order(void)
     CHECK_NEAR(x.c.feed, 0.5, 1e-12);
     expect(&x, COMMAND_LINE, 10, 0.0, 22.0, 5.0);
     expect(&x, COMMAND_OUTPUTS, 11, 0.0, 0.0, 0.0);
-    expect(&x, COMMAND_LINE, 11, -5.0, 20.0, 5.0);      /* Y is where the contour ended */
+    expect(&x, COMMAND_LINE, 11, -5.0, 20.0, 5.0); /* Y is where the contour ended */
     expect(&x, COMMAND_LINE, 12, 0.0, 20.0, 5.0);
     expect(&x, COMMAND_OUTPUTS, 12, 0.0, 0.0, 0.0);
     CHECK_EQ(next(&x), -1);
@@ -183,11 +183,11 @@ static void cases(void)
     CHECK_NEAR(x.in.point[1], 18.0, 1e-12);
     begin(&x, "G41.1 D4 G0 X20\nG0 Y-20\nG1 X0\nG0 Y0\n");
     expect(&x, COMMAND_PTP, 1, 20.0, 2.0, 0.0);
-    expect(&x, COMMAND_PTP, 2, 22.0, 0.0, 0.0);         /* two rapids: straight about the corner */
+    expect(&x, COMMAND_PTP, 2, 22.0, 0.0, 0.0); /* two rapids: straight about the corner */
     expect(&x, COMMAND_PTP, 2, 22.0, -20.0, 0.0);
     expect(&x, COMMAND_CW_ARC, 3, 20.0, -22.0, 0.0);
     expect(&x, COMMAND_LINE, 3, 0.0, -22.0, 0.0);
-    expect(&x, COMMAND_CW_ARC, 4, -2.0, -20.0, 0.0);    /* behind a feed never nearer */
+    expect(&x, COMMAND_CW_ARC, 4, -2.0, -20.0, 0.0); /* behind a feed never nearer */
     expect(&x, COMMAND_PTP, 4, -2.0, 0.0, 0.0);
     CHECK_EQ(next(&x), -1);
     begin(&x, "G42.1 D4 G1 X20\nG3 J10 P2\nG1 X30\nG40 X40 Y5\nG2 X50 R5\n");
@@ -198,7 +198,7 @@ static void cases(void)
     expect(&x, COMMAND_LINE, 3, 30.0, -2.0, 0.0);
     expect(&x, COMMAND_LINE, 4, 40.0, 5.0, 0.0);
     expect(&x, COMMAND_CW_ARC, 5, 50.0, 5.0, 0.0);
-    begin(&x, "G18 G41.1 D4 G1 Z20\nX10\nG40 X20\n");    /* left of Z, seen against Y, is X */
+    begin(&x, "G18 G41.1 D4 G1 Z20\nX10\nG40 X20\n"); /* left of Z, seen against Y, is X */
     expect(&x, COMMAND_LINE, 1, 2.0, 0.0, 18.0);
     expect(&x, COMMAND_LINE, 2, 10.0, 0.0, 18.0);
     expect(&x, COMMAND_LINE, 3, 20.0, 0.0, 20.0);
@@ -278,7 +278,7 @@ static void back(void)
     begin(&x, "G41.1 D10 G1 X10\nX20\nG3 X20.01 Y.00008 R50\nG1 X30 Y.14\n");
     CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK_EQ(next(&x), COMMAND_LINE);
-    CHECK_EQ(next(&x), COMMAND_LINE);       /* nothing is left of the arc */
+    CHECK_EQ(next(&x), COMMAND_LINE); /* nothing is left of the arc */
     CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK_EQ(next(&x), -1);
 }

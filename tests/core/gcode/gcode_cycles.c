@@ -9,25 +9,32 @@
  * rapids over the hole and to R, as letter and height, C the way to the next hole: f feed, r rapid;
  * w dwell of half a second; s spindle off, + clockwise, - the other way round, each with overrides
  * on; and = the same with overrides off; ! stop. */
-static const struct { int code; const char *spindle, *words, *list; } cycles[] = {
-    { 81, "", "",           "f-10 rC" },
-    { 82, "", "P.5",        "f-10 w rC" },
-    { 73, "", "Q5",         "f-3 r-2.746 f-8 r-7.746 f-10 rC" },
-    { 83, "", "Q5",         "f-3 r2 r-2.746 f-8 r2 r-7.746 f-10 rC" },
-    { 83, "", "Q12",        "f-10 rC" },
-    { 83, "", "Q.1 Z1.9",   "f1.9 rC" },
-    { 83, "", "Q.1 Z1.8",   "f1.9 r2 f1.8 rC" },
-    { 84, "M3", "",         "=+ f-10 =- fC +" },
-    { 84, "M3", "P.5",      "=+ f-10 =- w fC +" },
-    { 74, "M4", "",         "=- f-10 =+ fC -" },
-    { 85, "", "",           "f-10 f2 rC" },
-    { 86, "M4", "P.5",      "f-10 w s rC -" },
-    { 88, "M3", "P.5",      "f-10 w s ! rC +" },
-    { 89, "", "P.5",        "f-10 w fC" },
+static const struct {
+    int code;
+    const char *spindle, *words, *list;
+} cycles[] = {
+    { 81, "", "", "f-10 rC" },
+    { 82, "", "P.5", "f-10 w rC" },
+    { 73, "", "Q5", "f-3 r-2.746 f-8 r-7.746 f-10 rC" },
+    { 83, "", "Q5", "f-3 r2 r-2.746 f-8 r2 r-7.746 f-10 rC" },
+    { 83, "", "Q12", "f-10 rC" },
+    { 83, "", "Q.1 Z1.9", "f1.9 rC" },
+    { 83, "", "Q.1 Z1.8", "f1.9 r2 f1.8 rC" },
+    { 84, "M3", "", "=+ f-10 =- fC +" },
+    { 84, "M3", "P.5", "=+ f-10 =- w fC +" },
+    { 74, "M4", "", "=- f-10 =+ fC -" },
+    { 85, "", "", "f-10 f2 rC" },
+    { 86, "M4", "P.5", "f-10 w s rC -" },
+    { 88, "M3", "P.5", "f-10 w s ! rC +" },
+    { 89, "", "P.5", "f-10 w fC" },
 };
 
 /* Coordinates of the plane and of its normal. */
-static const struct { const char *word; char letter[3]; int axis[3]; } planes[] = {
+static const struct {
+    const char *word;
+    char letter[3];
+    int axis[3];
+} planes[] = {
     { "G17", { 'X', 'Y', 'Z' }, { 0, 1, 2 } },
     { "G18", { 'Z', 'X', 'Y' }, { 2, 0, 1 } },
     { "G19", { 'Y', 'Z', 'X' }, { 1, 2, 0 } },
@@ -52,7 +59,7 @@ static void expect_list(struct reader *x, int plane, const char *list, double a,
                         double clear)
 {
     bool fixed = false;
-    double at = NAN;        /* no motion leads to where the tool is */
+    double at = NAN; /* no motion leads to where the tool is */
     while (*list) {
         const char c = *list++;
         if (c == ' ') {
@@ -110,13 +117,13 @@ static void one(int cycle, int plane, bool to_r, bool incremental)
 
     strncat(words, cycles[cycle].words, z ? (size_t)(z - cycles[cycle].words) : 31);
     snprintf(depth, sizeof depth, "%c%.1f", l[2], bottom - (incremental ? 2.0 : 0.0));
-    snprintf(text, sizeof text, "%s S100 %s G0 %c1 %c2 %c10\n%s %s F60 G64\n"
+    snprintf(text, sizeof text,
+             "%s S100 %s G0 %c1 %c2 %c10\n%s %s F60 G64\n"
              "G%d %c%g %c%g R%g %s %s M0\n%c%g %c%g\n",
              planes[plane].word, cycles[cycle].spindle, l[0], l[1], l[2],
-             incremental ? "G91" : "G90", to_r ? "G99" : "G98",
-             cycles[cycle].code, l[0], incremental ? 4.0 : 5.0, l[1], incremental ? 5.0 : 7.0,
-             incremental ? -8.0 : 2.0, depth, words, l[0],
-             incremental ? 4.0 : 9.0, l[1], incremental ? 5.0 : 7.0);
+             incremental ? "G91" : "G90", to_r ? "G99" : "G98", cycles[cycle].code, l[0],
+             incremental ? 4.0 : 5.0, l[1], incremental ? 5.0 : 7.0, incremental ? -8.0 : 2.0,
+             depth, words, l[0], incremental ? 4.0 : 9.0, l[1], incremental ? 5.0 : 7.0);
     begin(&x, text);
     if (*cycles[cycle].spindle) {
         CHECK_EQ(next(&x), COMMAND_OUTPUTS);
@@ -126,7 +133,7 @@ static void one(int cycle, int plane, bool to_r, bool incremental)
     expect_approach(&x, plane, 5.0, 7.0, 10.0);
     expect_list(&x, plane, cycles[cycle].list, 5.0, 7.0, clear);
     CHECK_EQ(x.c.line, 3);
-    CHECK_EQ(next(&x), COMMAND_STOP);       /* behind the whole cycle */
+    CHECK_EQ(next(&x), COMMAND_STOP); /* behind the whole cycle */
     /* words are kept, and a kept R with G91 counts from where the series began */
     expect_approach(&x, plane, 9.0, incremental ? 12.0 : 7.0, clear);
     expect_list(&x, plane, cycles[cycle].list, 9.0, incremental ? 12.0 : 7.0, clear);
@@ -147,10 +154,13 @@ static void all(void)
 /* G87: aside by 3 and 4 with the spindle off, down, over the hole, bore from -10 up to -6. */
 static void back_boring(int plane, bool incremental, bool to_r)
 {
-    static const struct { char kind; double a, b, height; } steps[] = {
-        { 'r', 8.0, 11.0, 2.0 }, { 's', 0, 0, 0 },      { 'r', 8.0, 11.0, -10.0 },
-        { 'r', 5.0, 7.0, -10.0 }, { '+', 0, 0, 0 },     { 'f', 5.0, 7.0, -6.0 },
-        { 'f', 5.0, 7.0, -10.0 }, { 's', 0, 0, 0 },     { 'r', 8.0, 11.0, -10.0 },
+    static const struct {
+        char kind;
+        double a, b, height;
+    } steps[] = {
+        { 'r', 8.0, 11.0, 2.0 },  { 's', 0, 0, 0 },       { 'r', 8.0, 11.0, -10.0 },
+        { 'r', 5.0, 7.0, -10.0 }, { '+', 0, 0, 0 },       { 'f', 5.0, 7.0, -6.0 },
+        { 'f', 5.0, 7.0, -10.0 }, { 's', 0, 0, 0 },       { 'r', 8.0, 11.0, -10.0 },
         { 'r', 8.0, 11.0, NAN },  { 'r', 5.0, 7.0, NAN }, { '+', 0, 0, 0 },
     };
     const char *l = planes[plane].letter;
@@ -159,7 +169,8 @@ static void back_boring(int plane, bool incremental, bool to_r)
     struct fault_list all;
     struct reader x;
 
-    snprintf(text, sizeof text, "%s S100 M3 G0 %c1 %c2 %c10\n%s %s F60\n"
+    snprintf(text, sizeof text,
+             "%s S100 M3 G0 %c1 %c2 %c10\n%s %s F60\n"
              "G87 %c%g %c%g R%g %c%g %c3 %c4 %c%g M0\n",
              planes[plane].word, l[0], l[1], l[2], incremental ? "G91" : "G90",
              to_r ? "G99" : "G98", l[0], incremental ? 4.0 : 5.0, l[1], incremental ? 5.0 : 7.0,
@@ -193,7 +204,7 @@ static void repeats(void)
     begin(&x, "G0 Z3\nG91 G81 X4 Y5 Z-.6 R1.8 L3\nG80 G90 G0 X0 Y0\nG99 G81 X1 Z-1 R2 L2\n");
     CHECK_EQ(next(&x), COMMAND_PTP);
     CHECK_EQ(next(&x), COMMAND_PTP);
-    expect_place(&x, 0, 0.0, 0.0, 4.8);     /* the tool is below R: first of all up there */
+    expect_place(&x, 0, 0.0, 0.0, 4.8); /* the tool is below R: first of all up there */
     for (int i = 1; i <= 3; i++) {
         CHECK_EQ(next(&x), COMMAND_PTP);
         expect_place(&x, 0, 4.0 * i, 5.0 * i, 4.8);
@@ -214,10 +225,10 @@ static void heights(void)
     CHECK_EQ(next(&x), COMMAND_PTP);
     expect_list(&x, 0, "r9 r2 f-1 r2", 1.0, 0.0, 0.0);
     x.c.line = 0;
-    CHECK_EQ(next(&x), COMMAND_PTP);        /* below the new R: up, then over the hole */
+    CHECK_EQ(next(&x), COMMAND_PTP); /* below the new R: up, then over the hole */
     expect_place(&x, 0, 1.0, 0.0, 3.0);
     expect_list(&x, 0, "r3 f-1 r9", 2.0, 0.0, 0.0);
-    CHECK_EQ(next(&x), -2);                 /* another cycle needs its words */
+    CHECK_EQ(next(&x), -2); /* another cycle needs its words */
     CHECK_EQ(x.r.fault, FAULT_CYCLE_R);
     begin(&x, "G55 G20 G0 X0 Y0 Z1\nG81 X1 Y1 R.5 Z-1 F10\nG80\n"
               "G21 G92 X0 Y0 Z30\nG82 X1 Z1 R2 P1\n");
@@ -331,10 +342,13 @@ static void refused(void)
 /* The spindle's turns ask for the feed of a tap: one that would be cut down is refused. */
 static void taps_above_the_highest_feed(void)
 {
-    static const struct { const char *text; double feed; } taps[] = {
-        { "S1000 M3\nG33.1 Z-5 K5\n", 5000.0 }, { "S1000 M3\nG33.1 Z-5 K2 I2\n", 4000.0 },
-        { "S1000 M3\nG33.1 Z-5 K3\n", 0.0 }, { "S1000 M3\nG33.1 Z-5 K1.5 I2\n", 0.0 }
-    };
+    static const struct {
+        const char *text;
+        double feed;
+    } taps[] = { { "S1000 M3\nG33.1 Z-5 K5\n", 5000.0 },
+                 { "S1000 M3\nG33.1 Z-5 K2 I2\n", 4000.0 },
+                 { "S1000 M3\nG33.1 Z-5 K3\n", 0.0 },
+                 { "S1000 M3\nG33.1 Z-5 K1.5 I2\n", 0.0 } };
     for (size_t i = 0; i < sizeof taps / sizeof *taps; i++) {
         struct reader x;
         int got;

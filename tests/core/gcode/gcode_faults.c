@@ -7,7 +7,12 @@
 
 static void faults(void)
 {
-    static const struct { const char *text; int line; const char *at; enum fault fault; } bad[] = {
+    static const struct {
+        const char *text;
+        int line;
+        const char *at;
+        enum fault fault;
+    } bad[] = {
         { "G1 X1\nY2 E3", 2, "E3", FAULT_UNUSED },
         { "G1 X1\nY2 Q3", 2, "Q3", FAULT_UNUSED },
         { "G1 X1 @3", 1, "@3", FAULT_SHARED },
@@ -260,9 +265,11 @@ static void faults(void)
         { "G1 X#<_hal[x]>", 1, "#<_hal[x]>", FAULT_FOREIGN },
         { "M70\nM71\nM72", 3, "M72", FAULT_NO_MODES },
         { "M70\nG41.1 D1\n M72 ", 3, "M72", FAULT_RESTORE },
-        { "G1 X1 M101 P1", 1, "M101", FAULT_USER }, { "M100 M199", 1, "M199", FAULT_GROUP },
+        { "G1 X1 M101 P1", 1, "M101", FAULT_USER },
+        { "M100 M199", 1, "M199", FAULT_GROUP },
         { "G4 P1 M101\no<m101> sub\no<m101> endsub", 1, "M101", FAULT_SHARED },
-        { "M100.5", 1, "M100.5", FAULT_WORD }, { "M200", 1, "M200", FAULT_WORD },
+        { "M100.5", 1, "M100.5", FAULT_WORD },
+        { "M200", 1, "M200", FAULT_WORD },
         { "M3 S1\nG33.1 Z1", 2, "G33.1 Z1", FAULT_TAP_K },
         { "#<_ini[emc]machine>=1", 1, "#<_ini[emc]machine>=1", FAULT_FOREIGN },
         { "#<_hal[spindle]> = 1", 1, "#<_hal[spindle]> = 1", FAULT_FOREIGN },
@@ -296,16 +303,15 @@ static void faults(void)
     /* Three have tests of their own below; gcode_stream.c has those of a source, gcode_machine.c
      * one of a machine with a probe, tests/gcode/test_files.py one of files,
      * tests/gcode/test_fanuc*.py those of Fanuc's controls, gcode_angles.c one of U V W. */
-    bool seen[FAULT_COUNT] = { [FAULT_NONE] = true, [FAULT_LINE_LENGTH] = true,
-                               [FAULT_WORD_COUNT] = true, [FAULT_READ] = true,
-                               [FAULT_ZERO] = true, [FAULT_PLAIN] = true,
-                               [FAULT_PROBE_POINT] = true, [FAULT_DEEP] = true,
-                               [FAULT_NAMES] = true, [FAULT_O_DEEP] = true,
-                               [FAULT_FILES] = true, [FAULT_SEQUENCE] = true,
-                               [FAULT_LOOP_END] = true, [FAULT_THEN] = true,
-                               [FAULT_SIDE] = true, [FAULT_ALARM] = true,
-                               [FAULT_MODAL] = true, [FAULT_ROUND_NEXT] = true,
-                               [FAULT_ROUND_SHORT] = true };
+    bool seen[FAULT_COUNT] = {
+        [FAULT_NONE] = true,        [FAULT_LINE_LENGTH] = true, [FAULT_WORD_COUNT] = true,
+        [FAULT_READ] = true,        [FAULT_ZERO] = true,        [FAULT_PLAIN] = true,
+        [FAULT_PROBE_POINT] = true, [FAULT_DEEP] = true,        [FAULT_NAMES] = true,
+        [FAULT_O_DEEP] = true,      [FAULT_FILES] = true,       [FAULT_SEQUENCE] = true,
+        [FAULT_LOOP_END] = true,    [FAULT_THEN] = true,        [FAULT_SIDE] = true,
+        [FAULT_ALARM] = true,       [FAULT_MODAL] = true,       [FAULT_ROUND_NEXT] = true,
+        [FAULT_ROUND_SHORT] = true
+    };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         fault_is(bad[i].text, bad[i].line, bad[i].at, bad[i].fault);
         seen[bad[i].fault] = true;
@@ -318,11 +324,12 @@ static void faults(void)
 /* Two words that do not agree are both told. */
 static void both_words(void)
 {
-    static const struct { const char *text, *other; enum fault fault; } bad[] = {
-        { "G1 X1 G2", "G1", FAULT_GROUP },
-        { "M9 G1 M8", "M9", FAULT_GROUP },
-        { "G92 X1 G1", "G92", FAULT_SHARED },
-        { "G4 P1 M64", "G4", FAULT_SHARED },
+    static const struct {
+        const char *text, *other;
+        enum fault fault;
+    } bad[] = {
+        { "G1 X1 G2", "G1", FAULT_GROUP },       { "M9 G1 M8", "M9", FAULT_GROUP },
+        { "G92 X1 G1", "G92", FAULT_SHARED },    { "G4 P1 M64", "G4", FAULT_SHARED },
         { "G3 M65 P2 I1", "M65", FAULT_SHARED },
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -359,7 +366,7 @@ static void long_lines(void)
     strcpy(text + 255, "X");
     begin(&x, text);
     CHECK_EQ(next(&x), -2);
-    CHECK_EQ(x.r.fault, FAULT_NUMBER);      /* 256 characters are read */
+    CHECK_EQ(x.r.fault, FAULT_NUMBER); /* 256 characters are read */
     text[255] = ' ';
     strcpy(text + 256, "X");
     begin(&x, text);

@@ -1,7 +1,9 @@
 /* Files that a program calls: a state that is restored elsewhere goes on in the same one. */
 #include "gcode_reader.h"
 
-static const struct { const char *name, *text; } files[] = {
+static const struct {
+    const char *name, *text;
+} files[] = {
     { "a", "\xEF\xBB\xBFo<a> sub\nG1 X1\no<b> call [#1+1]\nG1 X3\no<a> endsub\n" },
     { "b", "\no<b> sub\no1 repeat [#1]\nG91 G1 Y1\no1 endrepeat\nG90\no<b> endsub\n" },
     { "7", "o7 sub\nG1 Z#1\nG1 Z9\nM2\n" },
@@ -67,8 +69,8 @@ static void told_by_file(void)
 
     begin_files(&x, text);
     x.source = (struct source){ look_until, &x };
-    CHECK(next(&x) >= 0);       /* X1, in a */
-    CHECK(next(&x) >= 0);       /* Y1, in b */
+    CHECK(next(&x) >= 0); /* X1, in a */
+    CHECK(next(&x) >= 0); /* Y1, in b */
     gone = true;
     while (next(&x) >= 0) {
     }

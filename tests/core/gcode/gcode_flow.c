@@ -25,17 +25,18 @@ static void path_is(const char *text, bool fanuc, const double *x_end, int count
 
 #define PATH(text, ...) \
     path_is(text, false, (double[]){ __VA_ARGS__ }, \
-            (int)(sizeof (double[]){ __VA_ARGS__ } / sizeof(double)), true)
+            (int)(sizeof(double[]){ __VA_ARGS__ } / sizeof(double)), true)
 #define FANUC(text, ...) \
     path_is(text, true, (double[]){ __VA_ARGS__ }, \
-            (int)(sizeof (double[]){ __VA_ARGS__ } / sizeof(double)), true)
+            (int)(sizeof(double[]){ __VA_ARGS__ } / sizeof(double)), true)
 
 static void conditions(void)
 {
     PATH("G1\no1 if [1 GT 2]\nX1\no1 elseif [2 GT 2]\nX2\no1 else\nX3\no1 endif\nX4\n", 3, 4);
     PATH("G1\no1 if [3 GT 2]\nX1\no1 elseif [1]\nX2\no1 else\nX3\no1 endif\nX4\n", 1, 4);
     PATH("G1\no1 if [0]\nX1\no1 elseif [1]\nX2\n"
-         "o1 elseif [1/0]\nX5\no1 else\nX3\no1 endif\nX4", 2, 4);
+         "o1 elseif [1/0]\nX5\no1 else\nX3\no1 endif\nX4",
+         2, 4);
     PATH("G1\nO<a b> IF [0]\nX1\n(o<ab> endif)\n;o<ab> endif\no<A b> endif (yes)\nX4\n", 4);
     PATH("G1\no1 if [1]\no2 if [0]\nX1\no2 else\nX2\no2 endif\no1 else\nX3\no1 endif\nX4\n", 2, 4);
     PATH("G1\no1 if [0]\no2 if [1]\nX1\no2 endif\no1 endif\no1 if [1]\nX5\no1 endif\n", 5);
@@ -49,14 +50,17 @@ static void loops(void)
     PATH("G1\n#1=0\no1 do\n#1=[#1+1]\nX#1\no1 while [#1 LT 3]\nX9\n", 1, 2, 3, 9);
     PATH("G91 G1\no1 repeat [3]\nX1\no1 endrepeat\nG90 X9\n", 1, 2, 3, 9);
     PATH("G1\no1 repeat [0]\nX1\no1 endrepeat\no2 repeat [-5]\nX1\no2 endrepeat\nX9\n", 9);
-    PATH("G91 G1\no1 repeat [2]\no2 repeat [2]\nX1\no2 endrepeat\nX10\no1 endrepeat\n",
-         1, 2, 12, 13, 14, 24);
+    PATH("G91 G1\no1 repeat [2]\no2 repeat [2]\nX1\no2 endrepeat\nX10\no1 endrepeat\n", 1, 2, 12,
+         13, 14, 24);
     PATH("G1\n#1=0\no1 while [1]\n#1=[#1+1]\no2 if [#1 EQ 2]\no1 continue\no2 elseif [#1 EQ 4]\n"
-         "o1 break\no2 endif\nX#1\no1 endwhile\nX9\n", 1, 3, 9);
+         "o1 break\no2 endif\nX#1\no1 endwhile\nX9\n",
+         1, 3, 9);
     PATH("G1\n#1=0\no1 do\n#1=[#1+1]\no2 if [#1 EQ 2]\no1 continue\no2 endif\no3 if [#1 EQ 5]\n"
-         "o1 break\no3 endif\nX#1\no1 while [#1 LT 7]\nX9\n", 1, 3, 4, 9);
+         "o1 break\no3 endif\nX#1\no1 while [#1 LT 7]\nX9\n",
+         1, 3, 4, 9);
     PATH("G91 G1\n#1=0\no1 repeat [4]\n#1=[#1+1]\no2 if [#1 EQ 2]\no1 continue\no2 endif\nX1\n"
-         "o3 if [#1 EQ 3]\no1 break\no3 endif\no1 endrepeat\nX100\n", 1, 2, 102);
+         "o3 if [#1 EQ 3]\no1 break\no3 endif\no1 endrepeat\nX100\n",
+         1, 2, 102);
 }
 
 static void calls(void)
@@ -66,20 +70,25 @@ static void calls(void)
     PATH("o<b> call [3]\nM2\no<b> sub\nG1 X#1\no<b> endsub\n", 3);
     PATH("#1=4 #2=6 #31=1\no1 call [3]\nG1 X[#1+#31]\nM2\n"
          "o1 sub\nX#1 G1\nX#2\n#1=99 #31=2\no1 endsub\n",
-         3, 0, 6);     /* #2 is not given; #1 is 4 again, #31 2 */
+         3, 0, 6); /* #2 is not given; #1 is 4 again, #31 2 */
     PATH("o1 call [3]\nG1 X[#<_value> + #<_value_returned>]\n"
          "o1 call [0]\nX[20+#<_value_returned>]\nM2\n"
-         "o1 sub\no2 if [#1]\no1 return [#1*2]\no2 endif\no1 endsub\n", 7, 20);
+         "o1 sub\no2 if [#1]\no1 return [#1*2]\no2 endif\no1 endsub\n",
+         7, 20);
     PATH("o1 call [4]\nG1 X#<_value>\nM2\no1 sub\no2 if [#1 LE 1]\no1 return [1]\no2 endif\n"
-         "o1 call [#1 - 1]\no1 endsub [#1 * #<_value>]\n", 24);
+         "o1 call [#1 - 1]\no1 endsub [#1 * #<_value>]\n",
+         24);
     PATH("#<a>=1\no1 call\nG1 X#<a>\nM2\no1 sub\n#<a>=2 #<_g>=7\nG1 X[#<_g>]\no1 endsub\n", 7, 1);
     PATH("o1 call\no2 if [EXISTS[#<l>]]\nG1 X1\no2 else\nG1 X2\n"
-         "o2 endif\nM2\no1 sub\n#<l>=1\no1 endsub", 2);
+         "o2 endif\nM2\no1 sub\n#<l>=1\no1 endsub",
+         2);
     PATH("#3=99\no[#3+1] call [8]\nM2\no0100 sub\nG1 X#1\no100 endsub\n", 8);
     PATH("G1\no1 while [1]\no2 repeat [5]\no3 call\no1 break\no2 endrepeat\no1 endwhile\nX9\nM2\n"
-         "o3 sub\no4 while [1]\nX1\no3 return\no4 endwhile\no3 endsub\n", 1, 9);
+         "o3 sub\no4 while [1]\nX1\no3 return\no4 endwhile\no3 endsub\n",
+         1, 9);
     PATH("#1=0\no1 call [10]\nG1 X[#5000]\nM2\no1 sub\no2 if [#1 GT 1]\no1 call [#1-1]\no2 endif\n"
-         "#5000=[#5000+1]\no1 endsub\n", 10);
+         "#5000=[#5000+1]\no1 endsub\n",
+         10);
 }
 
 /* A computed number is a code as that of any other word is: 1.1 * 100 is 110 but for rounding. */
@@ -106,9 +115,11 @@ static void fanuc(void)
     FANUC("G1\n#1=0\nN10 #1=#1+1\nX#1\nIF[#1LT3]GOTO10\nX9\nM30\n", 1, 2, 3, 9);
     FANUC("G1 X1\nGOTO 20\nX2\nN20 X3\nGOTO[10+20]\nX4\n/N30 X5\nN030\nX6\nM30\n", 1, 3, 5, 6);
     FANUC("G1\n#1=1\nWHILE [#1 LE 3] DO1\n#2=1\nWHILE[#2LT#1]DO 2\nX[10*#1+#2]\n#2=#2+1\nEND 2\n"
-          "#1=#1+1\nEND1\nWHILE[0]DO1\nX1\nEND1\nX9\nM30\n", 21, 31, 32, 9);
+          "#1=#1+1\nEND1\nWHILE[0]DO1\nX1\nEND1\nX9\nM30\n",
+          21, 31, 32, 9);
     FANUC("G1\n#1=0\nDO1\n#1=#1+1\nX#1\nIF[#1EQ2]GOTO5\nEND1\nX8\nN5 X9\nDO1\nX10\nGOTO 7\n"
-          "END1\nN7M30\n", 1, 2, 9, 10);
+          "END1\nN7M30\n",
+          1, 2, 9, 10);
     FANUC("G1\nIF [1 EQ 1] THEN #1=5 #2=6\nIF [1 NE 1] THEN #1=7\nX[#1+#2]\nM30\n", 11);
     FANUC("O1\nG1\nM98 P2\nN1 X5\nM30\nO2\nN1 X[#1+1]\n#1=#1+1\nIF[#1 LT 3]GOTO 1\nM99\nO3\nN1X7\n",
           1, 2, 3, 5);
@@ -133,7 +144,7 @@ static void forms(void)
     }
     begin(&x, "\xEF\xBB\xBFG1 X1 Q2\n");
     CHECK_EQ(next(&x), -2);
-    CHECK_EQ(x.r.at, 6);        /* the mark is in no column */
+    CHECK_EQ(x.r.at, 6); /* the mark is in no column */
     begin(&x, "G4 P500\nG4 P0.5\nG4 X1.5\nG4 U2\nG1 X100 Y1. F6\n");
     x.program.fanuc = true;
     x.program.least_increment = 0.001;

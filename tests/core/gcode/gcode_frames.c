@@ -23,9 +23,9 @@ static void systems(void)
     expect_line(&x, 7.0, 1.0, 0.0);
     expect_line(&x, 8.0, 1.0, 0.0);
     expect_line(&x, 9.0, 1.0, 0.0);
-    expect_line(&x, 4.0, -3.0, 0.0);        /* 9 1 is X5 Y4 */
-    expect_line(&x, 5.0, -3.0, 0.0);        /* 4 is X-1 of G55 */
-    expect_line(&x, -5.0, -3.0, 0.0);       /* 5 is X10 there, beside the shift */
+    expect_line(&x, 4.0, -3.0, 0.0);  /* 9 1 is X5 Y4 */
+    expect_line(&x, 5.0, -3.0, 0.0);  /* 4 is X-1 of G55 */
+    expect_line(&x, -5.0, -3.0, 0.0); /* 5 is X10 there, beside the shift */
     CHECK_EQ(next(&x), -1);
 }
 
@@ -40,14 +40,14 @@ static void turned_system(void)
     expect_line(&x, 8.0, 26.0, 0.0);
     expect_line(&x, 8.0, 29.0, 0.0);
     expect_line(&x, 1.0, 29.0, 0.0);
-    expect_line(&x, 1.0, 26.0, 0.0);        /* Y is still what G53 made of it */
+    expect_line(&x, 1.0, 26.0, 0.0); /* Y is still what G53 made of it */
     const double c = 0.5 * sqrt(3.0);
     expect_line(&x, 10.0 + 10.0 * c, 25.0, 0.0);
     expect_move(&x, COMMAND_CW_ARC, 10.0 - 5.0, 20.0 + 10.0 * c, 0.0);
     CHECK_NEAR(x.c.path.centre[0], 10.0, 1e-9);
     CHECK_NEAR(x.c.path.centre[1], 20.0, 1e-9);
     CHECK_NEAR(x.c.path.sweep, -1.5 * acos(-1.0), 1e-9);
-    expect_line(&x, 5.0 - c, 20.0 + 10.0 * c - 0.5, 0.0);   /* one back along the turned X */
+    expect_line(&x, 5.0 - c, 20.0 + 10.0 * c - 0.5, 0.0); /* one back along the turned X */
     CHECK_EQ(next(&x), -1);
 }
 
@@ -59,9 +59,9 @@ static void parking(void)
     expect_line(&x, 1.0, 20.0, 30.0);
     expect_line(&x, 2.0, 2.0, 2.0);
     expect_move(&x, COMMAND_PTP, 10.0, 20.0, 30.0);
-    expect_move(&x, COMMAND_PTP, 10.0, 20.0, 1.0);      /* Z0 of G55, whose origin has Z 1 */
+    expect_move(&x, COMMAND_PTP, 10.0, 20.0, 1.0); /* Z0 of G55, whose origin has Z 1 */
     expect_move(&x, COMMAND_PTP, 10.0, 20.0, 30.0);
-    CHECK_EQ(next(&x), -1);                 /* there already */
+    CHECK_EQ(next(&x), -1); /* there already */
     double value;
     CHECK(offsets_parameter(&x.in, &x.program, 5162, &value) && value == 20.0);
     CHECK(offsets_parameter(&x.in, &x.program, 5181, &value) && value == 1.0);
@@ -82,18 +82,18 @@ static void scaling(void)
     begin(&x, "G1 X2 Y2\nG51 X10 Y0 P3\nX12 Y1\nG91 X1\nG90 G3 X14 Y1 R1.5 Z1\nG50 G1 X0 Y0 Z0\n"
               "G51 X5 I-1 J1\nX0 Y1\nG2 X1 Y2 I1 J0\nG53 G1 X0\nG50\nG51 P2\nX2\nG51 I2 J3\nY1\n");
     expect_line(&x, 2.0, 2.0, 0.0);
-    expect_line(&x, 16.0, 3.0, 0.0);        /* 10 + 3 2, 3 1 */
+    expect_line(&x, 16.0, 3.0, 0.0); /* 10 + 3 2, 3 1 */
     expect_line(&x, 19.0, 3.0, 0.0);
     expect_move(&x, COMMAND_CCW_HELIX, 22.0, 3.0, 3.0);
     CHECK_NEAR(x.c.path.radius, 4.5, 1e-9);
     expect_line(&x, 0.0, 0.0, 0.0);
-    expect_line(&x, 10.0, 1.0, 0.0);        /* 0 mirrored about 5 */
+    expect_line(&x, 10.0, 1.0, 0.0); /* 0 mirrored about 5 */
     expect_move(&x, COMMAND_CCW_ARC, 9.0, 2.0, 0.0);
     CHECK_NEAR(x.c.path.centre[0], 9.0, 1e-9);
     CHECK_NEAR(x.c.path.sweep, 0.5 * acos(-1.0), 1e-9);
-    expect_line(&x, 0.0, 2.0, 0.0);         /* the machine is not scaled */
-    expect_line(&x, 4.0, 2.0, 0.0);         /* about where the tool is: 0 2 */
-    expect_line(&x, 4.0, -1.0, 0.0);        /* Y about its program coordinate, 2: 2 + 3 (1 - 2) */
+    expect_line(&x, 0.0, 2.0, 0.0);  /* the machine is not scaled */
+    expect_line(&x, 4.0, 2.0, 0.0);  /* about where the tool is: 0 2 */
+    expect_line(&x, 4.0, -1.0, 0.0); /* Y about its program coordinate, 2: 2 + 3 (1 - 2) */
     CHECK_EQ(next(&x), -1);
 }
 
@@ -110,15 +110,15 @@ static void rotation(void)
     CHECK_NEAR(x.c.path.centre[0], 0.0, 1e-9);
     CHECK_NEAR(x.c.path.centre[1], 3.5, 1e-9);
     expect_line(&x, 0.0, 0.0, 0.0);
-    expect_line(&x, 0.0, -1.0, 0.0);        /* about where the tool is */
+    expect_line(&x, 0.0, -1.0, 0.0); /* about where the tool is */
     expect_line(&x, 0.0, 0.0, 0.0);
-    expect_line(&x, 102.0, 14.0, 3.0);      /* 4 2 about 2 2: 2 4; then G55 */
-    CHECK_EQ(next(&x), COMMAND_PTP);        /* through X2: there already; home is the machine's */
+    expect_line(&x, 102.0, 14.0, 3.0); /* 4 2 about 2 2: 2 4; then G55 */
+    CHECK_EQ(next(&x), COMMAND_PTP);   /* through X2: there already; home is the machine's */
     CHECK_NEAR(x.c.path.end[0], 0.0, 1e-12);
     CHECK_NEAR(x.c.path.end[1], 14.0, 1e-9);
     CHECK_EQ(next(&x), -1);
     begin(&x, "G18 G68 Z0 X1 R90\nG1 Z1 X1 Y3\n");
-    expect_line(&x, 2.0, 3.0, 0.0);         /* ZX: Z turns towards X */
+    expect_line(&x, 2.0, 3.0, 0.0); /* ZX: Z turns towards X */
     CHECK_EQ(next(&x), -1);
 }
 
@@ -128,21 +128,21 @@ static void polar(void)
     struct reader x;
     begin(&x, "G16 G1 X100 Y30\nG91 Y120\nY120\nG15 G90 X0 Y5\nG16 X10 Y0 Z2\nG91 X5 Y90\n"
               "G90 G52 X1\nX10\nG53 X3 Y4\nG15 G52 X0 X1 Y1\n");
-    expect_line(&x, 100.0 * c, 50.0, 0.0);  /* absolute radius, then angles added: Fanuc's circle */
+    expect_line(&x, 100.0 * c, 50.0, 0.0); /* absolute radius, then angles added: Fanuc's circle */
     expect_line(&x, -100.0 * c, 50.0, 0.0);
     expect_line(&x, 0.0, -100.0, 0.0);
     expect_line(&x, 0.0, 5.0, 0.0);
     expect_line(&x, 10.0, 0.0, 2.0);
-    expect_line(&x, 10.0, 5.0, 2.0);        /* 5 mm from where the tool is, at 90 degrees */
-    expect_line(&x, 1.0, 10.0, 2.0);        /* the pole is the program's zero; the angle stays */
+    expect_line(&x, 10.0, 5.0, 2.0); /* 5 mm from where the tool is, at 90 degrees */
+    expect_line(&x, 1.0, 10.0, 2.0); /* the pole is the program's zero; the angle stays */
     expect_line(&x, 3.0, 4.0, 2.0);
-    CHECK_EQ(next(&x), -2);                 /* X twice */
+    CHECK_EQ(next(&x), -2); /* X twice */
     begin(&x, "G1 @10 ^30\n^90 Z1\n@20\nG91 ^90\n@-10 G90 G55 G20 G92 Y0\nG0 @1 ^0\n");
     expect_line(&x, 10.0 * c, 5.0, 0.0);
     expect_line(&x, 0.0, 10.0, 1.0);
     expect_line(&x, 0.0, 20.0, 1.0);
     expect_line(&x, -20.0, 0.0, 1.0);
-    CHECK_EQ(next(&x), -2);                 /* @ with G92 */
+    CHECK_EQ(next(&x), -2); /* @ with G92 */
     begin(&x, "G20 G1 Y1\nG91 @1 ^90\n");
     expect_line(&x, 0.0, 25.4, 0.0);
     expect_line(&x, -50.8, 0.0, 0.0);
@@ -177,7 +177,7 @@ static void splines(void)
     path_at(&x.c.path, 0.5 * x.c.path.length, at, slope);
     CHECK_NEAR(at[0], 5.0, 1e-9);
     CHECK_NEAR(at[1], 4.0, 1e-9);
-    CHECK_EQ(next(&x), COMMAND_CUBIC);      /* goes on straight: away from Q4 */
+    CHECK_EQ(next(&x), COMMAND_CUBIC); /* goes on straight: away from Q4 */
     CHECK_NEAR(x.c.path.bezier.inner[0][0], 9.0, 1e-12);
     CHECK_NEAR(x.c.path.bezier.inner[0][1], -3.0, 1e-12);
     CHECK_NEAR(x.c.path.bezier.inner[1][1], -3.0, 1e-12);
@@ -186,7 +186,7 @@ static void splines(void)
     path_at(&x.c.path, 0.5 * x.c.path.length, at, slope);
     CHECK_NEAR(at[0], 29.7, 1e-9);
     CHECK_NEAR(at[1], 1.0 + 0.25 * 25.4, 1e-9);
-    CHECK_EQ(next(&x), COMMAND_CUBIC);      /* doubled, then a quarter turn */
+    CHECK_EQ(next(&x), COMMAND_CUBIC); /* doubled, then a quarter turn */
     expect_end(&x, 90.0, -10.0, 0.0);
     CHECK_NEAR(x.c.path.bezier.inner[0][0], 42.4, 1e-12);
     CHECK_NEAR(x.c.path.bezier.inner[0][1], 3.0, 1e-12);

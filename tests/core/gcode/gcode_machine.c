@@ -33,7 +33,9 @@ static void begin_with_tools(struct reader *x, const char *text)
 
 static void tables(void)
 {
-    static const struct { const char *text, *why, *at; } bad[] = {
+    static const struct {
+        const char *text, *why, *at;
+    } bad[] = {
         { "T1 P1\nT1 P2\n", "a tool that is in the table already", "T1 P2" },
         { "P1 D2\n", "no tool number T", "P1 D2" },
         { "T1 D-6\n", "a diameter below 0", "D-6" },
@@ -48,7 +50,7 @@ static void tables(void)
     struct tool_text at;
     struct tool tool;
 
-    CHECK(tool_table_find(&t, 77, &tool) && tool.diameter == 0.0);      /* no file: any tool */
+    CHECK(tool_table_find(&t, 77, &tool) && tool.diameter == 0.0); /* no file: any tool */
     CHECK(!table_of(&t, TABLE, &at));
     CHECK_EQ(t.count, 3);
     CHECK(tool_table_find(&t, 1, &tool) && tool.offset[2] == 50.2 && tool.diameter == 6.0);
@@ -65,8 +67,8 @@ static void tables(void)
     for (int i = 1; i <= TOOL_TABLE_MAX + 1; i++) {
         char line[32];
         snprintf(line, sizeof line, "T%d P%d", i, i);
-        CHECK((tool_table_line(&t, line, (int32_t)strlen(line), false, &at) != NULL) ==
-              (i > TOOL_TABLE_MAX));
+        CHECK((tool_table_line(&t, line, (int32_t)strlen(line), false, &at) != NULL)
+              == (i > TOOL_TABLE_MAX));
     }
 }
 
@@ -83,7 +85,7 @@ static void changes(void)
     CHECK(x.c.spindle == 0.0 && x.c.tool == 0);
     CHECK_EQ(next(&x), COMMAND_STOP);
     CHECK(x.c.changes && x.c.tool == 1);
-    CHECK_EQ(next(&x), COMMAND_STOP);           /* the spindle stands already */
+    CHECK_EQ(next(&x), COMMAND_STOP); /* the spindle stands already */
     CHECK(x.c.changes && x.c.tool == 10);
     CHECK_EQ(next(&x), COMMAND_OUTPUTS);
     CHECK_EQ(x.c.tool, 2);
@@ -103,12 +105,15 @@ static void changes(void)
 /* Machine coordinate = program coordinate + offset of the tool, from the next motion on. */
 static void lengths(void)
 {
-    static const struct { const char *text; double end[3]; } rows[] = {
+    static const struct {
+        const char *text;
+        double end[3];
+    } rows[] = {
         { "T1 M6 G43\nG0 Z10\n", { 0, 0, 60.2 } },
         { "G43 H2\nG0 X1 Y1 Z1\n", { 2.5, -1, 21 } },
-        { "G43 H2\nG0 Z1\n", { 0, 0, 21 } },                    /* only what is named moves */
-        { "G43 H2 G0 Z1\n", { 0, 0, 21 } },                     /* before the motion of its line */
-        { "T1 M6\nG43 H0\nG0 Z10\n", { 0, 0, 60.2 } },          /* 0: the one in the spindle */
+        { "G43 H2\nG0 Z1\n", { 0, 0, 21 } },           /* only what is named moves */
+        { "G43 H2 G0 Z1\n", { 0, 0, 21 } },            /* before the motion of its line */
+        { "T1 M6\nG43 H0\nG0 Z10\n", { 0, 0, 60.2 } }, /* 0: the one in the spindle */
         { "G43 H1\nG0 Z10\nG49\nZ11\n", { 0, 0, 11 } },
         { "G43 H1\nG43.1 Z5\nG0 X3 Z1\n", { 3, 0, 6 } },
         { "G43 H2\nG43.2 H10\nG0 X0 Z0\n", { 1.5, 0, 50 } },
@@ -146,9 +151,12 @@ static void lengths(void)
     CHECK(tools_diameter(&x.in, 10, &d) && d == 8.0);
     CHECK(tools_diameter(&x.in, 0, &d) && d == 6.0);
     CHECK(!tools_diameter(&x.in, 3, &d));
-    static const struct { int number; double value; } numbers[] = {
-        { 5400, 2 }, { 5401, 1.5 }, { 5402, -2 }, { 5403, 20 }, { 5404, 0 }, { 5407, 0 },
-        { 5410, 0 }, { 5413, 0 }, { 5081, 0 }, { 5083, 50.2 }, { 5089, 0 },
+    static const struct {
+        int number;
+        double value;
+    } numbers[] = {
+        { 5400, 2 }, { 5401, 1.5 }, { 5402, -2 }, { 5403, 20 },   { 5404, 0 }, { 5407, 0 },
+        { 5410, 0 }, { 5413, 0 },   { 5081, 0 },  { 5083, 50.2 }, { 5089, 0 },
     };
     begin_with_tools(&x, "T2 M6\nG43 H1\n");
     while (next(&x) >= 0) {
@@ -161,12 +169,22 @@ static void lengths(void)
 
 static void overrides(void)
 {
-    static const struct { const char *text; uint32_t now; } rows[] = {
-        { "M49\n", OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED }, { "M48\n", 0 },
-        { "M50 P0\n", OUTPUTS_FEED_FIXED }, { "M50\n", 0 }, { "M51 P0\n", OUTPUTS_SPEED_FIXED },
-        { "M51 P1\n", 0 }, { "M52\n", OUTPUTS_ADAPTIVE }, { "M52 P0\n", 0 },
-        { "M53 P0\n", OUTPUTS_HOLD_OFF }, { "M53\n", 0 },
-        { "M49\nM50 P1\n", OUTPUTS_SPEED_FIXED }, { "M52\nM49\nM2\n", 0 },
+    static const struct {
+        const char *text;
+        uint32_t now;
+    } rows[] = {
+        { "M49\n", OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED },
+        { "M48\n", 0 },
+        { "M50 P0\n", OUTPUTS_FEED_FIXED },
+        { "M50\n", 0 },
+        { "M51 P0\n", OUTPUTS_SPEED_FIXED },
+        { "M51 P1\n", 0 },
+        { "M52\n", OUTPUTS_ADAPTIVE },
+        { "M52 P0\n", 0 },
+        { "M53 P0\n", OUTPUTS_HOLD_OFF },
+        { "M53\n", 0 },
+        { "M49\nM50 P1\n", OUTPUTS_SPEED_FIXED },
+        { "M52\nM49\nM2\n", 0 },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         struct reader x;
@@ -203,14 +221,16 @@ static void others(void)
 /* G96: S is a speed along the work, D the most, and the radius counts from the program's X0. */
 static void surface(void)
 {
-    static const struct { double speed, centre, x, most, is; } at[] = {
-        { 0.0, 0.0, 1.0, 500.0, 500.0 },            /* not in force */
-        { 1000.0, 0.0, 10.0, 5000.0, 954.929658551 },   /* 60 m/min at 20 mm of diameter */
+    static const struct {
+        double speed, centre, x, most, is;
+    } at[] = {
+        { 0.0, 0.0, 1.0, 500.0, 500.0 },              /* not in force */
+        { 1000.0, 0.0, 10.0, 5000.0, 954.929658551 }, /* 60 m/min at 20 mm of diameter */
         { 1000.0, 4.0, -6.0, 5000.0, 954.929658551 },
         { 1000.0, 0.0, 10.0, -5000.0, -954.929658551 },
-        { 1000.0, 3.0, 3.0, 5000.0, 5000.0 },       /* at the axis */
+        { 1000.0, 3.0, 3.0, 5000.0, 5000.0 }, /* at the axis */
         { 1000.0, 0.0, 10.0, 900.0, 900.0 },
-        { 1000.0, 0.0, 10.0, 0.0, 0.0 },            /* it stands */
+        { 1000.0, 0.0, 10.0, 0.0, 0.0 }, /* it stands */
     };
     struct reader x;
 
@@ -220,9 +240,9 @@ static void surface(void)
     }
     begin(&x, "S300 M4\nG96 S60 D4000\nG55\nG20 S10\nG97\nM2\n");
     CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -300.0 && x.c.surface.speed == 0.0);
-    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -4000.0 && x.c.surface.speed == 1000.0 &&
-          x.c.surface.centre == 0.0);
-    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.surface.centre == 100.0);      /* X0 of G55 */
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -4000.0 && x.c.surface.speed == 1000.0
+          && x.c.surface.centre == 0.0);
+    CHECK(next(&x) == COMMAND_OUTPUTS && x.c.surface.centre == 100.0); /* X0 of G55 */
     CHECK(next(&x) == COMMAND_OUTPUTS && x.c.surface.speed == 10.0 * 304.8 / 60.0);
     CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == -300.0 && x.c.surface.speed == 0.0);
     CHECK(next(&x) == COMMAND_OUTPUTS && x.c.spindle == 0.0);
@@ -238,29 +258,65 @@ static void surface(void)
 /* What a name says behind a program; those of other controllers are refused, and never exist. */
 static void names(void)
 {
-    static const struct { const char *before, *name; double value; } rows[] = {
-        { "", "_task", 1 }, { "G1", "_motion_mode", 10 }, { "", "_motion_mode", 800 },
-        { "G18", "_plane", 180 }, { "G19", "_plane", 190 }, { "G41.1 D2", "_ccomp", 410 },
-        { "G42.1 D2", "_ccomp", 420 }, { "G41 D0\nG40", "_ccomp", 400 }, { "G20", "_metric", 0 },
-        { "G20", "_imperial", 1 }, { "G91", "_absolute", 0 }, { "G91", "_incremental", 1 },
-        { "G93", "_inverse_time", 1 }, { "G93", "_units_per_minute", 0 },
-        { "G95", "_units_per_rev", 1 }, { "G59", "_coord_system", 590 },
-        { "G59.3", "_coord_system", 593 }, { "G54", "_coord_system", 540 },
-        { "G43 H1", "_tool_offset", 1 }, { "G43 H1\nG49", "_tool_offset", 0 },
-        { "G99", "_retract_r_plane", 1 }, { "G99", "_retract_old_z", 0 },
-        { "", "_spindle_rpm_mode", 1 }, { "G96 S1 D2", "_spindle_css_mode", 1 },
-        { "G96 S1 D2\nG97", "_spindle_css_mode", 0 }, { "G90.1", "_ijk_absolute_mode", 1 },
-        { "M4", "_spindle_on", 1 }, { "M4", "_spindle_cw", 0 }, { "M3", "_spindle_cw", 1 },
-        { "M7\nM8", "_mist", 1 }, { "M7", "_flood", 0 }, { "M49", "_speed_override", 0 },
-        { "M50 P0", "_feed_override", 0 }, { "M50 P0", "_speed_override", 1 },
-        { "M52", "_adaptive_feed", 1 }, { "M53 P0", "_feed_hold", 0 }, { "", "_feed_hold", 1 },
-        { "F90", "_feed", 90 }, { "F254 G20", "_feed", 254 }, { "G95 F.5", "_feed", 0.5 },
-        { "F254\nG20", "_feed", 10 }, { "G93 F9", "_feed", 0 }, { "S77", "_rpm", 77 },
-        { "T10 M6", "_current_tool", 10 }, { "T10 M6", "_current_pocket", 7 },
-        { "T10", "_selected_tool", 10 }, { "T10", "_selected_pocket", 7 },
-        { "T10 M6", "_selected_tool", -1 }, { "", "_current_pocket", 0 },
-        { "G0 X5\nG92 X1", "_x", 1 }, { "G0 X5\nG92 X1", "_abs_x", 5 }, { "G20", "_abs_a", 0 },
-        { "G20 G0 X1", "_abs_x", 1 }, { "", "_line", 2 }, { "", "_call_level", 0 },
+    static const struct {
+        const char *before, *name;
+        double value;
+    } rows[] = {
+        { "", "_task", 1 },
+        { "G1", "_motion_mode", 10 },
+        { "", "_motion_mode", 800 },
+        { "G18", "_plane", 180 },
+        { "G19", "_plane", 190 },
+        { "G41.1 D2", "_ccomp", 410 },
+        { "G42.1 D2", "_ccomp", 420 },
+        { "G41 D0\nG40", "_ccomp", 400 },
+        { "G20", "_metric", 0 },
+        { "G20", "_imperial", 1 },
+        { "G91", "_absolute", 0 },
+        { "G91", "_incremental", 1 },
+        { "G93", "_inverse_time", 1 },
+        { "G93", "_units_per_minute", 0 },
+        { "G95", "_units_per_rev", 1 },
+        { "G59", "_coord_system", 590 },
+        { "G59.3", "_coord_system", 593 },
+        { "G54", "_coord_system", 540 },
+        { "G43 H1", "_tool_offset", 1 },
+        { "G43 H1\nG49", "_tool_offset", 0 },
+        { "G99", "_retract_r_plane", 1 },
+        { "G99", "_retract_old_z", 0 },
+        { "", "_spindle_rpm_mode", 1 },
+        { "G96 S1 D2", "_spindle_css_mode", 1 },
+        { "G96 S1 D2\nG97", "_spindle_css_mode", 0 },
+        { "G90.1", "_ijk_absolute_mode", 1 },
+        { "M4", "_spindle_on", 1 },
+        { "M4", "_spindle_cw", 0 },
+        { "M3", "_spindle_cw", 1 },
+        { "M7\nM8", "_mist", 1 },
+        { "M7", "_flood", 0 },
+        { "M49", "_speed_override", 0 },
+        { "M50 P0", "_feed_override", 0 },
+        { "M50 P0", "_speed_override", 1 },
+        { "M52", "_adaptive_feed", 1 },
+        { "M53 P0", "_feed_hold", 0 },
+        { "", "_feed_hold", 1 },
+        { "F90", "_feed", 90 },
+        { "F254 G20", "_feed", 254 },
+        { "G95 F.5", "_feed", 0.5 },
+        { "F254\nG20", "_feed", 10 },
+        { "G93 F9", "_feed", 0 },
+        { "S77", "_rpm", 77 },
+        { "T10 M6", "_current_tool", 10 },
+        { "T10 M6", "_current_pocket", 7 },
+        { "T10", "_selected_tool", 10 },
+        { "T10", "_selected_pocket", 7 },
+        { "T10 M6", "_selected_tool", -1 },
+        { "", "_current_pocket", 0 },
+        { "G0 X5\nG92 X1", "_x", 1 },
+        { "G0 X5\nG92 X1", "_abs_x", 5 },
+        { "G20", "_abs_a", 0 },
+        { "G20 G0 X1", "_abs_x", 1 },
+        { "", "_line", 2 },
+        { "", "_call_level", 0 },
     };
     struct reader x;
 
@@ -292,8 +348,8 @@ static void waits(void)
     for (int i = 0; i < 3; i++) {
         CHECK_EQ(interpreter_next(&x.in, &x.program, &x.c, &x.r), INTERPRETER_WAIT);
     }
-    CHECK(x.in.wait.kind == WAIT_DIGITAL && x.in.wait.index == 3 && x.in.wait.mode == WAIT_RISE &&
-          x.in.wait.limit == 5.0);
+    CHECK(x.in.wait.kind == WAIT_DIGITAL && x.in.wait.index == 3 && x.in.wait.mode == WAIT_RISE
+          && x.in.wait.limit == 5.0);
     waiting_answer(&x.in, 1.0);
     CHECK(next(&x) == COMMAND_LINE && x.c.path.end[0] == 2.0 && x.in.input == 1.0);
     CHECK_EQ(interpreter_next(&x.in, &x.program, &x.c, &x.r), INTERPRETER_WAIT);
@@ -302,10 +358,13 @@ static void waits(void)
     CHECK(next(&x) == COMMAND_LINE && x.in.input == 0.25);
     CHECK_EQ(next(&x), -1);
 
-    static const struct { const char *text, *at; enum fault fault; } bad[] = {
-        { "M66", "M66", FAULT_MISSING }, { "M66 P32", "P32", FAULT_VALUE },
-        { "M66 E4", "E4", FAULT_VALUE }, { "M66 E1 L1 Q1", "L1", FAULT_VALUE },
-        { "M66 P1 E1", "P1", FAULT_SHARED }, { "M66 P1 L3", "M66", FAULT_MISSING },
+    static const struct {
+        const char *text, *at;
+        enum fault fault;
+    } bad[] = {
+        { "M66", "M66", FAULT_MISSING },       { "M66 P32", "P32", FAULT_VALUE },
+        { "M66 E4", "E4", FAULT_VALUE },       { "M66 E1 L1 Q1", "L1", FAULT_VALUE },
+        { "M66 P1 E1", "P1", FAULT_SHARED },   { "M66 P1 L3", "M66", FAULT_MISSING },
         { "M66 P1 L3 Q0", "Q0", FAULT_VALUE }, { "M66 P1 L5 Q1", "L5", FAULT_VALUE },
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -319,12 +378,14 @@ static void waits(void)
     for (int mode = WAIT_NOW; mode <= WAIT_LOW; mode++) {
         const struct waiting w = { .mode = (enum wait_mode)mode };
         for (int i = 1; i < 3; i++) {
-            CHECK_EQ(waiting_done(&w, rises[i], rises[i - 1]),
-                     mode == WAIT_NOW || mode == WAIT_LOW ? mode == WAIT_NOW || i == 1
-                     : mode == WAIT_FALL ? false : i == 2);
-            CHECK_EQ(waiting_done(&w, falls[i], falls[i - 1]),
-                     mode == WAIT_NOW || mode == WAIT_HIGH ? mode == WAIT_NOW || i == 1
-                     : mode == WAIT_RISE ? false : i == 2);
+            CHECK_EQ(waiting_done(&w, rises[i], rises[i - 1]), mode == WAIT_NOW || mode == WAIT_LOW
+                                                                   ? mode == WAIT_NOW || i == 1
+                                                               : mode == WAIT_FALL ? false
+                                                                                   : i == 2);
+            CHECK_EQ(waiting_done(&w, falls[i], falls[i - 1]), mode == WAIT_NOW || mode == WAIT_HIGH
+                                                                   ? mode == WAIT_NOW || i == 1
+                                                               : mode == WAIT_RISE ? false
+                                                                                   : i == 2);
         }
     }
 }
@@ -349,8 +410,8 @@ static void probing(void)
     CHECK(x.c.probes && !x.c.blend && x.c.path.end[0] == 10.0);
     CHECK_EQ(interpreter_next(&x.in, &x.program, &x.c, &x.r), INTERPRETER_WAIT);
     waiting_probed(&x.in, contact, rest, true);
-    CHECK(x.in.touched && x.in.contact[0] == -97.0 && x.in.contact[1] == -10.0 &&
-          x.in.contact[2] == 0.0);
+    CHECK(x.in.touched && x.in.contact[0] == -97.0 && x.in.contact[1] == -10.0
+          && x.in.contact[2] == 0.0);
     double value;
     CHECK(waiting_parameter(&x.in, false, 5061, &value) && value == -97.0);
     CHECK(waiting_parameter(&x.in, false, 5069, &value) && value == 0.0);
@@ -360,8 +421,11 @@ static void probing(void)
     CHECK(x.c.blend && x.c.path.start[0] == 3.5 && x.c.path.end[0] == 5.0);
     CHECK_EQ(next(&x), -1);
 
-    static const struct { const char *text; enum fault fault; } bad[] = {
-        { "G38.2 X0\n", FAULT_PROBE_POINT }, { "G38.3\n", FAULT_NO_AXES },
+    static const struct {
+        const char *text;
+        enum fault fault;
+    } bad[] = {
+        { "G38.2 X0\n", FAULT_PROBE_POINT },        { "G38.3\n", FAULT_NO_AXES },
         { "G38.5 X1 F100\nX2\n", FAULT_NO_MOTION }, { "G38.2 X1 M66 P1\n", FAULT_SHARED },
         { "G1 X5 G38.2\n", FAULT_GROUP },
     };

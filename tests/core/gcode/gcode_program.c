@@ -13,7 +13,7 @@ static void lines_and_modes(void)
     expect_end(&x, 10.0, 0.0, 0.0);
     CHECK_EQ(x.c.line, 3);
     CHECK_NEAR(x.c.feed, 10.0, 0.0);
-    CHECK_NEAR(x.c.ramp.acc, 100.0, 1e-12);      /* 10 mm/s in 0.1 s */
+    CHECK_NEAR(x.c.ramp.acc, 100.0, 1e-12); /* 10 mm/s in 0.1 s */
     CHECK_EQ(next(&x), COMMAND_LINE);
     expect_end(&x, 10.0, -0.5, 2.0);
     CHECK_EQ(next(&x), COMMAND_LINE);
@@ -23,23 +23,23 @@ static void lines_and_modes(void)
     expect_end(&x, 0.0, 0.5, 2.0);
     CHECK_EQ(next(&x), COMMAND_PTP);
     expect_end(&x, 5.0, 0.0, 0.0);
-    CHECK_NEAR(x.c.feed, 500.0 * sqrt(25.0 + 0.25 + 4.0) / 5.0, 1e-9);  /* X at 500 mm/s */
+    CHECK_NEAR(x.c.feed, 500.0 * sqrt(25.0 + 0.25 + 4.0) / 5.0, 1e-9); /* X at 500 mm/s */
     CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK(x.c.blend);
     CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK(!x.c.blend);
     CHECK_EQ(next(&x), COMMAND_LINE);
     expect_end(&x, 25.4, 0.0, 0.0);
-    CHECK_NEAR(x.c.feed, 25.4, 1e-12);      /* 60 inch/min */
+    CHECK_NEAR(x.c.feed, 25.4, 1e-12); /* 60 inch/min */
     CHECK_EQ(next(&x), COMMAND_LINE);
-    expect_end(&x, 100.0, 10.0, 1.0);       /* origin of G55 */
+    expect_end(&x, 100.0, 10.0, 1.0); /* origin of G55 */
     CHECK_EQ(next(&x), COMMAND_LINE);
-    expect_end(&x, 0.0, 0.0, 0.0);          /* machine coordinates */
+    expect_end(&x, 0.0, 0.0, 0.0); /* machine coordinates */
     CHECK_EQ(next(&x), COMMAND_LINE);
-    expect_end(&x, 101.0, 0.0, 0.0);        /* for that line only */
+    expect_end(&x, 101.0, 0.0, 0.0); /* for that line only */
     CHECK_EQ(next(&x), COMMAND_DELAY);
     CHECK_NEAR(x.c.dwell, 1.5, 0.0);
-    CHECK_EQ(next(&x), -1);                 /* nothing is read behind M2 */
+    CHECK_EQ(next(&x), -1); /* nothing is read behind M2 */
     CHECK_EQ(next(&x), -1);
 }
 
@@ -53,14 +53,14 @@ static void arcs(void)
     CHECK_EQ(next(&x), COMMAND_LINE);
     CHECK_EQ(next(&x), COMMAND_CCW_ARC);
     CHECK_NEAR(x.c.path.sweep, pi / 2, 1e-12);
-    CHECK_EQ(next(&x), COMMAND_CW_ARC);     /* one of I J may be left out */
+    CHECK_EQ(next(&x), COMMAND_CW_ARC); /* one of I J may be left out */
     CHECK_NEAR(x.c.path.sweep, -pi / 2, 1e-12);
-    CHECK_EQ(next(&x), COMMAND_CCW_ARC);    /* no end: full circle */
+    CHECK_EQ(next(&x), COMMAND_CCW_ARC); /* no end: full circle */
     CHECK_NEAR(x.c.path.sweep, 2.0 * pi, 1e-12);
     CHECK_EQ(next(&x), COMMAND_CCW_HELIX);
     CHECK_NEAR(x.c.path.sweep, 6.0 * pi, 1e-12);
     CHECK_NEAR(x.c.path.length, hypot(60.0 * pi, 5.0), 1e-10);
-    CHECK_EQ(next(&x), COMMAND_CW_ARC);     /* clockwise from 0 to 90 degrees: below a half turn */
+    CHECK_EQ(next(&x), COMMAND_CW_ARC); /* clockwise from 0 to 90 degrees: below a half turn */
     CHECK_NEAR(x.c.path.sweep, -pi / 2, 1e-9);
     CHECK_NEAR(x.c.path.centre[0], 10.0, 1e-9);
     CHECK_EQ(next(&x), COMMAND_CW_HELIX);
@@ -68,10 +68,10 @@ static void arcs(void)
     CHECK_EQ(next(&x), COMMAND_CCW_ARC);
     CHECK_NEAR(x.c.path.centre[0], 0.0, 0.0);
     CHECK_EQ(next(&x), COMMAND_LINE);
-    CHECK_EQ(next(&x), COMMAND_CCW_ARC);    /* G18: Z is the first axis, X the second */
+    CHECK_EQ(next(&x), COMMAND_CCW_ARC); /* G18: Z is the first axis, X the second */
     CHECK_EQ(x.c.path.plane, PATH_ZX);
     CHECK_NEAR(x.c.path.sweep, pi, 1e-12);
-    CHECK_EQ(next(&x), COMMAND_CW_ARC);     /* G19: from Z+ to Y-, clockwise 270 degrees */
+    CHECK_EQ(next(&x), COMMAND_CW_ARC); /* G19: from Z+ to Y-, clockwise 270 degrees */
     CHECK_EQ(x.c.path.plane, PATH_YZ);
     CHECK_NEAR(x.c.path.sweep, -1.5 * pi, 1e-9);
     CHECK_EQ(next(&x), COMMAND_CW_ARC);
@@ -121,23 +121,23 @@ static void values(void)
     struct reader x;
     begin(&x, "G1 X10 Y0 F45000");
     CHECK_EQ(next(&x), -2);
-    CHECK_NEAR(x.r.value, 1.5, 1e-12);      /* 750 mm/s on a screw of 10 mm are 4500 rpm */
+    CHECK_NEAR(x.r.value, 1.5, 1e-12); /* 750 mm/s on a screw of 10 mm are 4500 rpm */
     CHECK_NEAR(x.r.limit, 1.0, 0.0);
     begin(&x, "G2 X10 Y0 I6");
     CHECK_EQ(next(&x), -2);
-    CHECK_NEAR(x.r.value, 2.0, 1e-12);      /* radii 6 and 4 */
+    CHECK_NEAR(x.r.value, 2.0, 1e-12); /* radii 6 and 4 */
     begin(&x, "G2 X10 R4.9");
     CHECK_EQ(next(&x), -2);
     CHECK_NEAR(x.r.value, 4.9, 0.0);
     CHECK_NEAR(x.r.limit, 5.0, 0.0);
-    begin(&x, "G2 X10 R4.996\n");           /* short by the rounding of a program: half a turn */
+    begin(&x, "G2 X10 R4.996\n"); /* short by the rounding of a program: half a turn */
     CHECK_EQ(next(&x), COMMAND_CW_ARC);
     CHECK_NEAR(x.c.path.sweep, -acos(-1.0), 1e-12);
     begin(&x, "%\nG1 X1\n%\nX2");
     CHECK_EQ(next(&x), COMMAND_LINE);
-    CHECK_EQ(next(&x), -1);                 /* the second % is the end */
+    CHECK_EQ(next(&x), -1); /* the second % is the end */
     begin(&x, "G1 X0\r\nX1\r\n");
-    CHECK_EQ(next(&x), COMMAND_LINE);       /* a move to where the axes stand is none */
+    CHECK_EQ(next(&x), COMMAND_LINE); /* a move to where the axes stand is none */
     CHECK_EQ(x.c.line, 2);
 }
 
@@ -145,8 +145,8 @@ static void values(void)
  * what is possible is driven, and a note tells it; a tap needs its own. */
 static void quick(void)
 {
-    static const double feeds[] = { 10.0, 500.0, 707.10678118654752, 500.0,
-                                    502.4937810560445, 500.0, 10.0 };
+    static const double feeds[] = { 10.0,  500.0, 707.10678118654752, 500.0, 502.4937810560445,
+                                    500.0, 10.0 };
     struct fault_list all;
     struct reader x;
 

@@ -22,7 +22,7 @@ static inline void begin(struct reader *x, const char *text)
     const double zero[AXES] = { 0.0 };
     memset(x, 0, sizeof *x);
     x->machine = mcc_machine();
-    x->machine.axis[2].check_ot = true;     /* Z from -700 mm to 700 mm */
+    x->machine.axis[2].check_ot = true; /* Z from -700 mm to 700 mm */
     x->machine.axis[2].high_limit = 701.0;
     x->machine.axis[2].low_limit = -700.0;
     x->machine.axis[2].hot_offset = -1.0;
@@ -60,10 +60,10 @@ static inline bool fault_is(const char *text, int line, const char *at, enum fau
     CHECK(!memcmp(&before, &x.in, sizeof before));
     while (next(&x) >= 0) {
     }
-    CHECK_EQ(next(&x), -1);     /* a fault ends the program */
+    CHECK_EQ(next(&x), -1); /* a fault ends the program */
     const char *found = text + r.offset + r.at;
-    const bool good = r.fault == fault && r.line == line && (size_t)r.length == strlen(at) &&
-                      !memcmp(found, at, strlen(at));
+    const bool good = r.fault == fault && r.line == line && (size_t)r.length == strlen(at)
+                      && !memcmp(found, at, strlen(at));
     CHECK(good);
     if (!good) {
         printf("    '%s': line %d: %s '%.*s'\n", text, (int)r.line, fault_text(r.fault),

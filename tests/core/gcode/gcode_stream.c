@@ -7,7 +7,7 @@
 struct narrow {
     const char *text;
     int64_t length;
-    int64_t fails_from;     /* offset from which it cannot be read */
+    int64_t fails_from; /* offset from which it cannot be read */
     char window[SOURCE_WINDOW];
 };
 
@@ -20,7 +20,7 @@ static int64_t narrow_look(void *context, const char *file, int64_t offset, cons
     const int64_t left = n->length - offset;
     const int64_t there = left < SOURCE_WINDOW ? left : SOURCE_WINDOW;
 
-    memset(n->window, '$', sizeof n->window);   /* no character of a program */
+    memset(n->window, '$', sizeof n->window); /* no character of a program */
     if (offset + there > n->fails_from) {
         return -1;
     }
@@ -62,7 +62,7 @@ static void windows(void)
         CHECK(want < 0 || !memcmp(&x.c, &whole.c, sizeof x.c));
         CHECK(!memcmp(&x.in, &whole.in, sizeof x.in));
         first = x.c;
-        x.in = kept;                    /* once more from where the copy stands */
+        x.in = kept; /* once more from where the copy stands */
         CHECK_EQ(next(&x), want);
         CHECK(want < 0 || !memcmp(&x.c, &first, sizeof first));
         count++;
@@ -134,7 +134,7 @@ static void unreadable(void)
     CHECK_EQ(next(&x), -2);
     CHECK_EQ(x.r.fault, FAULT_READ);
     CHECK_EQ(next(&x), -1);
-    n.length = 0;               /* nothing to read is the end */
+    n.length = 0; /* nothing to read is the end */
     n.fails_from = INT64_MAX;
     interpreter_start(&x.in, origins[0], 10.0, origins);
     CHECK_EQ(next(&x), -1);
@@ -146,9 +146,9 @@ enum { LINES = 1000000, LINE = 24 };
 /* A program of LINES lines to X = n mod 1000 / 1000, Y = 7 n mod 1000, n from 0; a line is made
  * when it is looked at, so that the text needs no memory. */
 struct endless {
-    const char *form;           /* of a line; # and @ are the digits of X and Y */
-    const char *last;           /* the last line */
-    int64_t from;               /* the window begins with this line; -1: it is empty */
+    const char *form; /* of a line; # and @ are the digits of X and Y */
+    const char *last; /* the last line */
+    int64_t from;     /* the window begins with this line; -1: it is empty */
     char window[1024 * LINE];
 };
 
@@ -243,12 +243,12 @@ static void million_interpreted(void)
     CHECK_EQ(next(&x), -1);
     CHECK_EQ(next(&y), -1);
     CHECK(!memcmp(&x.in, &y.in, sizeof x.in));
-    CHECK_EQ(commands, LINES - 1);          /* the first leads to where the axes are */
+    CHECK_EQ(commands, LINES - 1); /* the first leads to where the axes are */
     CHECK_EQ(x.in.line, LINES);
     CHECK_EQ(x.in.offset, (int64_t)LINES * LINE);
-    CHECK_NEAR(sum_x, LINES * 0.4995, 1e-5);    /* 0 .. 999 a thousand times */
+    CHECK_NEAR(sum_x, LINES * 0.4995, 1e-5); /* 0 .. 999 a thousand times */
     CHECK_NEAR(sum_y, LINES * 499.5, 1e-2);
-    CHECK(sizeof x.in < 110000);    /* of any program */
+    CHECK(sizeof x.in < 110000); /* of any program */
 }
 
 int main(void)

@@ -7,19 +7,19 @@
 #include "mcc_check.h"
 
 enum { BUS = 4000, DDA = 40960, DELAY = 3 };
-#define COUNTS_PER_VOLT 50000.0     /* [counts/s] 300 rpm/V of 10000 counts a turn */
-#define KP 50.0                     /* [1/s] */
-static const double TB = 1e-4;      /* [s] */
+#define COUNTS_PER_VOLT 50000.0 /* [counts/s] 300 rpm/V of 10000 counts a turn */
+#define KP              50.0    /* [1/s] */
+static const double TB = 1e-4;  /* [s] */
 
-static struct groups set;           /* 2 MB: not on the stack */
+static struct groups set; /* 2 MB: not on the stack */
 static struct epcio card;
-static double place[GROUP_DACS];    /* [counts] of the motors */
-static int way[GROUP_DACS];         /* of the encoder */
-static int64_t now;                 /* [clock] */
+static double place[GROUP_DACS]; /* [counts] of the motors */
+static int way[GROUP_DACS];      /* of the encoder */
+static int64_t now;              /* [clock] */
 static struct source_text text[GROUP_MAX];
-static int pulses, six, two;        /* the groups */
-static bool in_step;                /* the first two have the same motion */
-enum { LAST_ENCODER = 8 };          /* counter of DAC 8; counter 8 has a hand wheel */
+static int pulses, six, two; /* the groups */
+static bool in_step;         /* the first two have the same motion */
+enum { LAST_ENCODER = 8 };   /* counter of DAC 8; counter 8 has a hand wheel */
 
 static struct machine motion(void)
 {
@@ -31,8 +31,13 @@ static struct machine motion(void)
 /* One card, its six channels, six DAC and the other two; inverted: axes at a DAC, a bit each. */
 static void power_on(uint32_t inverted, double feed_forward, double lag, int32_t track)
 {
-    const struct group_config config = { .bus = BUS, .ipo = 40000, .latency = 8000.0,
-                                         .jitter = 20000.0, .seed = 5, .min_stock = 3, .batch = 4 };
+    const struct group_config config = { .bus = BUS,
+                                         .ipo = 40000,
+                                         .latency = 8000.0,
+                                         .jitter = 20000.0,
+                                         .seed = 5,
+                                         .min_stock = 3,
+                                         .batch = 4 };
     const struct machine cards[GROUP_CARDS] = { mcc_machine(), mcc_machine() }, m = motion();
     struct epcio_config wired = epcio_default_config();
     wired.loop.limit = 400;
@@ -42,9 +47,12 @@ static void power_on(uint32_t inverted, double feed_forward, double lag, int32_t
     now = 0;
     in_step = false;
     for (int i = 0; i < GROUP_DACS; i++) {
-        struct group_dac d = { .axis = m.axis[0], .encoder = i == 7 ? LAST_ENCODER : i,
-                               .position_gain = KP, .speed_per_volt = 300.0,
-                               .feed_forward = feed_forward, .lag = lag };
+        struct group_dac d = { .axis = m.axis[0],
+                               .encoder = i == 7 ? LAST_ENCODER : i,
+                               .position_gain = KP,
+                               .speed_per_volt = 300.0,
+                               .feed_forward = feed_forward,
+                               .lag = lag };
         place[i] = 0.0;
         way[i] = inverted >> i & 1 ? -1 : 1;
         d.axis.inverted = way[i] < 0;
@@ -92,7 +100,7 @@ static void period(void)
     int bad;
     epcio_advance(&card, now);
     epcio_convert(&card);
-    if (in_step) {                  /* the command is what a channel of pulses has put out */
+    if (in_step) { /* the command is what a channel of pulses has put out */
         int64_t out[EPCIO_AXES];
         epcio_pulses(&card, out);
         for (int i = 0; i < AXES; i++) {
@@ -127,8 +135,10 @@ static double share(double t, double s, double f)
     if (t <= 0.0 || t >= end) {
         return t > 0.0;
     }
-    return (t < 0.1 ? a * t * t / 2 : t < 0.1 + flat ? f * (t - 0.05)
-                                    : s - a * (end - t) * (end - t) / 2) / s;
+    return (t < 0.1          ? a * t * t / 2
+            : t < 0.1 + flat ? f * (t - 0.05)
+                             : s - a * (end - t) * (end - t) / 2)
+           / s;
 }
 
 /* Lines by calls on all three groups at once. The command at an instant is on the trapezium to a
@@ -160,7 +170,7 @@ static void lines_by_calls(uint32_t inverted, double feed_forward, double lag)
         for (int i = 0; i < GROUP_DACS; i++) {
             const double *end = i < 6 ? &to[i] : &other[i - 6];
             const struct servo *servo = &set.group[i < 6 ? six : two].servo;
-            const double v = *end / (i < 6 ? s6 : s2) * f * 1000.0;     /* [counts/s] */
+            const double v = *end / (i < 6 ? s6 : s2) * f * 1000.0; /* [counts/s] */
             c[k][i] = 1000.0 * *end * (i < 6 ? part6 : part2);
             CHECK_NEAR(servo->next[i % 6], c[k][i], 1.1);
             const int32_t e = way[i] * set.card[0].error[i];
@@ -175,7 +185,7 @@ static void lines_by_calls(uint32_t inverted, double feed_forward, double lag)
             }
         }
         period();
-        CHECK_EQ(set.card[0].error[6], watched);    /* the card has it an instant before */
+        CHECK_EQ(set.card[0].error[6], watched); /* the card has it an instant before */
         watched = card.loop[6].error;
     }
     CHECK(flat > 10000);
@@ -239,7 +249,7 @@ static void frames_are_those_of_pulses(void)
         }
     }
     CHECK(count[0] > 2100 && count[1] > 2100);
-    int shift = 0;                                  /* frames of standstill at the begin */
+    int shift = 0; /* frames of standstill at the begin */
     while (shift < 10 && memcmp(put[0][0], put[1][shift], sizeof put[0][0])) {
         shift++;
     }
@@ -271,7 +281,7 @@ static void a_dead_encoder(void)
     CHECK_EQ(MCC_get_errcode(&set.group[two].mcc), MCC_ERROR_TRACK + 1);
     CHECK(!group_done(&set, two));
     const int32_t stood = set.card[0].command[7];
-    CHECK(stood > 2000 && stood < 4500);            /* the ramp of 0.1 s and the queue behind it */
+    CHECK(stood > 2000 && stood < 4500); /* the ramp of 0.1 s and the queue behind it */
     CHECK_EQ(MCC_clear_error(&set.group[two].mcc), MCC_RUN_TIME);
     CHECK(group_done(&set, pulses) && group_done(&set, six));
     CHECK_NEAR(place[0], 20000.0, 1.0);
@@ -282,7 +292,7 @@ static void a_dead_encoder(void)
 static void a_slow_ipo(void)
 {
     power_on(0, 1.0, 0.0, 0);
-    set.config.ipo = 400000;                        /* 10 ms for 5 points of 1 ms */
+    set.config.ipo = 400000; /* 10 ms for 5 points of 1 ms */
     set.group[two].mcc.machine.queue_depth = 5;
     program(two, "G91 F1200\nG1 X8\nM30\n");
     CHECK_EQ(groups_start(&set), MCC_NO_ERR);
@@ -296,7 +306,7 @@ static void a_slow_ipo(void)
     for (int k = 0; k < 20000; k++) {
         period();
         CHECK(k < 100 || set.group[two].servo.dda.divider == 20);
-        if (k > 1500 && k < 2500) {                 /* the speed fed forward is right */
+        if (k > 1500 && k < 2500) { /* the speed fed forward is right */
             CHECK_NEAR(set.card[0].error[6], 0.0, 3.0);
         }
     }

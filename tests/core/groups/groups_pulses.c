@@ -2,7 +2,7 @@
 #include "group.h"
 #include "mcc_card.h"
 
-static struct groups set;       /* 2 MB: not on the stack */
+static struct groups set; /* 2 MB: not on the stack */
 static struct groups before;
 
 enum { PERIODS = 30000, GROUPS = 4 };
@@ -11,8 +11,13 @@ static const struct group_panel calm = { .override = 1.0 };
 
 static struct group_config usual(void)
 {
-    return (struct group_config){ .bus = 4000, .ipo = 40000, .latency = 10000.0,
-                                  .jitter = 60000.0, .seed = 3, .min_stock = 3, .batch = 4 };
+    return (struct group_config){ .bus = 4000,
+                                  .ipo = 40000,
+                                  .latency = 10000.0,
+                                  .jitter = 60000.0,
+                                  .seed = 3,
+                                  .min_stock = 3,
+                                  .batch = 4 };
 }
 
 /* Two cards of six channels, two of them finer. */
@@ -36,10 +41,11 @@ static const struct machine *motion(void)
 static void codes(void)
 {
     static const int32_t xy[AXES] = { 0, 1, -1, -1, -1, -1 }, vw[AXES] = { 5, -1, 4, -1, -1, -1 };
-    static const int32_t bad[][AXES] = {
-        { -1, -1, -1, -1, -1, -1 }, { 6, -1, -1, -1, -1, -1 }, { 2, 2, -1, -1, -1, -1 },
-        { 2, 1, -1, -1, -1, -1 }, { -2, -1, -1, -1, -1, -1 }
-    };
+    static const int32_t bad[][AXES] = { { -1, -1, -1, -1, -1, -1 },
+                                         { 6, -1, -1, -1, -1, -1 },
+                                         { 2, 2, -1, -1, -1, -1 },
+                                         { 2, 1, -1, -1, -1, -1 },
+                                         { -2, -1, -1, -1, -1, -1 } };
     struct machine card[GROUP_CARDS], none = mcc_machine();
     const struct group_config config = usual();
     cards(card);
@@ -60,7 +66,7 @@ static void codes(void)
     CHECK(!memcmp(&set, &before, sizeof set));
     CHECK_EQ(group_create(&set, 0, vw, motion()), 1);
     CHECK_EQ(group_close(&set, 0), MCC_NO_ERR);
-    CHECK_EQ(group_create(&set, 0, xy, motion()), 0);       /* its channels are free again */
+    CHECK_EQ(group_create(&set, 0, xy, motion()), 0); /* its channels are free again */
     CHECK_EQ(group_create(&set, 1, xy, motion()), 2);
     for (int n = 3; n < GROUP_MAX; n++) {
         const int32_t one[AXES] = { n - 1, -1, -1, -1, -1, -1 };
@@ -81,16 +87,18 @@ static void codes(void)
 
 /* --- Random groups with random programs and operators. ---------------------------------------- */
 struct job {
-    int     card;
+    int card;
     int32_t channel[AXES];
     int64_t start;
-    char    text[2048];
-    uint64_t seed;          /* of what its operator does; 0: nothing */
-    bool    aborts;
+    char text[2048];
+    uint64_t seed; /* of what its operator does; 0: nothing */
+    bool aborts;
 };
 
 /* What came out of each channel in each bus period. */
-struct trace { int32_t sum[PERIODS][GROUP_CARDS][AXES]; };
+struct trace {
+    int32_t sum[PERIODS][GROUP_CARDS][AXES];
+};
 static struct trace together, alone;
 static bool done[GROUPS];
 static int64_t starved;
@@ -254,10 +262,14 @@ static void as_the_single_library(int64_t start)
     const struct machine m = *motion();
     struct job job[GROUPS] = { { .channel = { 0, 1, 2, -1, -1, -1 }, .start = start } };
     const struct group_config g = usual();
-    const struct pc_config config = {
-        .bus = g.bus, .ipo = g.ipo, .latency = g.latency, .jitter = g.jitter, .seed = g.seed,
-        .min_stock = g.min_stock, .batch = g.batch, .start = start
-    };
+    const struct pc_config config = { .bus = g.bus,
+                                      .ipo = g.ipo,
+                                      .latency = g.latency,
+                                      .jitter = g.jitter,
+                                      .seed = g.seed,
+                                      .min_stock = g.min_stock,
+                                      .batch = g.batch,
+                                      .start = start };
     const struct pc_panel panel = { .override = 1.0 };
     struct card c;
     uint64_t seed = 22;

@@ -2,7 +2,7 @@
 #include "group.h"
 #include "mcc_check.h"
 
-static struct groups set;       /* 2 MB: not on the stack */
+static struct groups set; /* 2 MB: not on the stack */
 static struct groups before;
 
 static const int32_t none[AXES] = { -1, -1, -1, -1, -1, -1 };
@@ -44,10 +44,11 @@ static void fresh(void)
 
 static void channels(void)
 {
-    static const int32_t bad[][AXES] = {
-        { 8, -1, -1, -1, -1, -1 }, { 2, 2, -1, -1, -1, -1 }, { 3, 6, -1, -1, -1, -1 },
-        { -2, -1, -1, -1, -1, -1 }, { -1, -1, -1, -1, -1, -1 }
-    };
+    static const int32_t bad[][AXES] = { { 8, -1, -1, -1, -1, -1 },
+                                         { 2, 2, -1, -1, -1, -1 },
+                                         { 3, 6, -1, -1, -1, -1 },
+                                         { -2, -1, -1, -1, -1, -1 },
+                                         { -1, -1, -1, -1, -1, -1 } };
     const struct machine motion = mcc_machine();
     struct machine wrong = motion;
     fresh();
@@ -59,11 +60,11 @@ static void channels(void)
     REFUSED(group_create_voltage(&set, -1, xy, &motion), MCC_GROUP_PARAMETER);
     wrong.feed = 0.0;
     REFUSED(group_create_voltage(&set, 0, xy, &wrong), MCC_PARAMETER);
-    CHECK_EQ(group_create_voltage(&set, 1, pair, &motion), 1);      /* another card */
+    CHECK_EQ(group_create_voltage(&set, 1, pair, &motion), 1); /* another card */
     CHECK_EQ(group_create(&set, 0, (int32_t[]){ 0, 1, 2, 3, 4, 5 }, &motion), 2);
     CHECK_EQ(group_create_voltage(&set, 0, (int32_t[]){ 0, 1, 2, 3, 4, 5 }, &motion), 3);
     CHECK_EQ(group_close(&set, 0), MCC_NO_ERR);
-    CHECK_EQ(group_create_voltage(&set, 0, pair, &motion), 0);      /* free again */
+    CHECK_EQ(group_create_voltage(&set, 0, pair, &motion), 0); /* free again */
     CHECK_EQ(groups_start(&set), MCC_NO_ERR);
     REFUSED(group_create_voltage(&set, 1, xy, &motion), MCC_COMMAND_NOTACCEPTED);
     const struct group_dac d = settings(0);
@@ -74,7 +75,7 @@ static void channels(void)
     CHECK_EQ(group_create_voltage(&set, 0, none, &motion), MCC_GROUP_PARAMETER);
     CHECK_EQ(groups_start(&set), MCC_GROUP_PARAMETER);
     CHECK_EQ(group_create_voltage(&set, 0, xy, &motion), 0);
-    CHECK_EQ(groups_start(&set), MCC_NO_ERR);               /* a card without pulses */
+    CHECK_EQ(groups_start(&set), MCC_NO_ERR); /* a card without pulses */
     CHECK(!groups_card_used(&set, 0));
 }
 
@@ -116,12 +117,12 @@ static void voltage_command_channel(void)
     const struct group_dac d = settings(0);
     fresh();
     CHECK_EQ(groups_set_command_mode(&set, 0, 1, GROUP_COMMAND_VOLTAGE), MCC_NO_ERR);
-    CHECK_EQ(groups_set_dac_output(&set, 0, 1, 2.0), MCC_NO_ERR);   /* no group has channel 1 */
+    CHECK_EQ(groups_set_dac_output(&set, 0, 1, 2.0), MCC_NO_ERR); /* no group has channel 1 */
     CHECK_EQ(group_create(&set, 0, xy, &motion), 0);
     REFUSED(groups_set_dac_output(&set, 0, 1, 2.0), MCC_VOLTAGE_COMMAND_CHANNEL);
     REFUSED(group_create_voltage(&set, 0, (int32_t[]){ 2, 1, -1, -1, -1, -1 }, &motion),
             MCC_VOLTAGE_COMMAND_CHANNEL);
-    CHECK_EQ(groups_set_dac_output(&set, 0, 0, -3.0), MCC_NO_ERR);  /* channel 0 gives pulses */
+    CHECK_EQ(groups_set_dac_output(&set, 0, 0, -3.0), MCC_NO_ERR); /* channel 0 gives pulses */
     CHECK(set.card[0].volts[0] == -3.0);
     CHECK_EQ(group_create_voltage(&set, 0, (int32_t[]){ 0, 7, -1, -1, -1, -1 }, &motion), 1);
     CHECK(set.card[0].volts[0] == 0.0);

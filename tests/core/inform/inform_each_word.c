@@ -1,7 +1,7 @@
 /* Every word: what it asks for, in order and with its line. */
 #include "inform_given.h"
 
-enum { CYCLE = 100000, SWITCH = 5 * CYCLE };    /* [ns]; when the inputs change */
+enum { CYCLE = 100000, SWITCH = 5 * CYCLE }; /* [ns]; when the inputs change */
 
 static struct inform_run run;
 static char trace[4000];
@@ -20,8 +20,8 @@ static void say(const struct inform_request *r, const struct inform_inputs *in)
             snprintf(corner, sizeof corner, " CR%g", r->corner);
         }
         snprintf(trace + at, left, "%d: %d %c %sP%d %g%s PL%d%s T%d U%d\n", (int)r->line,
-                 (int)r->after, "JLC"[r->path], via, (int)r->point, r->speed, UNIT[r->tag],
-                 (int)r->level, corner, (int)r->tool, (int)r->user);
+                 (int)r->after, "JLC"[r->path], via, (int)r -> point, r -> speed, UNIT[r->tag],
+                 (int)r -> level, corner, (int)r -> tool, (int)r -> user);
         break;
     case INFORM_DOUT:
         snprintf(trace + at, left, "%d: after %d OT%d %d\n", (int)r->line, (int)r->after,
@@ -34,9 +34,7 @@ static void say(const struct inform_request *r, const struct inform_inputs *in)
     case INFORM_REACH:
         snprintf(trace + at, left, "%d: reach %d\n", (int)r->line, (int)r->after);
         break;
-    case INFORM_PAUSE:
-        snprintf(trace + at, left, "%d: pause\n", (int)r->line);
-        break;
+    case INFORM_PAUSE: snprintf(trace + at, left, "%d: pause\n", (int)r->line); break;
     case INFORM_END:
         snprintf(trace + at, left, "%d: end %d us\n", (int)r->line, (int)(in->now / 1000));
         break;
@@ -44,8 +42,7 @@ static void say(const struct inform_request *r, const struct inform_inputs *in)
         snprintf(trace + at, left, "%d: %s\n", (int)r->line, inform_fault_text(r->fault));
         break;
     case INFORM_WAIT:
-    case INFORM_BUSY:
-        break;
+    case INFORM_BUSY: break;
     }
 }
 
@@ -78,7 +75,9 @@ static const char *run_text(const char *text)
     return "never ends";
 }
 
-static const struct { const char *text, *trace; } GOOD[] = {
+static const struct {
+    const char *text, *trace;
+} GOOD[] = {
     /* moves: words in force, tags, numbers of the point */
     { "MOVJ P000 VJ=50.00 PL=1\nMOVL P001 V=10.0\nMOVL P002 VR=30 CR=5.5\nmovj P0",
       "1: 1 J P0 50% PL1 T0 U0\n2: 2 L P1 10mm/s PL0 T1 U0\n"
@@ -131,7 +130,7 @@ static const struct { const char *text, *trace; } GOOD[] = {
       "4: after 0 OT3 1\n7: end 0 us\n" },
     { "*WAITING\nJUMP *WAITING IF IN#(1)=ON", "2: end 500 us\n" },
     { "JUMP JOB:B\nJOB A\nDOUT OT#(1) ON\nJOB B\nDOUT OT#(2) ON", "5: after 0 OT2 1\n"
-      "5: end 0 us\n" },
+                                                                  "5: end 0 us\n" },
     /* jobs */
     { "//NAME MAIN\nCALL JOB:SUB\nCALL JOB:SUB IF B000=9\nCALL JOB:Sub IF B000=1\nEND\n"
       "//NAME SUB ' twice the name\nINC B000\nRET IF B000=1\nDOUT OT#(1) ON\n"
@@ -142,24 +141,28 @@ static const struct { const char *text, *trace; } GOOD[] = {
       "5: after 0 OT1 1\n6: end 0 us\n" },
     /* blocks */
     { "LOOP 3\nINC B000\nLOOP 2\nINC B001\nENDLOOP\nENDLOOP\nIF B000=3\nIF B001=6\n"
-      "DOUT OT#(1) ON\nENDIF\nENDIF", "9: after 0 OT1 1\n11: end 0 us\n" },
+      "DOUT OT#(1) ON\nENDIF\nENDIF",
+      "9: after 0 OT1 1\n11: end 0 us\n" },
     { "LOOP 0\nDOUT OT#(1) ON\nENDLOOP\nLOOP B000\nDOUT OT#(2) ON\nENDLOOP\nSET I001 2\nLOOP I001\n"
       "DOUT OT#(3) ON\nENDLOOP\nSET D002 -2\nLOOP D002\nDOUT OT#(4) ON\nENDLOOP",
       "9: after 0 OT3 1\n9: after 0 OT3 1\n14: end 0 us\n" },
     { "LOOP\nINC B000\nJUMP *OUT IF B000=200\nENDLOOP\n*OUT\nDOUT OT#(1) ON",
       "6: after 0 OT1 1\n6: end 600 us\n" },
     { "WHILE B000<2\nINC B000\nDOUT OT#(1) ON\nENDWHILE\nWHILEEXP (B000=1)\nDOUT OT#(2) ON\n"
-      "ENDWHILE", "3: after 0 OT1 1\n3: after 0 OT1 1\n7: end 0 us\n" },
+      "ENDWHILE",
+      "3: after 0 OT1 1\n3: after 0 OT1 1\n7: end 0 us\n" },
     { "LOOP 4\nIFTHEN B000=0\nDOUT OT#(1) ON\nELSEIF B000=1\nDOUT OT#(2) ON\nELSEIFEXP (B000=2)\n"
       "DOUT OT#(3) ON\nELSE\nDOUT OT#(4) ON\nENDIF\nINC B000\nENDLOOP",
       "3: after 0 OT1 1\n5: after 0 OT2 1\n7: after 0 OT3 1\n9: after 0 OT4 1\n12: end 0 us\n" },
     { "IFTHENEXP OT#(1)=OFF\nDOUT OT#(1) ON\nENDIF\nIF OT#(1)=ON\nDOUT OT#(2) ON\nELSE\n"
-      "DOUT OT#(3) ON\nENDIF", "2: after 0 OT1 1\n5: after 0 OT2 1\n8: end 0 us\n" },
+      "DOUT OT#(3) ON\nENDIF",
+      "2: after 0 OT1 1\n5: after 0 OT2 1\n8: end 0 us\n" },
     /* arithmetic: whole variables take the whole part */
     { "SET D000 7\nDIV D000 2\nSET D001 -7\nDIV D001 2\nSET R000 7\nDIV R000 2\nMUL D000 D000\n"
       "SUB D000 10\nSET B000 R000\nADD R000 0.25\nDEC I000\n"
       "IF D000=-1\nIF D001=-3\nIF R000=3.75\nIF B000=3\nIF I000=-1\nDOUT OT#(1) ON\nENDIF\nENDIF\n"
-      "ENDIF\nENDIF\nENDIF", "17: after 0 OT1 1\n22: end 0 us\n" },
+      "ENDIF\nENDIF\nENDIF",
+      "17: after 0 OT1 1\n22: end 0 us\n" },
     { "SET B000 200\nADD B000 -100\nIF B000=100\nDOUT OT#(1) ON\nENDIF",
       "4: after 0 OT1 1\n5: end 0 us\n" },
     { "NOP\nDIV B000 B001", "2: division by zero\n" },

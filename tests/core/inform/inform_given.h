@@ -7,14 +7,13 @@
 #include "check.h"
 #include "inform_run.h"
 
-static const char POINTS[] =
-    "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
-    "USER 2 X=900 Y=-300 Z=200 A=0 B=0 C=90\n"
-    "P000 J1=0 J2=-20 J3=10 J4=0 J5=90 J6=0\n"
-    "P001 X=900 Y=0 Z=350 A=180 B=0 C=0 FRONT UP NOFLIP TOOL=1\n"
-    "P002 X=1000 Y=100 Z=350 A=180 B=0 C=0\n"
-    "P003 X=1100 Y=0 Z=350 A=180 B=0 C=0\n"
-    "P004 X=0 Y=0 Z=0 A=180 B=0 C=0 USER=2\n";
+static const char POINTS[] = "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
+                             "USER 2 X=900 Y=-300 Z=200 A=0 B=0 C=90\n"
+                             "P000 J1=0 J2=-20 J3=10 J4=0 J5=90 J6=0\n"
+                             "P001 X=900 Y=0 Z=350 A=180 B=0 C=0 FRONT UP NOFLIP TOOL=1\n"
+                             "P002 X=1000 Y=100 Z=350 A=180 B=0 C=0\n"
+                             "P003 X=1100 Y=0 Z=350 A=180 B=0 C=0\n"
+                             "P004 X=0 Y=0 Z=0 A=180 B=0 C=0 USER=2\n";
 
 static struct inform_points points;
 static struct inform_program program;

@@ -19,7 +19,8 @@ static void read_all(void)
                            "user 63 c=90 x=900 y=-300 z=200 a=1 b=2\r\n\n"
                            "  P7 J1=0 J2=-20.5 J3=10 J4=400 J5=+90 J6=-.25 USER=63\n"
                            "P999 X=100 Y=50 Z=.5 A=180 B=0 C=-0.000001 BACK DOWN FLIP TURN1=0 "
-                           "TURN4=-1 TURN6=100 TOOL=1 USER=0"), "");
+                           "TURN4=-1 TURN6=100 TOOL=1 USER=0"),
+               "");
     const struct inform_point *p = &points.point[7];
     static const double JOINT[6] = { 0, -20.5, 10, 400, 90, -0.25 };
     static const double PLACE[6] = { 100, 50, 0.5, 180, 0, -0.000001 };
@@ -37,16 +38,18 @@ static void read_all(void)
     CHECK_TEXT(read_points("P0 X=1 Y=2 Z=3 A=0 B=0 C=0 FRONT UP NOFLIP"), "");
     p = &points.point[0];
     CHECK(p->shoulder == 0 && p->elbow == 0 && p->wrist == 0);
-    CHECK_EQ(points.point[7].kind, INFORM_NO_POINT);    /* nothing is left of the file before */
+    CHECK_EQ(points.point[7].kind, INFORM_NO_POINT); /* nothing is left of the file before */
     CHECK_TEXT(read_points("P0 X=12345.1234567891 Y=2 Z=3 A=0 B=0 C=0"), "");
     CHECK(points.point[0].value[0] == 12345.1234567891);
     CHECK_TEXT(read_points(""), "");
 }
 
-#define POSE "X=1 Y=2 Z=3 A=0 B=0 C=0"
+#define POSE   "X=1 Y=2 Z=3 A=0 B=0 C=0"
 #define JOINTS "J1=0 J2=0 J3=0 J4=0 J5=0 J6=0"
 
-static const struct { const char *text, *message; } BAD[] = {
+static const struct {
+    const char *text, *message;
+} BAD[] = {
     { "Q001 " POSE, "line 1: unknown word \"Q001\"" },
     { "P " POSE, "line 1: unknown word \"P\"" },
     { "P00X " POSE, "line 1: unknown word \"P00X\"" },
@@ -71,7 +74,7 @@ static const struct { const char *text, *message; } BAD[] = {
     { "P001 " POSE " TURN1=1 TURN1=1", "line 1: given twice \"TURN1\"" },
     { "TOOL 1 " POSE "\nP001 " POSE " TOOL=1 TOOL=1", "line 2: given twice \"TOOL\"" },
     { "P001 X=1234567890.123456", "line 1: number with more than 15 digits "
-      "\"1234567890.123456\"" },
+                                  "\"1234567890.123456\"" },
     { "P001 " POSE " TURN4=0.5", "line 1: no whole number \"0.5\"" },
     { "P1000 " POSE, "line 1: value out of range \"P1000\" (0 to 999)" },
     { "P001 X=100000.1", "line 1: value out of range \"100000.1\" (-100000 to 100000)" },
@@ -83,17 +86,17 @@ static const struct { const char *text, *message; } BAD[] = {
     { "P001 " POSE "\n\nP1 " JOINTS, "line 3: defined twice \"P1\" (line 1)" },
     { "USER 5 " POSE "\nUSER 5 " POSE, "line 2: defined twice \"USER 5 " POSE "\" (line 1)" },
     { "P001 X=1 Y=2 Z=3 A=0 B=0", "line 1: needs X Y Z A B C or J1 to J6 \"P001 X=1 Y=2 Z=3 A=0 "
-      "B=0\"" },
+                                  "B=0\"" },
     { "P001", "line 1: needs X Y Z A B C or J1 to J6 \"P001\"" },
     { "P001 J1=0 J2=0 J3=0 J4=0 J6=0 TOOL=0", "line 1: needs X Y Z A B C or J1 to J6 "
-      "\"P001 J1=0 J2=0 J3=0 J4=0 J6=0 TOOL=0\"" },
+                                              "\"P001 J1=0 J2=0 J3=0 J4=0 J6=0 TOOL=0\"" },
     { "TOOL 1 X=0", "line 1: needs X Y Z A B C or J1 to J6 \"TOOL 1 X=0\"" },
     { "P001 " JOINTS " X=1", "line 1: joints beside coordinates or configuration \"X\"" },
     { "P001 X=1 J1=0", "line 1: joints beside coordinates or configuration \"J1\"" },
     { "P001 " JOINTS " UP", "line 1: joints beside coordinates or configuration \"UP\"" },
     { "P001 TURN1=0 " JOINTS, "line 1: joints beside coordinates or configuration \"J1\"" },
     { "P001 " POSE " TOOL=1\nTOOL 1 " POSE, "line 1: tool or user frame not defined above "
-      "\"TOOL=1\"" },
+                                            "\"TOOL=1\"" },
     { "P001 " JOINTS " USER=2", "line 1: tool or user frame not defined above \"USER=2\"" },
 };
 
@@ -119,8 +122,8 @@ static void round_trip(void)
         struct inform_point p = { .kind = n % 2 ? INFORM_POSE : INFORM_JOINTS };
         for (int i = 0; i < 6; i++) {
             const double most = n % 2 == 0 ? 3600.0 : i < 3 ? 100000.0 : 360.0;
-            p.value[i] = n % 5 ? check_real(&seed, -most, most)
-                               : (double)check_random(&seed, -1, 1) * most;
+            p.value[i] =
+                n % 5 ? check_real(&seed, -most, most) : (double)check_random(&seed, -1, 1) * most;
         }
         p.shoulder = n % 2 ? (int32_t)check_random(&seed, -1, 1) : INFORM_ANY;
         p.elbow = n % 2 ? (int32_t)check_random(&seed, -1, 1) : INFORM_ANY;
@@ -149,11 +152,14 @@ static void round_trip(void)
 static void written(void)
 {
     char text[INFORM_POINT_TEXT];
-    struct inform_point p = {
-        .kind = INFORM_POSE, .value = { 900, -0.0000004, -0.5, 180, 1e-6, -359.999999 },
-        .shoulder = 0, .elbow = 1, .wrist = 0, .turn = { INFORM_ANY_TURN, -1, 2 }, .tool = 3,
-        .user = INFORM_ANY
-    };
+    struct inform_point p = { .kind = INFORM_POSE,
+                              .value = { 900, -0.0000004, -0.5, 180, 1e-6, -359.999999 },
+                              .shoulder = 0,
+                              .elbow = 1,
+                              .wrist = 0,
+                              .turn = { INFORM_ANY_TURN, -1, 2 },
+                              .tool = 3,
+                              .user = INFORM_ANY };
     CHECK_EQ(inform_point_write(12, &p, text), 0);
     CHECK_TEXT(text, "P012 X=900 Y=0 Z=-0.5 A=180 B=0.000001 C=-359.999999 FRONT DOWN NOFLIP "
                      "TURN4=-1 TURN6=2 TOOL=3");

@@ -1,7 +1,9 @@
 /* Every way in which a program can be wrong, with the whole message. */
 #include "inform_given.h"
 
-static const struct { const char *text, *message; } BAD[] = {
+static const struct {
+    const char *text, *message;
+} BAD[] = {
     { "MOVX P000", "line 1: unknown word \"MOVX\"" },
     { "NOP\n\n ' a comment\nMOVJ P000 VJ=50 FAST", "line 4: unknown word \"FAST\"" },
     { "SET B000 X12", "line 1: unknown word \"X12\"" },
@@ -62,7 +64,7 @@ static const struct { const char *text, *message; } BAD[] = {
     { "MOVL P001 PL=1 CR=5", "line 1: given twice \"CR\"" },
     { "SPEED V=10 V=20", "line 1: given twice \"V\"" },
     { "MOVL P001 V=1234567.1234567890", "line 1: number with more than 15 digits "
-      "\"1234567.1234567890\"" },
+                                        "\"1234567.1234567890\"" },
     { "MOVJ P000 PL=1.5", "line 1: no whole number \"1.5\"" },
     { "LOOP 2.5", "line 1: no whole number \"2.5\"" },
     { "SET B000 1.5", "line 1: no whole number \"1.5\"" },
@@ -86,7 +88,7 @@ static const struct { const char *text, *message; } BAD[] = {
     { "SET B000 256", "line 1: value out of range \"256\" (0 to 255)" },
     { "SET I000 -32769", "line 1: value out of range \"-32769\" (-32768 to 32767)" },
     { "SET D000 2147483648", "line 1: value out of range \"2147483648\" (-2147483648 to "
-      "2147483647)" },
+                             "2147483647)" },
     { "TIMER T=655.36", "line 1: value out of range \"655.36\" (0 to 655.35)" },
     { "WAIT IN#(1)=ON T=-1", "line 1: value out of range \"-1\" (0 to 655.35)" },
     { "LOOP -1", "line 1: value out of range \"-1\" (0 to 2147483647)" },
@@ -105,11 +107,11 @@ static const struct { const char *text, *message; } BAD[] = {
     { "*A\nNOP\nLABEL A", "line 3: second label of this name in the job \"A\" (line 1)" },
     { "JUMP *A\nLOOP 3\n*A\nENDLOOP", "line 1: jump into a LOOP \"A\" (line 2)" },
     { "LOOP 2\nJUMP A\nENDLOOP\nLOOP 3\nLABEL *A\nENDLOOP", "line 2: jump into a LOOP \"A\" "
-      "(line 4)" },
+                                                            "(line 4)" },
     { "ENDIF", "line 1: does not end what is open \"ENDIF\"" },
     { "ELSE", "line 1: does not end what is open \"ELSE\"" },
     { "LOOP\nELSEIF B000=1\nENDLOOP", "line 2: does not end what is open \"ELSEIF B000=1\" "
-      "(line 1)" },
+                                      "(line 1)" },
     { "IF B000=1\nENDLOOP", "line 2: does not end what is open \"ENDLOOP\" (line 1)" },
     { "LOOP 2\nENDWHILE", "line 2: does not end what is open \"ENDWHILE\" (line 1)" },
     { "NOP\nIF B000=1\nNOP\n", "line 2: has no end \"IF B000=1\" (line 3)" },
@@ -119,25 +121,26 @@ static const struct { const char *text, *message; } BAD[] = {
     { "IF B000=1\nELSE\nELSEIF B000=2\nENDIF", "line 3: behind ELSE \"ELSEIF B000=2\" (line 2)" },
     { "END\nNOP", "line 2: behind END \"NOP\" (line 1)" },
     { "END\n*A", "line 2: behind END \"*A\" (line 1)" },
-    { "JUMP *ABCDEFGHIJABCDEFGHIJABCDEFGHIJABC", "line 1: name too long "
+    { "JUMP *ABCDEFGHIJABCDEFGHIJABCDEFGHIJABC",
+      "line 1: name too long "
       "\"ABCDEFGHIJABCDEFGHIJABCDEFGHIJABC\" (at most 32)" },
     { "MOVC P001\nMOVC P002\nNOP", "line 2: MOVC of one point: three in a row, start, via, end "
-      "\"MOVC P002\"" },
+                                   "\"MOVC P002\"" },
     { "MOVC P001", "line 1: MOVC of one point: three in a row, start, via, end \"MOVC P001\"" },
     { "MOVC P001\nMOVC P002\n*A\nMOVC P003", "line 2: MOVC of one point: three in a row, start, "
-      "via, end \"MOVC P002\"" },
+                                             "via, end \"MOVC P002\"" },
     { "MOVC P001\nJOB B", "line 1: MOVC of one point: three in a row, start, via, end "
-      "\"MOVC P001\"" },
+                          "\"MOVC P001\"" },
     { "MOVC P001\nMOVC P002\nMOVC P003\nMOVC P002", "line 4: MOVC of one point: three in a row, "
-      "start, via, end \"MOVC P002\"" },
+                                                    "start, via, end \"MOVC P002\"" },
     { "MOVC P001\nMOVC P002 P003", "line 1: MOVC of one point: three in a row, start, via, end "
-      "\"MOVC P001\"" },
+                                   "\"MOVC P001\"" },
     { "MOVC P001\nMOVC P002 V=10\nMOVC P003 V=11", "line 3: via and end with different speeds "
-      "\"MOVC P003 V=11\" (line 2)" },
+                                                   "\"MOVC P003 V=11\" (line 2)" },
     { "MOVC P001 P002", "line 1: via and end with different tools or user frames "
-      "\"MOVC P001 P002\"" },
+                        "\"MOVC P001 P002\"" },
     { "MOVC P001\nMOVC P002\nMOVC P004", "line 3: via and end with different tools or user "
-      "frames \"MOVC P004\"" },
+                                         "frames \"MOVC P004\"" },
     { "MOVJ P000 V=10", "line 1: operand of the wrong kind \"V=10\"" },
     { "MOVL P001 VJ=10.00", "line 1: operand of the wrong kind \"VJ=10.00\"" },
     { "SET IN#(1) 1", "line 1: operand of the wrong kind \"IN#(1)\"" },
@@ -151,9 +154,9 @@ static const struct { const char *text, *message; } BAD[] = {
     { "WAIT 1=1", "line 1: operand of the wrong kind \"1\"" },
     { "WAIT B000=IN#(1)", "line 1: operand of the wrong kind \"IN#(1)\"" },
     { "WAIT IN#(1)>OFF", "line 1: IN# and OT# compare by = or <> with ON or OFF "
-      "\"WAIT IN#(1)>OFF\"" },
+                         "\"WAIT IN#(1)>OFF\"" },
     { "RET IF OT#(1)=1", "line 1: IN# and OT# compare by = or <> with ON or OFF "
-      "\"RET IF OT#(1)=1\"" },
+                         "\"RET IF OT#(1)=1\"" },
     { "", "no instruction" },
     { "\n ' nothing\n", "line 2: no instruction" },
     { "// only\n", "line 1: no instruction" },
@@ -221,7 +224,7 @@ static void shapes(void)
 static void limits(void)
 {
     static const struct {
-        const char *head, *line;    /* a # in the line is its number */
+        const char *head, *line; /* a # in the line is its number */
         int most;
         const char *tail, *message;
     } LIMIT[] = {

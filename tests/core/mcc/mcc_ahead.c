@@ -19,8 +19,8 @@ static void random_path(uint64_t *seed, const double start[AXES], struct path *p
             for (int i = 0; i < 6; i++) {
                 inner[i / 3][i % 3] = start[i % 3] + check_real(seed, -10.0, 10.0);
             }
-        } while (path_cubic(p, start, end, (const double (*)[3])inner) != PATH_OK ||
-                 path_bend(p) > 2.0);
+        } while (path_cubic(p, start, end, (const double(*)[3])inner) != PATH_OK
+                 || path_bend(p) > 2.0);
         return;
     }
     const double r = check_real(seed, 1.0, 20.0), a = check_real(seed, 0.0, 6.28);
@@ -43,7 +43,7 @@ static void onward(uint64_t *seed, const struct path *a, struct path *b)
             inner[1][i] = at[i] + check_real(seed, -10.0, 10.0);
             end[i] = at[i] + check_real(seed, -10.0, 10.0);
         }
-    } while (path_cubic(b, at, end, (const double (*)[3])inner) != PATH_OK || path_bend(b) > 5.0);
+    } while (path_cubic(b, at, end, (const double(*)[3])inner) != PATH_OK || path_bend(b) > 5.0);
 }
 
 /* Every random corner: ends on its paths, near enough to them, as smooth as it says. */
@@ -78,8 +78,8 @@ static void corners(void)
             memmove(x[1], x[0], 3 * sizeof x[0]);
             corner_at(&k, &a, &b, fmin(n * h - k.half, k.half), x[0], slope);
             CHECK(norm3(slope) <= 1.0 + 1e-12);
-            farthest = n % 10 ? farthest : fmax(farthest, fmin(distance(&a, x[0]),
-                                                               distance(&b, x[0])));
+            farthest =
+                n % 10 ? farthest : fmax(farthest, fmin(distance(&a, x[0]), distance(&b, x[0])));
             for (int j = 0; j < 3; j++) {
                 d[2] += pow(x[0][j] - 2.0 * x[1][j] + x[2][j], 2.0);
                 d[3] += pow(x[0][j] - 3.0 * x[1][j] + 3.0 * x[2][j] - x[3][j], 2.0);
@@ -174,9 +174,9 @@ static void anything(bool smooth)
                 }
                 const double a = check_real(&seed, 0.2, 1.0) * size;
                 const double b = check_real(&seed, -1.0, 1.0) * size;
-                CHECK((sent % 5 == 4 && i % 4 == 0
-                       ? MCC_arc_xy(&m, a, b, 2.0 * a, 0.0)
-                       : MCC_line(&m, (double[AXES]){ a, b, 0.3 * b })) > 0);
+                CHECK((sent % 5 == 4 && i % 4 == 0 ? MCC_arc_xy(&m, a, b, 2.0 * a, 0.0)
+                                                   : MCC_line(&m, (double[AXES]){ a, b, 0.3 * b }))
+                      > 0);
             }
             const double die = check_real(&seed, 0, 1);
             if (die < 0.005) {
@@ -208,7 +208,7 @@ static void anything(bool smooth)
                 v0[j] = v;
                 x0[j] = r.last.place[j];
             }
-            CHECK(sqrt(change) <= 2.0 * l.acc * DT + 1e-9);   /* along and across */
+            CHECK(sqrt(change) <= 2.0 * l.acc * DT + 1e-9); /* along and across */
         }
         CHECK(r.n < LONGEST && MCC_check_stop(&m));
         for (int j = 0; j < 3; j++) {
@@ -240,10 +240,10 @@ static void tolerance(void)
     const double acc = 500.0, inner = 5.0 - 2.0 * half, outer = 5.0 - half;
     const double top = sqrt(turn * turn + acc * inner);
     const double last = sqrt((2.0 * acc * outer + turn * turn) / 2.0);
-    const double time = 19.0 * 2.0 * half / turn + 18.0 * 2.0 * (top - turn) / acc +
-                        2.0 * (2.0 * last - turn) / acc;
+    const double time = 19.0 * 2.0 * half / turn + 18.0 * 2.0 * (top - turn) / acc
+                        + 2.0 * (2.0 * last - turn) / acc;
     CHECK_NEAR(r.n * DT, time, DT);
-    CHECK(time < 20.0 * (5.0 / 50.0 + 0.1));        /* exact stops */
+    CHECK(time < 20.0 * (5.0 / 50.0 + 0.1)); /* exact stops */
 }
 
 /* What does not fit ends the chain at rest: no tolerance, another command kind. */

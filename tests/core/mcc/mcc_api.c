@@ -2,7 +2,7 @@
 #include "mcc_check.h"
 #include "task.h"
 
-static struct mcc m, before;    /* 300 kB each: not on the stack */
+static struct mcc m, before; /* 300 kB each: not on the stack */
 
 /* The call must return the code and, if it is an error, leave the whole state as it was. */
 #define REFUSED(call, code) \
@@ -39,9 +39,10 @@ static void bad_machine(void)
     memset(&m, 0, sizeof m);
     for (int i = 0; i < 12; i++) {
         struct machine bad = mcc_machine();
-        double *const number[] = { &bad.dda_time, &bad.feed, &bad.max_feed, &bad.acc_time,
-                                   &bad.dec_time, &bad.axis[5].pitch, &bad.axis[1].rpm,
-                                   &bad.axis[0].gear_ratio };
+        double *const number[] = { &bad.dda_time,    &bad.feed,
+                                   &bad.max_feed,    &bad.acc_time,
+                                   &bad.dec_time,    &bad.axis[5].pitch,
+                                   &bad.axis[1].rpm, &bad.axis[0].gear_ratio };
         if (i < 8) {
             *number[i] = i % 2 ? NAN : 0.0;
         } else if (i == 8) {
@@ -67,30 +68,30 @@ static void motion(void)
     REFUSED(MCC_ptp(&m, beyond), MCC_PARAMETER);
     REFUSED(MCC_line(&m, u_axis), MCC_PARAMETER);
     REFUSED(MCC_ptp(&m, far_away), MCC_PARAMETER);
-    REFUSED(MCC_arc_xy(&m, 1.0, 1.0, 2.0, 2.0), MCC_PARAMETER);     /* three points on a line */
+    REFUSED(MCC_arc_xy(&m, 1.0, 1.0, 2.0, 2.0), MCC_PARAMETER); /* three points on a line */
     REFUSED(MCC_arc_yz(&m, NAN, 1.0, 2.0, 2.0), MCC_PARAMETER);
-    REFUSED(MCC_circle_xy(&m, 0.0, 0.0, 0), MCC_PARAMETER);         /* radius 0 */
+    REFUSED(MCC_circle_xy(&m, 0.0, 0.0, 0), MCC_PARAMETER); /* radius 0 */
     REFUSED(MCC_circle_xy(&m, INFINITY, 0.0, 0), MCC_PARAMETER);
     REFUSED(MCC_circle_zx(&m, 1.0, 1.0, 2), MCC_PARAMETER);
     REFUSED(MCC_motion_delay(&m, -1.0), MCC_PARAMETER);
     REFUSED(MCC_set_fspd(&m, 0.0), MCC_FEED_RATE);
     REFUSED(MCC_set_fspd(&m, 1000.1), MCC_FEED_RATE);
     REFUSED(MCC_set_fspd(&m, NAN), MCC_FEED_RATE);
-    REFUSED(MCC_set_fspd(&m, 5e-324), MCC_FEED_RATE);   /* its ramps would have no numbers */
+    REFUSED(MCC_set_fspd(&m, 5e-324), MCC_FEED_RATE); /* its ramps would have no numbers */
     REFUSED(MCC_set_fspd(&m, 0.99e-9), MCC_FEED_RATE);
     REFUSED(MCC_motion_hold(&m), MCC_HOLD_ILLEGAL);
     REFUSED(MCC_motion_conti(&m), MCC_CONTI_ILLEGAL);
     REFUSED(MCC_motion_abort(&m), MCC_ABORT_ILLEGAL);
 
     CHECK_EQ(MCC_set_fspd(&m, 600.0), 0);
-    REFUSED(MCC_line_y(&m, 1.0), MCC_FEED_RATE);        /* Y cannot go faster than 500 mm/s */
-    CHECK_EQ(MCC_line(&m, (double[AXES]){ 3.0, 4.0 }), 1);  /* 480 mm/s in Y */
+    REFUSED(MCC_line_y(&m, 1.0), MCC_FEED_RATE);           /* Y cannot go faster than 500 mm/s */
+    CHECK_EQ(MCC_line(&m, (double[AXES]){ 3.0, 4.0 }), 1); /* 480 mm/s in Y */
     CHECK_EQ(MCC_set_inc(&m), 0);
     CHECK_EQ(MCC_get_pos_type(&m), 0);
-    CHECK_EQ(MCC_line_z(&m, 0.0), 2);                   /* nothing to do: an index, no command */
+    CHECK_EQ(MCC_line_z(&m, 0.0), 2); /* nothing to do: an index, no command */
     CHECK_EQ(m.ring.count, 1);
     CHECK_EQ(MCC_set_fspd(&m, 100.0), 0);
-    CHECK_EQ(MCC_arc_xy(&m, 1.0, 1.0, 2.0, 0.0), 3);    /* through (4, 5) to (5, 4) */
+    CHECK_EQ(MCC_arc_xy(&m, 1.0, 1.0, 2.0, 0.0), 3); /* through (4, 5) to (5, 4) */
     CHECK_EQ(ring_head(&m.ring)->index, 1);
     CHECK_EQ(m.ring.entry[1].command.type, COMMAND_CW_ARC);
     CHECK_NEAR(m.ring.entry[1].command.path.centre[0], 4.0, 1e-12);
@@ -119,14 +120,14 @@ static void settings(void)
     memset(six, 0, sizeof six);
     CHECK_EQ(MCC_get_P_gain(&m, six), 0);
     CHECK(six[0] == 1 && six[5] == 65535);
-    REFUSED(MCC_set_max_dda_spd(&m, six), MCC_PARAMETER);   /* 12 bit: no more than 4095 */
+    REFUSED(MCC_set_max_dda_spd(&m, six), MCC_PARAMETER); /* 12 bit: no more than 4095 */
     CHECK_EQ(MCC_get_max_dda_spd(&m, six), 0);
     CHECK_EQ(six[3], 4095);
     CHECK_NEAR(MCC_get_dda(&m), 1.024, 1e-15);
     CHECK_EQ(MCC_set_dda(&m, 2.0), 0);
-    CHECK_NEAR(MCC_get_dda(&m), 2.048, 1e-15);      /* 2^12 * 20 * 25 ns */
+    CHECK_NEAR(MCC_get_dda(&m), 2.048, 1e-15); /* 2^12 * 20 * 25 ns */
     CHECK_EQ(MCC_set_dda(&m, 0.01), 0);
-    CHECK_NEAR(MCC_get_dda(&m), 0.1024, 1e-15);     /* divider 1 */
+    CHECK_NEAR(MCC_get_dda(&m), 0.1024, 1e-15); /* divider 1 */
     REFUSED(MCC_set_acc_type(&m, 's'), MCC_PARAMETER);
     REFUSED(MCC_set_dec_type(&m, 0), MCC_PARAMETER);
     CHECK(MCC_get_acc_type(&m) == 'T' && MCC_get_dec_type(&m) == 'T');

@@ -2,7 +2,7 @@
 #include "axes.h"
 #include "mcc_check.h"
 
-static const double DT = 1e-3;      /* [s] between samples */
+static const double DT = 1e-3; /* [s] between samples */
 
 static struct machine machine_of(char acc_type, char dec_type)
 {
@@ -144,14 +144,15 @@ static void trapezium_error(void)
     axes_go(&a, 0, way, &l);
     for (int k = 0; k < 10000; k++) {
         const double t = k * 1e-4, left = up + cruise + down - t;
-        const double ideal = t < up ? l.acc * t * t / 2.0
-                           : t < up + cruise ? l.speed * (t - up / 2.0)
-                           : left > 0.0 ? way - l.dec * left * left / 2.0 : way;
+        const double ideal = t < up            ? l.acc * t * t / 2.0
+                             : t < up + cruise ? l.speed * (t - up / 2.0)
+                             : left > 0.0      ? way - l.dec * left * left / 2.0
+                                               : way;
         axes_state(&a, 0, &s, &v);
         worst = fmax(worst, fabs(s - ideal));
         axes_advance(&a, 1e-4);
     }
-    CHECK(worst > 0.2e-6 && worst < 0.6e-6);    /* [mm] 0.25 nm a ramp */
+    CHECK(worst > 0.2e-6 && worst < 0.6e-6); /* [mm] 0.25 nm a ramp */
 }
 
 /* Override up and down, hold, new orders at random instants: never beyond a limit, and the end is
@@ -214,7 +215,7 @@ static void hold_keeps_the_order(void)
     axes_state(&a, 2, &s, &v);
     CHECK(v == 0.0 && s > 10.0 && s < 80.0);
     CHECK(axes_resting(&a) && !axes_done(&a, 2));
-    axes_go(&a, 1, 5.0, &l);        /* an order while held waits */
+    axes_go(&a, 1, 5.0, &l); /* an order while held waits */
     CHECK(axes_resting(&a) && !axes_done(&a, 1));
     axes_set_ratio(&a, 0.5);
     axes_advance(&a, 3.0);

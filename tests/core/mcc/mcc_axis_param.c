@@ -2,8 +2,9 @@
 #include "mcc_card.h"
 
 static const struct pc_panel calm = { .override = 1.0 };
-static const struct pc_config usual = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1,
-                                        .min_stock = 3, .batch = 4 };
+static const struct pc_config usual = {
+    .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3, .batch = 4
+};
 
 static int64_t wait(struct card *c, int64_t at, const struct pc_panel *p)
 {
@@ -75,8 +76,9 @@ static void another_lead(void)
 static void inverted(void)
 {
     struct machine m = mcc_machine();
-    struct comp_table table = { .interval = 100000, .home = 1, .forward = { 0, 7, 7 },
-                                .backward = { -2, -2, -2 } };
+    struct comp_table table = {
+        .interval = 100000, .home = 1, .forward = { 0, 7, 7 }, .backward = { -2, -2, -2 }
+    };
     struct pc_panel p = calm;
     struct card c;
     int32_t counts[AXES];
@@ -102,7 +104,7 @@ static void inverted(void)
     MCC_get_errcnt(&pc.mcc, counts);
     CHECK(counts[0] == 5 && counts[1] == 5 && pc.mcc.signals.enc[0] == -4000);
     at = wait(&c, at, &p);
-    CHECK_EQ(c.sum[0], -4002);      /* it came there backward now */
+    CHECK_EQ(c.sum[0], -4002); /* it came there backward now */
     CHECK(MCC_line_x(&pc.mcc, -1.0) > 0);
     wait(&c, at, &p);
     CHECK_EQ(c.sum[0], -993);
@@ -113,10 +115,14 @@ static void homing(void)
 {
     static struct mcc was;
     const struct machine m = mcc_machine();
-    const struct home_config config = {
-        .mode = HOME_SENSOR_INDEX, .direction = 5, .sensor_on = true, .high_speed = 20.0,
-        .low_speed = 2.0, .offset = 1.25, .search = 100.0, .index_way = 15.0
-    };
+    const struct home_config config = { .mode = HOME_SENSOR_INDEX,
+                                        .direction = 5,
+                                        .sensor_on = true,
+                                        .high_speed = 20.0,
+                                        .low_speed = 2.0,
+                                        .offset = 1.25,
+                                        .search = 100.0,
+                                        .index_way = 15.0 };
     struct card c;
 
     card_start(&c, &m, &usual, false);
@@ -125,7 +131,7 @@ static void homing(void)
     CHECK(p->home_dir == 5 && p->sensor_on == 1);
     p->home_dir = 2;
     p->sensor_on = 0;
-    p->pitch = 20.0;    /* 0.02 mm a pulse */
+    p->pitch = 20.0; /* 0.02 mm a pulse */
     p->gear_ratio = 0.1;
     p->pos2encoder_dir = 1;
     pc.mcc.homing.axis[1].zero = 123;
@@ -133,7 +139,7 @@ static void homing(void)
     const struct homing_axis *x = &pc.mcc.homing.axis[1];
     CHECK(x->config.direction == 2 && !x->config.sensor_on && x->zero == -123);
     CHECK_NEAR(x->config.offset, 1.26, 1e-12);
-    p->RPM = 0.05;      /* 10 mm/s */
+    p->RPM = 0.05; /* 10 mm/s */
     p->pitch = 20.0;
     was = pc.mcc;
     CHECK_EQ(MCC_update_param(&pc.mcc), MCC_PARAMETER);
@@ -180,8 +186,8 @@ static void refusals(void)
     card_start(&c, &m, &usual, false);
     MCC_MACH_PARAM *p = &pc.mcc.epcio_axis_param[2];
     const MCC_MACH_PARAM good = *p;
-    MCC_MACH_PARAM bad[] = { good, good, good, good, good, good, good, good, good, good, good,
-                             good, good, good };
+    MCC_MACH_PARAM bad[] = { good, good, good, good, good, good, good,
+                             good, good, good, good, good, good, good };
     enum { KINDS = sizeof bad / sizeof *bad };
     bad[0].type = 4;
     bad[1].pos2encoder_dir = 2;
@@ -199,13 +205,16 @@ static void refusals(void)
     bad[13].type = -1;
     for (int i = 0; i < KINDS; i++) {
         *p = bad[i];
-        pc.mcc.epcio_axis_param[0].pitch = 5.0;     /* not taken either */
+        pc.mcc.epcio_axis_param[0].pitch = 5.0; /* not taken either */
         was = pc.mcc;
         CHECK_EQ(MCC_update_param(&pc.mcc), MCC_PARAMETER);
         CHECK(memcmp(&was, &pc.mcc, sizeof was) == 0);
     }
     *p = good;
-    static const struct { double speed; int code; } speeds[] = {
+    static const struct {
+        double speed;
+        int code;
+    } speeds[] = {
         { 9.0, MCC_FEED_RATE }, { 0.0, MCC_FEED_RATE }, { NAN, MCC_PARAMETER }, { 10.0, 0 }
     };
     for (int i = 0; i < 4; i++) {

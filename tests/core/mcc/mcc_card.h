@@ -6,25 +6,25 @@
 #include "pc.h"
 
 struct card {
-    const struct pcl *pcl;              /* what serves it */
-    int64_t dda;                        /* [clocks] */
-    int64_t now;                        /* events up to here are done */
-    int32_t n;                          /* minimum stock */
-    int32_t room;                       /* commands the FIFO holds */
+    const struct pcl *pcl; /* what serves it */
+    int64_t dda;           /* [clocks] */
+    int64_t now;           /* events up to here are done */
+    int32_t n;             /* minimum stock */
+    int32_t room;          /* commands the FIFO holds */
     int32_t fifo[PCL_FIFO][AXES];
     int32_t stock;
-    int32_t sum[AXES];                  /* [pulses] put out */
-    bool    flag;                       /* the FIFO's interrupt latch; its line */
+    int32_t sum[AXES]; /* [pulses] put out */
+    bool flag;         /* the FIFO's interrupt latch; its line */
     struct pcl_card shows;
     int32_t last_ack_seq;
-    bool    moved;                      /* the latest DDA time had pulses */
+    bool moved; /* the latest DDA time had pulses */
     int32_t underflows, irqs, peak;
     int64_t irq_first, irq_last;
-    bool    coming;                     /* a transaction on its way */
+    bool coming; /* a transaction on its way */
     int64_t arrives;
 };
 
-static struct pc pc;    /* 300 kB: not on the stack */
+static struct pc pc; /* 300 kB: not on the stack */
 
 /* An empty card. */
 static void card_begin(struct card *c, const struct pcl *pcl, int64_t dda, int32_t n)
@@ -66,7 +66,7 @@ static void card_boundary(struct card *c)
             c->irq_first = c->irqs++ ? c->irq_first : c->now;
         }
         c->flag = true;
-        c->shows.irq_flags[0] = 63;     /* all channels fall together */
+        c->shows.irq_flags[0] = 63; /* all channels fall together */
     }
 }
 
@@ -125,8 +125,7 @@ static void card_read(struct card *c)
 }
 
 /* One bus period of both: the card reads what was published, the PC sees the card as it was. */
-static void card_period(struct card *c, int64_t at, const struct pc_panel *panel,
-                        const char *text)
+static void card_period(struct card *c, int64_t at, const struct pc_panel *panel, const char *text)
 {
     c->shows.stock = c->stock;
     const struct pcl_card seen = c->shows;

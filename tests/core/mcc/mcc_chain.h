@@ -4,7 +4,7 @@
 
 #include "mcc_record.h"
 
-static const double DT = 1.024e-3;      /* [s] of mcc_machine */
+static const double DT = 1.024e-3; /* [s] of mcc_machine */
 
 static inline double norm3(const double a[3])
 {

@@ -60,7 +60,7 @@ static double filled(int keep, bool smooth)
             v0[i] = v;
             x0[i] = r.last.place[i];
         }
-        CHECK(sqrt(change) <= sqrt(2.0) * l.acc * DT + 1e-9);       /* along and across */
+        CHECK(sqrt(change) <= sqrt(2.0) * l.acc * DT + 1e-9); /* along and across */
         for (int i = r.last.command - 2; i <= r.last.command; i++) {
             d = i >= 0 && i < sent ? fmin(d, distance(&side[i], r.last.place)) : d;
         }
@@ -166,7 +166,7 @@ static void too_fast(double size)
     }
     CHECK_EQ(m.error, MCC_ERROR_SPEED);
     CHECK(v0 < 0.5);
-    CHECK_NEAR(x0, 40.0 * 40.0 / 500.0, 0.15);     /* up to 40 mm/s and down, less a DDA time */
+    CHECK_NEAR(x0, 40.0 * 40.0 / 500.0, 0.15); /* up to 40 mm/s and down, less a DDA time */
 }
 
 /* In the DDA time in which a chain ends: the same. */
@@ -232,8 +232,9 @@ static void brakes(void)
         CHECK(got <= least(all, count) * (1.0 + 1e-12));
         CHECK(many || got >= least(all, count) * (1.0 - 1e-12));
         for (int i = 0; i < b.count; i++) {
-            CHECK(i == 0 || (b.step[i].speed > b.step[i - 1].speed &&
-                             b.step[i].even > b.step[i - 1].even));
+            CHECK(
+                i == 0
+                || (b.step[i].speed > b.step[i - 1].speed && b.step[i].even > b.step[i - 1].even));
         }
     }
 }

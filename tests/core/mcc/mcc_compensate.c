@@ -4,8 +4,9 @@
 #include "mcc_card.h"
 
 static const struct pc_panel calm = { .override = 1.0 };
-static const struct pc_config usual = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1,
-                                        .min_stock = 3, .batch = 4 };
+static const struct pc_config usual = {
+    .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3, .batch = 4
+};
 static struct comp_table table[AXES];
 
 /* A screw 30 pulses off at most, and a backlash of its own for each axis. */
@@ -121,14 +122,14 @@ static void reversal(void)
 
     make_tables();
     for (int k = 0; k < COMP_POINTS; k++) {
-        table[0].forward[k] = k > 112 ? 40 : 0;     /* from 12 to 13 mm */
+        table[0].forward[k] = k > 112 ? 40 : 0; /* from 12 to 13 mm */
         table[0].backward[k] = -60;
     }
     start(&c, &m);
     CHECK(MCC_line_x(&pc.mcc, 5.0) > 0);
     at = settle(&c, at);
     CHECK_EQ(c.sum[0], 5000);
-    CHECK(MCC_line_x(&pc.mcc, 4.0) > 0);    /* 10 mm/s: ramps of 1 pulse in 10 DDA times */
+    CHECK(MCC_line_x(&pc.mcc, 4.0) > 0); /* 10 mm/s: ramps of 1 pulse in 10 DDA times */
     for (int k = 0; k < 10000 && !MCC_check_stop(&pc.mcc); k++, at += pc.config.bus) {
         card_period(&c, at, &calm, NULL);
         if (pc.mcc.written.added[0] != before) {
@@ -137,8 +138,8 @@ static void reversal(void)
         before = pc.mcc.written.added[0];
         for (int i = 0; i < pc.mcc.queue.count; i++) {
             const struct point *p = queue_peek(&pc.mcc.queue, i);
-            const int32_t last = i ? queue_peek(&pc.mcc.queue, i - 1)->added[0]
-                                   : pc.mcc.written.added[0];
+            const int32_t last =
+                i ? queue_peek(&pc.mcc.queue, i - 1)->added[0] : pc.mcc.written.added[0];
             most = abs(p->added[0] - last) > most ? abs(p->added[0] - last) : most;
         }
     }
@@ -149,7 +150,7 @@ static void reversal(void)
     /* At the limit itself there is no room: what the way from 12 to 13 mm wants comes behind. */
     const int32_t limit[AXES] = { 60, 60, 60, 60, 60, 60 };
     CHECK_EQ(MCC_set_max_dda_spd(&pc.mcc, limit), MCC_NO_ERR);
-    CHECK_EQ(MCC_set_fspd(&pc.mcc, 58.59375), MCC_NO_ERR);     /* 60 pulses in 1.024 ms */
+    CHECK_EQ(MCC_set_fspd(&pc.mcc, 58.59375), MCC_NO_ERR); /* 60 pulses in 1.024 ms */
     CHECK(MCC_line_x(&pc.mcc, 20.0) > 0);
     at = settle(&c, at);
     CHECK_EQ(c.sum[0], 20040);
@@ -167,11 +168,11 @@ static void switch_off(void)
 
     make_tables();
     start(&c, &m);
-    CHECK(!MCC_check_stop(&pc.mcc));    /* the correction at the origin is to be driven in */
+    CHECK(!MCC_check_stop(&pc.mcc)); /* the correction at the origin is to be driven in */
     was = pc.mcc;
     CHECK_EQ(MCC_set_comp(&pc.mcc, -1, &off), MCC_PARAMETER);
     CHECK_EQ(MCC_set_comp(&pc.mcc, 6, &off), MCC_PARAMETER);
-    CHECK_EQ(MCC_set_comp(&pc.mcc, 3, &table[3]), MCC_PARAMETER);   /* not used */
+    CHECK_EQ(MCC_set_comp(&pc.mcc, 3, &table[3]), MCC_PARAMETER); /* not used */
     CHECK_EQ(MCC_set_comp(&pc.mcc, 0, &bad), MCC_PARAMETER);
     CHECK(memcmp(&was, &pc.mcc, sizeof was) == 0);
     at = settle(&c, at);

@@ -4,7 +4,7 @@
 
 /* What each axis keeps to. */
 struct axis_limits {
-    double speed[3], acc[3], jerk[3];   /* jerk 0: no limit */
+    double speed[3], acc[3], jerk[3]; /* jerk 0: no limit */
 };
 
 static struct machine machine_of(const struct axis_limits *l)
@@ -31,7 +31,7 @@ static void begin_curve(const struct axis_limits *l, double feed, double toleran
 struct places {
     double x[4][AXES];
     int n;
-    double peak[3];             /* of speed, acceleration, jerk, as shares of the limits */
+    double peak[3]; /* of speed, acceleration, jerk, as shares of the limits */
 };
 
 static void look_at(struct places *p, const struct point *now, const struct axis_limits *l)
@@ -44,8 +44,7 @@ static void look_at(struct places *p, const struct point *now, const struct axis
     for (int i = 0; i < 3; i++) {
         const double v = p->x[0][i] - p->x[1][i], a = v - (p->x[1][i] - p->x[2][i]);
         const double j = a - (p->x[1][i] - 2.0 * p->x[2][i] + p->x[3][i]);
-        const double most[3] = { l->speed[i] * DT, l->acc[i] * DT * DT,
-                                 l->jerk[i] * DT * DT * DT };
+        const double most[3] = { l->speed[i] * DT, l->acc[i] * DT * DT, l->jerk[i] * DT * DT * DT };
         const double seen[3] = { fabs(v), fabs(a), fabs(j) };
         for (int k = 0; k < 3; k++) {
             if (p->n < k + 2 || most[k] <= 0.0) {
@@ -135,8 +134,8 @@ static void anything(bool smooth)
             all.peak[k] = fmax(all.peak[k], x.peak[k]);
         }
     }
-    printf("%s: peaks of the limits %.6f %.6f %.6f\n", smooth ? "S" : "T", all.peak[0],
-           all.peak[1], all.peak[2]);
+    printf("%s: peaks of the limits %.6f %.6f %.6f\n", smooth ? "S" : "T", all.peak[0], all.peak[1],
+           all.peak[2]);
     CHECK(all.peak[1] > 0.95 && (!smooth || all.peak[2] > 0.5));
 }
 
@@ -148,9 +147,9 @@ static void pieces(void)
 
     begin_curve(&l, 50.0, 0.01, 0.01);
     const double slowest = drive_pieces(&r, 0.06, 1.99);
-    CHECK_NEAR(slowest, 50.0, 1e-4);     /* u is not quite the length */
+    CHECK_NEAR(slowest, 50.0, 1e-4); /* u is not quite the length */
     CHECK_NEAR(r.speed_max, 50.0, 1e-4);
-    CHECK_NEAR(r.n * DT, 2.0 + 0.05, 3.0 * DT);     /* 1000 mm/s^2 along the line */
+    CHECK_NEAR(r.n * DT, 2.0 + 0.05, 3.0 * DT); /* 1000 mm/s^2 along the line */
     CHECK_NEAR(r.last.place[0], 60.0, 0.0);
     CHECK_NEAR(r.last.place[1], 80.0, 0.0);
 }
@@ -186,7 +185,7 @@ static void calls(void)
     machine.axis[1].acc = -1.0;
     CHECK_EQ(MCC_init_motion(&m, &machine), MCC_PARAMETER);
     machine.axis[1].acc = 0.0;
-    machine.axis[1].jerk = 1e4;     /* without an acceleration */
+    machine.axis[1].jerk = 1e4; /* without an acceleration */
     CHECK_EQ(MCC_init_motion(&m, &machine), MCC_PARAMETER);
 }
 

@@ -2,8 +2,9 @@
 #include "mcc_card.h"
 
 static struct pc_panel panel;
-static const struct pc_config usual = { .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1,
-                                        .min_stock = 3, .batch = 4 };
+static const struct pc_config usual = {
+    .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3, .batch = 4
+};
 
 /* Let so many bus periods pass. */
 static int64_t wait(struct card *c, int64_t at, int periods, const char *text)
@@ -19,7 +20,10 @@ static int64_t wait(struct card *c, int64_t at, int periods, const char *text)
 static void dry_equals_wet(void)
 {
     static const char text[] = "F6000 G64\nG1 X10 Y-4\nG3 X12 Y-2 I1 J1\nM3 S100\nG0 Z5\nM2";
-    static struct { double place[AXES], feed; int32_t pulses[AXES], line; } seen[2][20000];
+    static struct {
+        double place[AXES], feed;
+        int32_t pulses[AXES], line;
+    } seen[2][20000];
     const struct machine m = mcc_machine();
     double place[AXES];
     int32_t pulses[AXES];
@@ -54,7 +58,7 @@ static void dry_equals_wet(void)
         CHECK_EQ(c.sum[2], dry ? 0 : 5000);
     }
     CHECK(memcmp(seen[0], seen[1], sizeof seen[0]) == 0);
-    CHECK_EQ(MCC_enable_dry_run(&pc.mcc), 0);   /* once more: keeps the place */
+    CHECK_EQ(MCC_enable_dry_run(&pc.mcc), 0); /* once more: keeps the place */
     CHECK_EQ(MCC_disable_dry_run(&pc.mcc), 0);
     CHECK_EQ(MCC_disable_dry_run(&pc.mcc), 0);
     MCC_get_cpos(&pc.mcc, place);
@@ -143,7 +147,7 @@ static void on_and_off(void)
     struct card c;
     int64_t at;
 
-    m.queue_depth = 16;     /* the task is not far ahead of the card */
+    m.queue_depth = 16; /* the task is not far ahead of the card */
     panel = (struct pc_panel){ .override = 1.0 };
     card_start(&c, &m, &usual, false);
     CHECK_EQ(MCC_enable_quit(&pc.mcc), 0);
@@ -185,8 +189,8 @@ static int64_t wait_smooth(struct card *c, int64_t at, int periods, const char *
     for (int k = 0; k < periods; k++) {
         at = wait(c, at, 1, text);
         for (int i = 1; i < pc.mcc.queue.count; i++) {
-            worst = fmax(worst, fabs(queue_peek(&pc.mcc.queue, i)->feed -
-                                     queue_peek(&pc.mcc.queue, i - 1)->feed));
+            worst = fmax(worst, fabs(queue_peek(&pc.mcc.queue, i)->feed
+                                     - queue_peek(&pc.mcc.queue, i - 1)->feed));
         }
     }
     CHECK(worst <= most && worst > 0.5 * most);

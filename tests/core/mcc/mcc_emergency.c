@@ -7,26 +7,27 @@
 #include "pc.h"
 #include "registers.h"
 
-enum { BUS = 4000 };        /* [clocks] */
+enum { BUS = 4000 }; /* [clocks] */
 
 struct bench {
     struct epcio card;
     struct epcio_lines lines;
     struct pc_panel panel;
     int64_t now;
-    struct mailbox taken;     /* what it has taken of the library */
-    double  lag;            /* share of the following error that the motors catch up each period */
-    double  motor[AXES];    /* [pulses] */
-    int32_t moved;          /* [pulses] of axis 1 in the latest period */
+    struct mailbox taken; /* what it has taken of the library */
+    double lag;           /* share of the following error that the motors catch up each period */
+    double motor[AXES];   /* [pulses] */
+    int32_t moved;        /* [pulses] of axis 1 in the latest period */
 };
 
-static struct pc pc;        /* 140 kB: not on the stack */
+static struct pc pc; /* 140 kB: not on the stack */
 static struct mcc before;
 
 static struct pc_config usual(int mode)
 {
-    struct pc_config c = { .bus = BUS, .ipo = 40000, .latency = 8000.0, .seed = 1,
-                           .min_stock = 3, .batch = 4 };
+    struct pc_config c = {
+        .bus = BUS, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3, .batch = 4
+    };
     for (int i = 0; i < AXES; i++) {
         c.output_mode[i] = mode;
     }
@@ -147,8 +148,9 @@ static const char *const parts[] = {
 };
 
 /* Y falls behind by 20 pulses when it turns. */
-static const struct comp_table backlash = { .interval = 100000000, .home = 128, .backward = {
-    [127] = -20, [128] = -20, [129] = -20 } };
+static const struct comp_table backlash = { .interval = 100000000,
+                                            .home = 128,
+                                            .backward = { [127] = -20, [128] = -20, [129] = -20 } };
 
 /* Pressed at a random moment for a random time: at once, no pulse beyond the DDA time in progress,
  * no clearing too early, position to the pulse, the program anew. */
@@ -168,7 +170,7 @@ static void emergency_stop(void)
         }
         periods(&b, part, (int)check_real(&seed, 10.0, 14000.0));
         b.lines.local.stop = true;
-        periods(&b, part, 3 + 11);      /* seen after two periods; a DDA time is 10.24 of them */
+        periods(&b, part, 3 + 11); /* seen after two periods; a DDA time is 10.24 of them */
         CHECK_EQ(MCC_get_errcode(&pc.mcc), MCC_ERROR_STOP);
         CHECK_EQ(pc.mcc.queue.count + pc.mcc.ring.count + pc.mcc.mover.mix.count, 0);
         CHECK_EQ(b.card.fifo[0].stock, 0);
@@ -181,7 +183,7 @@ static void emergency_stop(void)
             CHECK(b.moved == 0 && pc.pcl.seq == seq);
         }
         CHECK(pc.mcc.written.feed == 0.0);
-        press(&b, &b.panel.clear_error, part);      /* refused */
+        press(&b, &b.panel.clear_error, part); /* refused */
         CHECK_EQ(MCC_get_errcode(&pc.mcc), MCC_ERROR_STOP);
         memcpy(&before, &pc.mcc, sizeof before);
         CHECK_EQ(MCC_clear_error(&pc.mcc), MCC_RUN_TIME);
@@ -200,7 +202,7 @@ static void emergency_stop(void)
             peak = b.card.fifo[0].stock > peak ? b.card.fifo[0].stock : peak;
         }
         CHECK_EQ(b.panel.signals.pulses[0], x);
-        CHECK(b.card.fifo[0].stock >= 3 && peak >= 6);  /* primed with zeros */
+        CHECK(b.card.fifo[0].stock >= 3 && peak >= 6); /* primed with zeros */
         press(&b, &b.panel.clear_error, part);
         CHECK_EQ(MCC_get_errcode(&pc.mcc), 0);
         check_place(&b, 1e-9);
@@ -217,7 +219,7 @@ static void emergency_stop(void)
         CHECK(pc_done(&pc));
         check_place(&b, 1e-9);
         CHECK_EQ(out(&b, 0) | out(&b, 1), 0);
-        press(&b, &b.panel.cycle_start, part);      /* no error has been cleared since */
+        press(&b, &b.panel.cycle_start, part); /* no error has been cleared since */
         CHECK(pc_done(&pc));
     }
 }
@@ -252,20 +254,24 @@ static void jogged(void)
 {
     struct machine m = mcc_machine();
     struct bench b;
-    m.axis[0].check_ot = true;  /* the switch lies beyond where the limit is before homing */
+    m.axis[0].check_ot = true; /* the switch lies beyond where the limit is before homing */
     m.axis[0].high_limit = 20.0;
     m.axis[0].low_limit = -5.0;
     m.limit_check = true;
     m.limit_mode = MACHINE_LIMIT_TOWARD_ERROR;
     power_on(&b, &m, 1, false);
-    const struct home_config home = { .mode = HOME_SENSOR, .direction = 0, .sensor_on = true,
-                                      .high_speed = 20.0, .low_speed = 2.0, .search = 100.0,
+    const struct home_config home = { .mode = HOME_SENSOR,
+                                      .direction = 0,
+                                      .sensor_on = true,
+                                      .high_speed = 20.0,
+                                      .low_speed = 2.0,
+                                      .search = 100.0,
                                       .index_way = 15.0 };
     CHECK_EQ(homing_set(&pc.mcc, 0, &home, false), 0);
     CHECK_EQ(MCC_go_home(&pc.mcc, (int32_t[AXES]){ 1 }), 0);
     for (int k = 0; k < 100000 && MCC_check_homef(&pc.mcc) == 0; k++) {
-        b.panel.signals.home = b.panel.signals.pulses[0] >= 30000 &&
-                               b.panel.signals.pulses[0] < 32000;
+        b.panel.signals.home =
+            b.panel.signals.pulses[0] >= 30000 && b.panel.signals.pulses[0] < 32000;
         period(&b, NULL);
     }
     CHECK_EQ(MCC_check_homef(&pc.mcc), 1);
@@ -283,7 +289,7 @@ static void jogged(void)
     CHECK_EQ(MCC_clear_error(&pc.mcc), 0);
     CHECK(b.panel.signals.pulses[0] > zero + 5000);
     CHECK_EQ(pc.mcc.written.pulses[0], b.panel.signals.pulses[0] - zero);
-    b.lines.local.up = 1;       /* a switch closes while it is jogged on */
+    b.lines.local.up = 1; /* a switch closes while it is jogged on */
     CHECK_EQ(MCC_jog_c(&pc.mcc, 0, -1, 10.0), 0);
     periods(&b, NULL, 1000);
     CHECK_EQ(MCC_get_errcode(&pc.mcc), 0);
@@ -313,7 +319,7 @@ static void cannot_run_again(void)
     periods(&b, arc, 3000);
     b.lines.local.stop = true;
     periods(&b, arc, 50);
-    press(&b, &b.panel.cycle_start, arc);   /* nothing while the error lasts */
+    press(&b, &b.panel.cycle_start, arc); /* nothing while the error lasts */
     b.lines.local.stop = false;
     periods(&b, arc, 50);
     press(&b, &b.panel.cycle_start, arc);
@@ -325,7 +331,7 @@ static void cannot_run_again(void)
     CHECK_EQ(MCC_get_errcode(&pc.mcc), MCC_ERROR_ARC);
     periods(&b, arc, 200);
     CHECK_EQ(b.panel.signals.pulses[0], x);
-    CHECK_EQ(b.panel.signals.pulses[2], 1000);      /* not even the first line */
+    CHECK_EQ(b.panel.signals.pulses[2], 1000); /* not even the first line */
     press(&b, &b.panel.clear_error, arc);
     CHECK_EQ(MCC_get_errcode(&pc.mcc), 0);
     press(&b, &b.panel.cycle_start, arc);
@@ -453,6 +459,6 @@ int main(void)
     halted();
     stuck_motor();
     in_position(1.0);
-    in_position(0.004);     /* time constant of 25 ms: 1250 pulses behind at 50 mm/s */
+    in_position(0.004); /* time constant of 25 ms: 1250 pulses behind at 50 mm/s */
     return check_result();
 }

@@ -65,7 +65,7 @@ static void extent_of_turns(void)
     CHECK_EQ(path_arc(&p, PATH_XY, a, b, centre, true, 50, &miss), PATH_OK);
     path_extent(&p, 0, 0.0, p.length, &low, &high);
     CHECK_NEAR(high, 100.1, 1e-12);
-    CHECK_NEAR(low, -100.1 + 0.001, 1e-6);              /* half a turn before the end */
+    CHECK_NEAR(low, -100.1 + 0.001, 1e-6); /* half a turn before the end */
     path_extent(&p, 1, 0.0, p.length, &low, &high);
     CHECK_NEAR(high, 100.1 - 0.0015, 1e-6);
     CHECK_NEAR(low, -100.1 + 0.0005, 1e-6);
@@ -78,7 +78,7 @@ static struct machine limited(double low, double high)
     m.axis[0].high_limit = high + 2.0;
     m.axis[0].low_limit = low - 1.0;
     m.axis[0].hot_offset = 2.0;
-    m.axis[0].lot_offset = -1.0;    /* its sign does not matter */
+    m.axis[0].lot_offset = -1.0; /* its sign does not matter */
     return m;
 }
 
@@ -128,7 +128,7 @@ static void lines(void)
 {
     const struct machine m = limited(-10.0, 20.0);
     struct command_refusal r;
-    struct path p = line_x(0.0, 20.0004);   /* less than half a pulse of 1 um */
+    struct path p = line_x(0.0, 20.0004); /* less than half a pulse of 1 um */
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(0.0, 20.0006);
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
@@ -139,7 +139,7 @@ static void lines(void)
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
     CHECK_NEAR(r.value, -10.001, 0.0);
     CHECK_NEAR(r.limit, -10.0, 1e-15);
-    p = line_x(25.0, 22.0);                 /* on the way back */
+    p = line_x(25.0, 22.0); /* on the way back */
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(25.0, 25.001);
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
@@ -147,7 +147,7 @@ static void lines(void)
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(25.0, -10.001);
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
-    p = line_x(-15.0, -12.0);               /* and at the other end */
+    p = line_x(-15.0, -12.0); /* and at the other end */
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OK);
     p = line_x(-15.0, -15.001);
     CHECK_EQ(judged(&m, &p, &r), COMMAND_OUTSIDE);
@@ -201,7 +201,7 @@ static void switches(void)
     const double up[AXES] = { 0, 0, 1e-6 }, down[AXES] = { 0, 0, -1e-6 }, none[AXES] = { 0 };
     struct machine m = mcc_machine();
     const struct signals upper = { .upper = 4 }, lower = { .lower = 4 }, other = { .upper = 3 };
-    CHECK_EQ(guard_switch(&m, &upper, up), -1);     /* not looked at */
+    CHECK_EQ(guard_switch(&m, &upper, up), -1); /* not looked at */
     m.limit_check = true;
     for (int mode = 0; mode < 4; mode++) {
         const int both = mode % 2 == 0 ? 2 : -1;
@@ -237,8 +237,8 @@ static void numbers(void)
     CHECK_EQ(guard_track(&m, &s), 1);
     CHECK_EQ(guard_watched(&m), 0);
     m.axis[1].in_pos = m.axis[2].in_pos = m.axis[5].in_pos = true;
-    CHECK_EQ(guard_watched(&m), 6);         /* W is not used */
-    m.axis[1].inpos_tol = 0.050;            /* 50 counts */
+    CHECK_EQ(guard_watched(&m), 6); /* W is not used */
+    m.axis[1].inpos_tol = 0.050;    /* 50 counts */
     m.axis[2].inpos_tol = 0.020;
     CHECK_EQ(guard_within(&m, &s), 5);
     s.err[1] = 50;

@@ -2,16 +2,16 @@
 #include "home.h"
 #include "mcc_check.h"
 
-static const double CYCLE = 1e-3, ACC = 2000.0;     /* [s], [mm/s^2] */
+static const double CYCLE = 1e-3, ACC = 2000.0; /* [s], [mm/s^2] */
 
 /* Sensor ON in [on_from, on_to], limits beyond +-limit for the length of a cam, an index every
  * pitch. [mm] */
 struct axis {
     double position, speed;
     double on_from, on_to, limit, cam, pitch;
-    bool   sensor_on, dead_sensor, no_index;
-    int    stuck;           /* the upper (1) or lower (-1) limit switch shows always */
-    bool   armed, latched;
+    bool sensor_on, dead_sensor, no_index;
+    int stuck; /* the upper (1) or lower (-1) limit switch shows always */
+    bool armed, latched;
     double latch;
 };
 
@@ -24,11 +24,13 @@ static bool on_switch(const struct axis *a, int side)
 static struct home_inputs show(const struct axis *a)
 {
     const bool on = a->position >= a->on_from && a->position <= a->on_to && !a->dead_sensor;
-    return (struct home_inputs){
-        .sensor = on == a->sensor_on, .upper = on_switch(a, 1), .lower = on_switch(a, -1),
-        .rest = a->speed == 0.0, .position = a->position,
-        .latched = a->latched, .latch = a->latch
-    };
+    return (struct home_inputs){ .sensor = on == a->sensor_on,
+                                 .upper = on_switch(a, 1),
+                                 .lower = on_switch(a, -1),
+                                 .rest = a->speed == 0.0,
+                                 .position = a->position,
+                                 .latched = a->latched,
+                                 .latch = a->latch };
 }
 
 /* Ramp to the ordered speed; a move ends on its target. */
@@ -83,8 +85,9 @@ static enum home_phase run(struct axis *a, const struct home_config *c, struct h
 
 static struct axis machine(void)
 {
-    return (struct axis){ .on_from = 20.0, .on_to = 26.0, .limit = 100.0, .cam = 1e3,
-                          .pitch = 10.0, .sensor_on = true };
+    return (struct axis){
+        .on_from = 20.0, .on_to = 26.0, .limit = 100.0, .cam = 1e3, .pitch = 10.0, .sensor_on = true
+    };
 }
 
 static struct home_config config(enum home_mode mode, uint32_t direction)
@@ -95,14 +98,16 @@ static struct home_config config(enum home_mode mode, uint32_t direction)
 /* All modes and directions that make sense, from everywhere: one and the same place. */
 static void same_place_from_anywhere(void)
 {
-    static const struct { enum home_mode mode; uint32_t direction; double place; } row[] = {
-        { HOME_SENSOR_INDEX, 2, 20.0 },     /* up onto it, back off it, up to the index in it */
-        { HOME_SENSOR_INDEX, 6, 10.0 },     /* up onto it, back off it, on down to the index */
-        { HOME_SENSOR_INDEX, 1, 30.0 },     /* down onto it, up off it, on up */
-        { HOME_SENSOR, 2, 20.0 },
-        { HOME_SENSOR, 1, 26.0 },
-        { HOME_LIMIT_INDEX, 6, 90.0 },
-        { HOME_LIMIT, 2, 100.0 },
+    static const struct {
+        enum home_mode mode;
+        uint32_t direction;
+        double place;
+    } row[] = {
+        { HOME_SENSOR_INDEX, 2, 20.0 }, /* up onto it, back off it, up to the index in it */
+        { HOME_SENSOR_INDEX, 6, 10.0 }, /* up onto it, back off it, on down to the index */
+        { HOME_SENSOR_INDEX, 1, 30.0 }, /* down onto it, up off it, on up */
+        { HOME_SENSOR, 2, 20.0 },       { HOME_SENSOR, 1, 26.0 },
+        { HOME_LIMIT_INDEX, 6, 90.0 },  { HOME_LIMIT, 2, 100.0 },
         { HOME_LIMIT_INDEX, 1, -90.0 },
     };
     for (size_t i = 0; i < sizeof row / sizeof row[0]; i++) {
@@ -110,7 +115,7 @@ static void same_place_from_anywhere(void)
             struct axis a = machine();
             struct home h;
             struct home_config c = config(row[i].mode, row[i].direction);
-            c.offset = row[i].place > 80.0 ? -1.25 : 1.25;      /* off the limit switch */
+            c.offset = row[i].place > 80.0 ? -1.25 : 1.25; /* off the limit switch */
             a.position = start;
             CHECK_EQ(run(&a, &c, &h), HOME_DONE);
             const bool index = c.mode != HOME_SENSOR && c.mode != HOME_LIMIT;
@@ -134,7 +139,7 @@ static void run_over(void)
         CHECK_NEAR(h.place, 11.25, 1e-9);
         a.position = start;
         a.on_from = 20.1;
-        c.direction = 4;            /* on from it in the direction of the search: it is not met */
+        c.direction = 4; /* on from it in the direction of the search: it is not met */
         CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
     }
 }
@@ -162,12 +167,12 @@ static void faults(void)
     struct home h;
     struct home_config c = config(HOME_SENSOR_INDEX, 6);
 
-    a.dead_sensor = true;                   /* both limits are met */
+    a.dead_sensor = true; /* both limits are met */
     CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
     CHECK_EQ(h.fault, HOME_NO_SENSOR);
     a = machine();
     a.position = -90.0;
-    c.search = 50.0;                        /* it is 110 mm away */
+    c.search = 50.0; /* it is 110 mm away */
     CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
     CHECK_EQ(h.fault, HOME_NO_SENSOR);
     c = config(HOME_SENSOR_INDEX, 6);
@@ -176,7 +181,7 @@ static void faults(void)
     CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
     CHECK_EQ(h.fault, HOME_NO_INDEX);
     a = machine();
-    a.on_from = -99.0;                      /* the sensor reaches down to the limit */
+    a.on_from = -99.0; /* the sensor reaches down to the limit */
     a.on_to = 101.0;
     a.limit = 40.0;
     CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
@@ -198,20 +203,20 @@ static void switches_ahead(void)
         struct home h;
         struct home_config c = config(HOME_INDEX, down ? 4 : 0);
 
-        a.position = 83.0 * side;           /* the index lies behind the switch */
+        a.position = 83.0 * side; /* the index lies behind the switch */
         a.limit = 88.0;
         CHECK_EQ(run(&a, &c, &h), HOME_FAILED);
         CHECK_EQ(h.fault, HOME_ON_LIMIT);
         CHECK_NEAR(side * a.position, 88.0, 2.0 * CYCLE + 1e-9);
 
-        a = machine();                      /* on the switch behind it */
+        a = machine(); /* on the switch behind it */
         c = config(HOME_INDEX, down ? 0 : 4);
         a.position = 109.0 * side;
         c.offset = 0.0;
         CHECK_EQ(run(&a, &c, &h), HOME_DONE);
         CHECK_NEAR(h.place, 100.0 * side, 1e-9);
 
-        a = machine();                      /* an offset that leads onto the switch */
+        a = machine(); /* an offset that leads onto the switch */
         a.position = 83.0 * side;
         c = config(HOME_INDEX, down ? 4 : 0);
         c.offset = 15.0 * side;
@@ -219,7 +224,7 @@ static void switches_ahead(void)
         CHECK_EQ(h.fault, HOME_ON_LIMIT);
         CHECK_NEAR(side * a.position, 100.0, 2.0 * CYCLE + 1e-9);
 
-        a = machine();                      /* at rest on the switch, and back from there */
+        a = machine(); /* at rest on the switch, and back from there */
         a.position = 93.0 * side;
         c.offset = -1.25 * side;
         CHECK_EQ(run(&a, &c, &h), HOME_DONE);

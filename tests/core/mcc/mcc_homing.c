@@ -4,40 +4,44 @@
 #include "mcc_card.h"
 
 /* Counts of the motors from a mark on the machine; the library does not know where it starts. */
-enum {
-    SENSOR_FROM = 5200, SENSOR_TO = 8300, LIMIT = 30000, INDEX = 10000, INDEX_AT = 1000
-};
+enum { SENSOR_FROM = 5200, SENSOR_TO = 8300, LIMIT = 30000, INDEX = 10000, INDEX_AT = 1000 };
 
 struct motor {
-    int32_t start;          /* [counts] where the counter began */
-    double  place;          /* [counts] from the mark */
-    int32_t now;            /* [counts] the same, whole */
-    bool    backward;       /* the encoder counts down */
-    bool    no_index, no_sensor;
-    int32_t armed;          /* latch_seq when armed last */
-    bool    waits;          /* for an index */
+    int32_t start; /* [counts] where the counter began */
+    double place;  /* [counts] from the mark */
+    int32_t now;   /* [counts] the same, whole */
+    bool backward; /* the encoder counts down */
+    bool no_index, no_sensor;
+    int32_t armed; /* latch_seq when armed last */
+    bool waits;    /* for an index */
 };
 
 struct machine_room {
-    struct card  card;
+    struct card card;
     struct motor motor[AXES];
     struct pc_panel panel;
-    int64_t at;             /* [clocks] */
+    int64_t at; /* [clocks] */
 };
 
 static struct machine_room room;
 
 static struct pc_config config_of(enum home_mode mode, uint32_t direction)
 {
-    struct pc_config c = { .bus = 4000, .ipo = 40000, .latency = 8000, .seed = 1, .min_stock = 3,
-                           .batch = 4, .home_settle = 0.05, .home_order = { 1 } };
+    struct pc_config c = { .bus = 4000,
+                           .ipo = 40000,
+                           .latency = 8000,
+                           .seed = 1,
+                           .min_stock = 3,
+                           .batch = 4,
+                           .home_settle = 0.05,
+                           .home_order = { 1 } };
     for (int i = 0; i < AXES; i++) {
         c.home[i] = (struct home_config){ mode, direction, true, 60.0, 5.0, 0.0, 100.0, 12.0 };
     }
     return c;
 }
 
-static int32_t depth = 12;      /* of the point queue */
+static int32_t depth = 12; /* of the point queue */
 
 static void start(const struct pc_config *c, int32_t at, bool program)
 {
@@ -99,7 +103,7 @@ static void period(const char *text)
 static int search(void)
 {
     room.panel.go_home = true;
-    for (int k = 0; k < 15; k++) {      /* an IPO cycle and more */
+    for (int k = 0; k < 15; k++) { /* an IPO cycle and more */
         period(NULL);
     }
     room.panel.go_home = false;
@@ -114,15 +118,17 @@ static int search(void)
  * of a bus period at low speed. */
 static void same_place(void)
 {
-    static const struct { enum home_mode mode; uint32_t direction; int32_t place; double offset; }
-    row[] = {
-        { HOME_SENSOR_INDEX, 2, 11000, 0.0 },       /* up, back off, up to the next index */
-        { HOME_SENSOR_INDEX, 6, 1000, 1.2345 },     /* up, back off, on down */
-        { HOME_SENSOR_INDEX, 1, 11000, -2.5 },      /* down, off up, on up */
-        { HOME_SENSOR, 2, SENSOR_FROM - 1, 0.0 },
-        { HOME_SENSOR, 1, SENSOR_TO + 1, 3.0005 },
-        { HOME_LIMIT_INDEX, 6, 21000, 0.0 },
-        { HOME_LIMIT, 2, LIMIT - 1, -1.0 },
+    static const struct {
+        enum home_mode mode;
+        uint32_t direction;
+        int32_t place;
+        double offset;
+    } row[] = {
+        { HOME_SENSOR_INDEX, 2, 11000, 0.0 },   /* up, back off, up to the next index */
+        { HOME_SENSOR_INDEX, 6, 1000, 1.2345 }, /* up, back off, on down */
+        { HOME_SENSOR_INDEX, 1, 11000, -2.5 },  /* down, off up, on up */
+        { HOME_SENSOR, 2, SENSOR_FROM - 1, 0.0 }, { HOME_SENSOR, 1, SENSOR_TO + 1, 3.0005 },
+        { HOME_LIMIT_INDEX, 6, 21000, 0.0 },      { HOME_LIMIT, 2, LIMIT - 1, -1.0 },
         { HOME_LIMIT_INDEX, 1, -29000, 0.0 },
     };
     for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
@@ -162,7 +168,7 @@ static void backward_and_again(void)
     struct pc_config c = config_of(HOME_SENSOR_INDEX, 6);
     c.encoder_backward[0] = true;
     c.home[0].offset = 2.0;
-    depth = 300;        /* far longer than an axis has to stand still */
+    depth = 300; /* far longer than an axis has to stand still */
     c.home[0].high_speed = 20.0;
     start(&c, 777, false);
     depth = 12;
@@ -212,7 +218,7 @@ static void orders(void)
     while (room.motor[0].now == x && room.at < 1000000000) {
         period(NULL);
     }
-    CHECK_EQ(room.motor[2].now, 11000);         /* was there before X began */
+    CHECK_EQ(room.motor[2].now, 11000); /* was there before X began */
     while (MCC_check_homef(&pc.mcc) == 0) {
         period(NULL);
     }
@@ -408,7 +414,7 @@ static void refusals(void)
     CHECK_EQ(MCC_go_home(&pc.mcc, none), MCC_PARAMETER);
     CHECK_EQ(MCC_go_home(&pc.mcc, negative), MCC_PARAMETER);
     CHECK_EQ(MCC_go_home(&pc.mcc, unused), MCC_PARAMETER);
-    CHECK_EQ(MCC_go_home(&pc.mcc, unset), MCC_PARAMETER);   /* Y has no configuration */
+    CHECK_EQ(MCC_go_home(&pc.mcc, unset), MCC_PARAMETER); /* Y has no configuration */
     CHECK_EQ(homing_set(&pc.mcc, 0, &fast, false), MCC_PARAMETER);
     CHECK_EQ(homing_set(&pc.mcc, 0, &bad, false), MCC_PARAMETER);
     CHECK_EQ(homing_set(&pc.mcc, 6, &c.home[0], false), MCC_PARAMETER);

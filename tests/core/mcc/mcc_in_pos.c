@@ -47,7 +47,7 @@ static int wait_for_position(int mode, double settle, double timeout, double lef
 
 static void in_position(void)
 {
-    const double look_time = 1e-4;  /* BUS */
+    const double look_time = 1e-4; /* BUS */
     /* 1000 0.9^n < 11 from the 44th look on; the settle time takes 20 more. The look that found the
      * queue empty is not counted here. */
     CHECK_EQ(wait_for_position(0, 20 * look_time, 1.0, 1000.0, 0.9), 44);
@@ -73,7 +73,7 @@ static void in_position_of_a_path(double tolerance)
     CHECK(MCC_line_y(&m, 5.0) > 0);
     run(&r);
     CHECK(r.sum[1] == 5000 && m.mover.confirming);
-    CHECK_EQ(MCC_motion_abort(&m), 0);      /* nothing is waited for any more */
+    CHECK_EQ(MCC_motion_abort(&m), 0); /* nothing is waited for any more */
     CHECK(MCC_check_stop(&m));
     CHECK(MCC_motion_delay(&m, 10.0) > 0);
     run(&r);
@@ -84,6 +84,6 @@ int main(void)
 {
     in_position();
     in_position_of_a_path(0.0);
-    in_position_of_a_path(0.1);     /* look-ahead */
+    in_position_of_a_path(0.1); /* look-ahead */
     return check_result();
 }

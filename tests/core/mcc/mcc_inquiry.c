@@ -3,16 +3,16 @@
 
 #include "mcc_card.h"
 
-static const double WALL = 5.4321, FLOOR = -2.71828;    /* [mm] beyond X, below Z */
+static const double WALL = 5.4321, FLOOR = -2.71828; /* [mm] beyond X, below Z */
 
 struct room {
     struct card card;
     struct pc_panel panel;
-    double  place[AXES];    /* [counts] of the motors, which lag their pulses by some 3 ms */
-    bool    touched;
-    double  contact[AXES];  /* [mm] where the motors were at the latest look with a change */
-    bool    latches, open;  /* the card latches at contact, and no level is wired; no encoders */
-    int64_t at;             /* [clocks] */
+    double place[AXES]; /* [counts] of the motors, which lag their pulses by some 3 ms */
+    bool touched;
+    double contact[AXES]; /* [mm] where the motors were at the latest look with a change */
+    bool latches, open;   /* the card latches at contact, and no level is wired; no encoders */
+    int64_t at;           /* [clocks] */
     const char *text;
 };
 
@@ -20,8 +20,13 @@ static struct room room;
 
 static void start(const char *text, enum inquiry_place place)
 {
-    const struct pc_config c = { .bus = 4000, .ipo = 40000, .latency = 8000, .seed = 1,
-                                 .min_stock = 3, .batch = 4, .home_settle = 0.05 };
+    const struct pc_config c = { .bus = 4000,
+                                 .ipo = 40000,
+                                 .latency = 8000,
+                                 .seed = 1,
+                                 .min_stock = 3,
+                                 .batch = 4,
+                                 .home_settle = 0.05 };
     struct machine m = mcc_machine();
     m.queue_depth = 12;
     memset(&room, 0, sizeof room);
@@ -77,8 +82,12 @@ static void run(double seconds)
  * motion rests behind it, and goes on from there without a jump. */
 static void contacts(void)
 {
-    static const struct { const char *text; int axis; double place; enum inquiry_place by; }
-    rows[] = {
+    static const struct {
+        const char *text;
+        int axis;
+        double place;
+        enum inquiry_place by;
+    } rows[] = {
         { "G38.2 X20 F100\n", 0, WALL, INQUIRY_ENCODERS },
         { "G38.2 X20 F3000\n", 0, WALL, INQUIRY_ENCODERS },
         { "G38.3 Z-10 F300\n", 2, FLOOR, INQUIRY_ENCODERS },
@@ -98,20 +107,20 @@ static void contacts(void)
         const int a = rows[i].axis;
         const double pulse = 1e-3;
         for (int k = 0; k < 3; k++) {
-            const double is = rows[i].by == INQUIRY_LATCH
-                            ? room.panel.signals.latch[k] / 1000.0 : room.contact[k];
+            const double is = rows[i].by == INQUIRY_LATCH ? room.panel.signals.latch[k] / 1000.0
+                                                          : room.contact[k];
             CHECK_NEAR(in->contact[k], is, 0.5 * pulse + 1e-9);
         }
-        const double step = i == 1 || i == 5 ? 0.006 : 0.0006;   /* [mm] of a look at that feed */
+        const double step = i == 1 || i == 5 ? 0.006 : 0.0006; /* [mm] of a look at that feed */
         CHECK_NEAR(in->contact[a], rows[i].place, step + pulse);
         double place[AXES];
         MCC_get_cpos(&pc.mcc, place);
-        CHECK(fabs(place[a] - rows[i].place) < 4.5);             /* points ahead and ramp */
+        CHECK(fabs(place[a] - rows[i].place) < 4.5); /* points ahead and ramp */
         CHECK(fabs(place[a] - rows[i].place) > 0.0);
         CHECK_EQ(room.card.sum[a], lround(1000.0 * place[a]));
         CHECK_EQ(room.card.underflows, 0);
     }
-    start("G38.2 X20 F300\n", INQUIRY_PULSES);      /* the motor is 3 ms behind these: 15 um */
+    start("G38.2 X20 F300\n", INQUIRY_PULSES); /* the motor is 3 ms behind these: 15 um */
     room.open = true;
     run(30.0);
     CHECK(pc.mcc.program.touched);
@@ -122,7 +131,12 @@ static void contacts(void)
  * does not) already is always an error, before anything moves. */
 static void no_contact(void)
 {
-    static const struct { const char *text; int32_t error; int line; double x; } rows[] = {
+    static const struct {
+        const char *text;
+        int32_t error;
+        int line;
+        double x;
+    } rows[] = {
         { "G38.2 X3 F600\nG1 X0\n", MCC_ERROR_PROBE_END, 1, 3.0 },
         { "G38.3 X3 F600\nG1 X4\n", 0, 2, 4.0 },
         { "G1 X8 F6000\nG38.4 X7\nX0\n", MCC_ERROR_PROBE_END, 2, 7.0 },
@@ -165,12 +179,16 @@ static void held(void)
 /* M66: motion ends, then the input is waited for, then the result is there and motion goes on. */
 static void inputs(void)
 {
-    static const struct { const char *words; double at; uint32_t before, then; double result; }
-    rows[] = {
-        { "M66 P3 L3 Q2", 1.0, 0, 8, 1.0 },  { "M66 P3 L3 Q0.5", 1.0, 0, 8, -1.0 },
+    static const struct {
+        const char *words;
+        double at;
+        uint32_t before, then;
+        double result;
+    } rows[] = {
+        { "M66 P3 L3 Q2", 1.0, 0, 8, 1.0 },         { "M66 P3 L3 Q0.5", 1.0, 0, 8, -1.0 },
         { "M66 P31 L4 Q2", 1.0, 1u << 31, 0, 0.0 }, { "M66 P0 L1 Q2", 1.0, 0, 1, 1.0 },
-        { "M66 P0 L1 Q1", 3.0, 1, 0, -1.0 }, { "M66 P0 L2 Q2", 1.0, 1, 0, 0.0 },
-        { "M66 P5 L0", 9.0, 32, 0, 1.0 },    { "M66 P5", 9.0, ~32u, 0, 0.0 },
+        { "M66 P0 L1 Q1", 3.0, 1, 0, -1.0 },        { "M66 P0 L2 Q2", 1.0, 1, 0, 0.0 },
+        { "M66 P5 L0", 9.0, 32, 0, 1.0 },           { "M66 P5", 9.0, ~32u, 0, 0.0 },
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         char text[80];
@@ -196,11 +214,15 @@ static void inputs(void)
 /* M49 to M53 from their place on: which of panel and adaptive feed act. [s] of 20 mm at 10 mm/s. */
 static void overrides(void)
 {
-    static const struct { const char *words; double override, adaptive; bool hold; double time; }
-    rows[] = {
-        { "", 0.5, 0.25, false, 4.0 },          { "M50 P0", 0.5, 0.25, false, 2.0 },
-        { "M49", 0.5, 0.25, false, 2.0 },       { "M49\nM48", 0.5, 0.25, false, 4.0 },
-        { "M52", 1.0, 0.5, false, 4.0 },        { "M52", 0.5, 0.5, false, 8.0 },
+    static const struct {
+        const char *words;
+        double override, adaptive;
+        bool hold;
+        double time;
+    } rows[] = {
+        { "", 0.5, 0.25, false, 4.0 },           { "M50 P0", 0.5, 0.25, false, 2.0 },
+        { "M49", 0.5, 0.25, false, 2.0 },        { "M49\nM48", 0.5, 0.25, false, 4.0 },
+        { "M52", 1.0, 0.5, false, 4.0 },         { "M52", 0.5, 0.5, false, 8.0 },
         { "M52\nM50 P0", 0.5, 0.5, false, 4.0 }, { "M52\nM52 P0", 1.0, 0.5, false, 2.0 },
         { "M53 P0", 1.0, 1.0, true, 2.0 },
     };

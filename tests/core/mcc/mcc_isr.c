@@ -2,11 +2,9 @@
 #include "isr.h"
 #include "mcc_check.h"
 
-static const struct isr_config ALL = {
-    .mask = { 64, 63, 63, 63, 16383, 16383, 1023, 65535, 63 },
-    .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 },
-    .service = 100
-};
+static const struct isr_config ALL = { .mask = { 64, 63, 63, 63, 16383, 16383, 1023, 65535, 63 },
+                                       .priority = { 3, 4, 4, 4, 6, 6, 5, 2, 1 },
+                                       .service = 100 };
 
 /* A PC with nothing else to do serves until a clock; busy is when it can begin the next page. */
 static void serve(struct isr *q, int64_t *busy, int64_t end)
@@ -58,7 +56,7 @@ static void a_later_and_more_urgent_one(void)
     isr_start(&q, &ALL);
     isr_read(&q, flags, 1, false, 0, 50);
     serve(&q, &busy, 60);
-    CHECK_EQ(q.page, 4);                    /* until 150 */
+    CHECK_EQ(q.page, 4); /* until 150 */
     flags[4] = flags[5] = 0;
     flags[8] = 1;
     isr_read(&q, flags, 1, false, 70, 80);
@@ -80,14 +78,14 @@ static void masked_and_merged(void)
 
     isr_start(&q, &ALL);
     isr_read(&q, flags, 1, false, 0, 10);
-    CHECK_EQ(q.waiting[0], 64);             /* the FIFO of the second axis is not the watched one */
+    CHECK_EQ(q.waiting[0], 64); /* the FIFO of the second axis is not the watched one */
     CHECK_EQ(q.waiting[1], 0);
     flags[0] = 1;
     isr_read(&q, flags, 1, true, 5, 20);
     serve(&q, &busy, 1000);
     CHECK_EQ(q.served[0], 1);
     CHECK_EQ(q.sources[0], 65);
-    CHECK_EQ(q.latency[0], 20);             /* from the first of the two */
+    CHECK_EQ(q.latency[0], 20); /* from the first of the two */
 }
 
 int main(void)

@@ -44,7 +44,7 @@ static void prefilter_is_exact(void)
     struct law_config c = config();
     struct law s = { 0 };
     struct law_look look = { 0 };
-    const double tau = 8.3e-3, per = 7.0;   /* [pulses/period] */
+    const double tau = 8.3e-3, per = 7.0; /* [pulses/period] */
     double volts[AXES];
 
     c.axis[0].lag = tau;
@@ -53,7 +53,7 @@ static void prefilter_is_exact(void)
     look.speed[0] = per / c.period;
     for (int n = 1; n <= 2000; n++) {
         look.pulses[0] = (int32_t)(per * n);
-        const double before = s.behind[0];      /* the error counter is as old */
+        const double before = s.behind[0]; /* the error counter is as old */
         law_tick(&c, &s, &look, 10.0, volts);
         const double full = 1.0 - exp(-n * c.period / tau);
         CHECK_NEAR(s.behind[0], per / c.period * tau * full, 1e-9 * per / c.period * tau);
@@ -162,8 +162,13 @@ static void speed_of_the_frame(bool inverted)
 {
     struct machine m = mcc_machine();
     struct pc_panel panel = { .override = 1.0 };
-    struct pc_config p = { .bus = 4000, .ipo = 40000, .latency = 8000, .seed = 1, .min_stock = 3,
-                           .batch = 4, .output_mode = { 2, 2, 2 } };
+    struct pc_config p = { .bus = 4000,
+                           .ipo = 40000,
+                           .latency = 8000,
+                           .seed = 1,
+                           .min_stock = 3,
+                           .batch = 4,
+                           .output_mode = { 2, 2, 2 } };
     struct card c;
     int32_t sum = 0, frame = 0;
     int64_t moved = 0;
@@ -177,18 +182,18 @@ static void speed_of_the_frame(bool inverted)
     card_start(&c, &m, &p, true);
     for (int k = 0; k < 12000; k++) {
         card_period(&c, k * p.bus, &panel, "G61 G1 X20 Y5 F3000\nX0 Y3\nM2\n");
-        const double speed = pc.volts[0] / scale * 1.024e-3;    /* [pulses/frame] */
+        const double speed = pc.volts[0] / scale * 1.024e-3; /* [pulses/frame] */
         CHECK(fabs(speed - frame) < 1.0);
         way += speed * (double)p.bus / (double)machine_dda_clocks(&m);
         fastest = fmax(fastest, fabs(speed));
         moved += frame != 0;
         if (c.sum[0] != sum || c.now % c.dda < p.bus) {
-            frame = c.sum[0] - sum;     /* a boundary was passed */
+            frame = c.sum[0] - sum; /* a boundary was passed */
             sum = c.sum[0];
         }
     }
     CHECK(pc_done(&pc) && moved > 8000);
-    CHECK_NEAR(way, 0.0, 60.0);     /* sampled: a boundary lies up to a tenth of a frame off */
+    CHECK_NEAR(way, 0.0, 60.0); /* sampled: a boundary lies up to a tenth of a frame off */
     CHECK_NEAR(fastest, 50.0 * 1.024 * 20.0 / hypot(20.0, 2.0), 0.02);
 }
 
@@ -199,8 +204,13 @@ static void tool_on_the_path(bool stops)
     static struct comp_table table = { .interval = 2000, .home = 100 };
     struct machine m = mcc_machine();
     struct pc_panel panel = { .override = 1.0 };
-    struct pc_config p = { .bus = 4000, .ipo = 40000, .latency = 8000, .seed = 1, .min_stock = 3,
-                           .batch = 4, .output_mode = { 2, 2, 2 } };
+    struct pc_config p = { .bus = 4000,
+                           .ipo = 40000,
+                           .latency = 8000,
+                           .seed = 1,
+                           .min_stock = 3,
+                           .batch = 4,
+                           .output_mode = { 2, 2, 2 } };
     struct card c;
     double most = 0.0, off = 0.0;
 
@@ -211,7 +221,7 @@ static void tool_on_the_path(bool stops)
         table.forward[i] = i < 100 ? 0 : 6 * (i - 100);
         table.backward[i] = table.forward[i] - 10;
     }
-    p.law.cross_p = 1.0;        /* a volt per mm at 1000 pulses/mm */
+    p.law.cross_p = 1.0; /* a volt per mm at 1000 pulses/mm */
     m.axis[0].inverted = true;
     card_start(&c, &m, &p, true);
     CHECK_EQ(MCC_set_comp(&pc.mcc, 0, &table), 0);
@@ -229,7 +239,7 @@ static void tool_on_the_path(bool stops)
     }
     CHECK(pc_done(&pc));
     CHECK(off > 55.0);
-    CHECK(most > 1e-5 && most < 4e-3);      /* [V]: 4 pulses */
+    CHECK(most > 1e-5 && most < 4e-3); /* [V]: 4 pulses */
 }
 
 int main(void)

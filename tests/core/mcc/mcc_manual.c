@@ -11,7 +11,6 @@ static struct mcc before;
         CHECK(memcmp(&before, &m, sizeof m) == 0); \
     } while (0)
 
-
 /* One report of the card and one point. */
 static bool step(struct record *r)
 {
@@ -73,7 +72,7 @@ static void settings(void)
     CHECK_EQ(MCC_get_ptp_asyn_acc_type(&m, types), 0);
     CHECK(memcmp(types, "TTTTTT", AXES) == 0);
     CHECK_EQ(MCC_get_ptp_asyn_acc_step(&m, ms), 0);
-    CHECK_NEAR(ms[5], 100.0, 1e-12);            /* acc_time of the machine */
+    CHECK_NEAR(ms[5], 100.0, 1e-12); /* acc_time of the machine */
     CHECK_EQ(MCC_set_ptp_asyn_acc_type(&m, "STSTST"), 0);
     CHECK_EQ(MCC_set_ptp_asyn_decc_type(&m, "TTTSSS"), 0);
     CHECK_EQ(MCC_set_ptp_asyn_acc_step(&m, good), 0);
@@ -106,8 +105,8 @@ static void asyn_durations(void)
     CHECK_EQ(MCC_set_ptp_asyn_acc_type(&m, "SSTSSS"), 0);
     CHECK_EQ(MCC_set_ptp_asyn_decc_type(&m, "SSTSSS"), 0);
     CHECK_EQ(MCC_ptp_asyn(&m, target), 1);
-    CHECK_EQ(MCC_set_ptp_spd(&m, 10.0), 0);     /* counts from the next command on */
-    CHECK_EQ(MCC_line_x(&m, 61.0), 2);          /* waits behind it */
+    CHECK_EQ(MCC_set_ptp_spd(&m, 10.0), 0); /* counts from the next command on */
+    CHECK_EQ(MCC_line_x(&m, 61.0), 2);      /* waits behind it */
     while (step(&r) && r.last.command == 1) {
         for (int i = 0; i < 3; i++) {
             moved[i] = r.last.place[i] != last[i] ? r.n : moved[i];
@@ -121,7 +120,7 @@ static void asyn_durations(void)
         const struct scurve_start rest = { 0.0, 0.0, 0.0 };
         struct scurve s;
         CHECK_EQ(scurve_plan(&s, &rest, target[i], &l), SCURVE_OK);
-        const int n = moved[i] + (i == 0);      /* in its last one the line begins */
+        const int n = moved[i] + (i == 0); /* in its last one the line begins */
         CHECK(scurve_total(&s) <= n * dt && scurve_total(&s) > (n - 1) * dt - 1e-9);
         CHECK(i == 0 || last[i] == target[i]);
     }
@@ -143,7 +142,7 @@ static void asyn_calls(void)
     REFUSED(MCC_ptp_asyn(&m, far), MCC_PARAMETER);
     REFUSED(MCC_ptp_asyn(&m, nan), MCC_PARAMETER);
     CHECK_EQ(MCC_set_inc(&m), 0);
-    CHECK_EQ(MCC_ptp_asyn(&m, (double[AXES]){ 0.0 }), 1);   /* nothing to do */
+    CHECK_EQ(MCC_ptp_asyn(&m, (double[AXES]){ 0.0 }), 1); /* nothing to do */
     for (int i = 0; i < RING_SIZE; i++) {
         CHECK_EQ(MCC_ptp_asyn(&m, one), 2 + i);
     }
@@ -188,8 +187,7 @@ static void asyn_reactions(void)
                     watch(&w[i], r.last.place[i]);
                     CHECK(fabs(w[i].v) <= 500.0 + 1e-6);
                     CHECK(fabs(w[i].a) <= acc + 1e-3);
-                    CHECK(!s || w[i].n < 4 ||
-                          fabs(w[i].a - before_a[i]) <= jerk * 1.024e-3 + 1e-3);
+                    CHECK(!s || w[i].n < 4 || fabs(w[i].a - before_a[i]) <= jerk * 1.024e-3 + 1e-3);
                 }
             } else {
                 w[0].n = w[1].n = 0;
@@ -212,13 +210,13 @@ static void jog_continuous(void)
     struct record r = { 0 };
 
     begin(mcc_machine());
-    REFUSED(MCC_jog_c(&m, 3, 1, 10.0), MCC_PARAMETER);      /* not used */
+    REFUSED(MCC_jog_c(&m, 3, 1, 10.0), MCC_PARAMETER); /* not used */
     REFUSED(MCC_jog_c(&m, -1, 1, 10.0), MCC_PARAMETER);
     REFUSED(MCC_jog_c(&m, 0, 2, 10.0), MCC_PARAMETER);
     REFUSED(MCC_jog_c(&m, 0, 1, 0.0), MCC_PARAMETER);
     REFUSED(MCC_jog_c(&m, 0, 1, 100.1), MCC_PARAMETER);
     REFUSED(MCC_jog_c(&m, 0, 1, NAN), MCC_PARAMETER);
-    REFUSED(MCC_jog_c(&m, 0, 0, 0.0), MCC_NO_ERR);          /* it stands */
+    REFUSED(MCC_jog_c(&m, 0, 0, 0.0), MCC_NO_ERR); /* it stands */
     CHECK_EQ(MCC_jog_c(&m, 0, 1, 10.0), 0);
     CHECK_EQ(MCC_jog_c(&m, 1, -1, 20.0), 0);
     REFUSED(MCC_jog_i(&m, 0, 1.0, 10.0), MCC_COMMAND_NOTFINISHED);
@@ -235,7 +233,7 @@ static void jog_continuous(void)
     CHECK_NEAR(r.last.feed, hypot(50.0, 100.0), 1e-9);
     CHECK(task_moving(&m) && task_status(&m) == TASK_RUNNING);
     CHECK_EQ(MCC_jog_c(&m, 0, 0, 0.0), 0);
-    CHECK_EQ(MCC_jog_c(&m, 1, 1, 20.0), 0);                 /* it turns round */
+    CHECK_EQ(MCC_jog_c(&m, 1, 1, 20.0), 0); /* it turns round */
     steps(&r, 1000);
     CHECK_NEAR(r.last.place[0], 50.0 * (1.024 - 0.05) + 2.5, 1e-6);
     CHECK_NEAR(r.last.place[1], -100.0 * 0.974 + 100.0 * (1.024 - 0.2), 1e-6);
@@ -324,7 +322,7 @@ static void jog_steps(void)
     REFUSED(MCC_jog_s(&m, 0, INT32_MAX), MCC_PARAMETER);
     REFUSED(MCC_jog_s(&m, 5, 1), MCC_PARAMETER);
     CHECK_EQ(MCC_jog_i(&m, 0, 0.12345, 10.0), 0);
-    CHECK_EQ(MCC_jog_i(&m, 1, -3.0, 100.0), 0);             /* beside it */
+    CHECK_EQ(MCC_jog_i(&m, 1, -3.0, 100.0), 0); /* beside it */
     run(&r);
     CHECK(MCC_check_stop(&m) && r.last.place[0] == 0.12345 && r.last.place[1] == -3.0);
     pulses = 123;
@@ -352,11 +350,11 @@ static void wheel(void)
 
         begin(mcc_machine());
         m.signals.enc_aux[1] = INT32_MAX - 100;
-        CHECK_EQ(MCC_jog_i(&m, 0, 0.0004, 1.0), 0);         /* less than half a pulse */
+        CHECK_EQ(MCC_jog_i(&m, 0, 0.0004, 1.0), 0); /* less than half a pulse */
         run(&r);
         REFUSED(MCC_MPG_set(&m, 0, 9, 1.0), MCC_PARAMETER);
         REFUSED(MCC_MPG_set(&m, 0, -1, 1.0), MCC_PARAMETER);
-        REFUSED(MCC_MPG_set(&m, 0, 0, 1.0), MCC_PARAMETER);  /* its own encoder */
+        REFUSED(MCC_MPG_set(&m, 0, 0, 1.0), MCC_PARAMETER); /* its own encoder */
         REFUSED(MCC_MPG_set(&m, 3, 7, 1.0), MCC_PARAMETER);
         REFUSED(MCC_MPG_set(&m, 0, 7, INFINITY), MCC_PARAMETER);
         CHECK_EQ(MCC_MPG_set(&m, 0, 7, ratio[k]), 0);
@@ -399,7 +397,7 @@ static void wheel_limits(void)
     steps(&r, 300);
     const double met = r.last.place[2];
     CHECK(met > 10.0 && met < 99.0 && r.last.feed == 0.0);
-    m.signals.enc_aux[0] += 5000;                           /* on against the switch */
+    m.signals.enc_aux[0] += 5000; /* on against the switch */
     steps(&r, 100);
     CHECK_NEAR(r.last.place[2], met, 0.001);
     m.signals.enc_aux[0] -= 700;
@@ -420,7 +418,7 @@ static void too_many_pulses(void)
 
     begin(mcc_machine());
     CHECK_EQ(MCC_set_max_dda_spd(&m, (int32_t[AXES]){ 100, 4095, 4095, 4095, 4095, 4095 }), 0);
-    CHECK_EQ(MCC_jog_c(&m, 0, 1, 100.0), 0);                /* 512 pulses a DDA time */
+    CHECK_EQ(MCC_jog_c(&m, 0, 1, 100.0), 0); /* 512 pulses a DDA time */
     run(&r);
     CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_SPEED);
     CHECK(MCC_check_stop(&m) && r.sum[0] > 500);
@@ -441,7 +439,7 @@ static void range(void)
     machine.axis[0].ppr = 100000000;
     machine.dda_length = 15;
     machine.dda_time = 0.82e-3;
-    machine.axis[0].rpm = 20.0;     /* 33 million pulses per second */
+    machine.axis[0].rpm = 20.0; /* 33 million pulses per second */
     CHECK_EQ(MCC_init_motion(&m, &machine), 0);
     machine.queue_depth = 1;
     begin(machine);

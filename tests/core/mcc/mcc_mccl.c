@@ -3,7 +3,7 @@
 #include "mccl.h"
 #include "mcc_check.h"
 
-static struct mcc a, b;     /* 140 kB each: not on the stack */
+static struct mcc a, b; /* 140 kB each: not on the stack */
 
 static void same_start(void)
 {

@@ -7,8 +7,13 @@ static const struct pc_panel calm = { .override = 1.0 };
 /* Bus 0.1 ms, IPO 1 ms, latency 0.25 ms; the usual priorities. [clocks] */
 static struct pc_config usual(void)
 {
-    return (struct pc_config){ .bus = 4000, .ipo = 40000, .latency = 10000.0, .seed = 1,
-                               .min_stock = 3, .batch = 4, .priority = { 4, 3, 1, 2 },
+    return (struct pc_config){ .bus = 4000,
+                               .ipo = 40000,
+                               .latency = 10000.0,
+                               .seed = 1,
+                               .min_stock = 3,
+                               .batch = 4,
+                               .priority = { 4, 3, 1, 2 },
                                .output_mode = { 1, 1, 1, 1, 1, 1 } };
 }
 
@@ -19,7 +24,7 @@ static void run(struct card *c, const char *text, int periods)
     }
 }
 
-static const char line_100[] = "G1 X100 F6000\nM2\n";   /* 1.1 s at 100 pulses per ms */
+static const char line_100[] = "G1 X100 F6000\nM2\n"; /* 1.1 s at 100 pulses per ms */
 
 /* The frames arrive when the last of them has been written, however busy the rest is. */
 static void time_of_a_write(void)
@@ -69,7 +74,7 @@ static void time_of_a_point(void)
     struct card c;
     config.time[PC_IPO] = 500;
     config.unit[PC_IPO] = 2000;
-    config.start = 1;       /* the second cycle, at clock 40000 */
+    config.start = 1; /* the second cycle, at clock 40000 */
     card_start(&c, &m, &config, true);
     /* A bus instant settles what comes before two periods from there. */
     for (int k = 0; k < 14; k++) {
@@ -82,7 +87,10 @@ static void time_of_a_point(void)
 }
 
 /* The frames with pulses that were written, up to so many. */
-struct stream { int n; int32_t frame[4000][AXES]; };
+struct stream {
+    int n;
+    int32_t frame[4000][AXES];
+};
 
 static void record(struct stream *s, const char *text, const struct card *c)
 {

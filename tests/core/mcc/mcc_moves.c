@@ -38,9 +38,9 @@ static int run(double place[AXES], double centre_x, double centre_y, double radi
             double turned = atan2(y, x) - start;
             turned += turned < -1e-9 ? 2.0 * acos(-1.0) : 0.0;
             *off = fmax(*off, fabs(hypot(x, y) - radius));
-            if (turned > 0.1 && turned < 6.0) {     /* U: 3 mm for a full turn */
-                *out_of_step = fmax(*out_of_step,
-                                    fabs(place[3] - u - 3.0 * turned / (2.0 * acos(-1.0))));
+            if (turned > 0.1 && turned < 6.0) { /* U: 3 mm for a full turn */
+                *out_of_step =
+                    fmax(*out_of_step, fabs(place[3] - u - 3.0 * turned / (2.0 * acos(-1.0))));
             }
             points++;
         }
@@ -55,7 +55,7 @@ static void circle_with_followers(void)
     open_six();
     CHECK_EQ(MCC_circle_xyuvw(&m, (double[]){ -10.0, 0.0 }, 1, (double[]){ 3.0, -6.0, 1.5 }), 1);
     CHECK(run(place, -10.0, 0.0, 10.0, &off, &out_of_step) > 1000);
-    CHECK_NEAR(off, 0.0, 1e-3);             /* half a pulse in X and Y */
+    CHECK_NEAR(off, 0.0, 1e-3); /* half a pulse in X and Y */
     CHECK_NEAR(out_of_step, 0.0, 1e-3);
     CHECK_NEAR(place[0], 0.0, 1e-9);
     CHECK_NEAR(place[3], 3.0, 1e-9);

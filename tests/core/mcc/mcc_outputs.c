@@ -47,7 +47,7 @@ static void with_the_motion(void)
     struct record r = { 0 };
     start_program("F6000 G61 G1 X20\nM62 P0\nM62 P5 X40\nM63 P5\nG4 P0.1\nX60\n");
     CHECK_EQ(until(&r, 0.0, 0x21), point_at(0.3));
-    CHECK(r.last.place[0] > 20.0);              /* the first point of that motion */
+    CHECK(r.last.place[0] > 20.0); /* the first point of that motion */
     CHECK_EQ(until(&r, 0.0, 0x01), point_at(0.7));
     run(&r);
     CHECK_EQ(r.last.outputs.digital, 1);
@@ -56,14 +56,14 @@ static void with_the_motion(void)
     r = (struct record){ 0 };
     start_program("F6000 G64 G1 X20\nM62 P0\nX40\nM63 P0 Y20\n");
     CHECK_EQ(until(&r, 0.0, 1), point_at(0.2));
-    CHECK_EQ(r.last.command, 1);                /* still under way, beside it */
+    CHECK_EQ(r.last.command, 1); /* still under way, beside it */
     CHECK_EQ(until(&r, 0.0, 0), point_at(0.4));
     run(&r);
     CHECK(r.sum[0] == 40000 && r.sum[1] == 20000);
-    CHECK_NEAR(r.n, 0.7 / 1.024e-3, 1.0);       /* no time was lost to them */
+    CHECK_NEAR(r.n, 0.7 / 1.024e-3, 1.0); /* no time was lost to them */
 
     r = (struct record){ 0 };
-    start_program("F6000 G1 X20\nM62 P1\n");    /* no motion follows */
+    start_program("F6000 G1 X20\nM62 P1\n"); /* no motion follows */
     run(&r);
     CHECK_EQ(r.last.outputs.digital, 0);
 }
@@ -72,9 +72,16 @@ static void with_the_motion(void)
 static void behind_the_motion(void)
 {
     static const char *const modes[] = { "G61", "G64" };
-    static const struct { const char *words; double spindle; uint32_t digital; int32_t coolant; }
-    all[] = { { "M3 S1200", 1200.0, 0, 0 }, { "M4 S80", -80.0, 0, 0 },
-              { "M64 P31", 0.0, 1u << 31, 0 }, { "M8", 0.0, 0, 2 }, { "M7", 0.0, 0, 1 } };
+    static const struct {
+        const char *words;
+        double spindle;
+        uint32_t digital;
+        int32_t coolant;
+    } all[] = { { "M3 S1200", 1200.0, 0, 0 },
+                { "M4 S80", -80.0, 0, 0 },
+                { "M64 P31", 0.0, 1u << 31, 0 },
+                { "M8", 0.0, 0, 2 },
+                { "M7", 0.0, 0, 1 } };
 
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
         for (int k = 0; k < 2; k++) {
@@ -91,7 +98,7 @@ static void behind_the_motion(void)
                 CHECK_EQ(r.last.command, r.n < point_at(0.3) ? 1 : 2);
             }
             CHECK_EQ(r.sum[0], 40000);
-            CHECK_NEAR(r.n, 0.6 / 1.024e-3, 1.0);       /* the axes came to rest between */
+            CHECK_NEAR(r.n, 0.6 / 1.024e-3, 1.0); /* the axes came to rest between */
         }
     }
 }
@@ -127,7 +134,7 @@ static void without_motion(void)
     CHECK(r.last.outputs.spindle == 100.0 && r.last.outputs.digital == 4);
     CHECK_EQ(r.last.outputs.coolant, 3);
     CHECK(MCC_check_stop(&m));
-    load("S200\nM30\n");        /* what is on outlives the program, S does not turn it again */
+    load("S200\nM30\n"); /* what is on outlives the program, S does not turn it again */
     run(&r);
     CHECK_EQ(r.n, 2);
     CHECK(r.last.outputs.spindle == 0.0 && r.last.outputs.coolant == 0);
@@ -180,7 +187,7 @@ static void aborted(void)
     run(&r);
     CHECK_NEAR(r.last.outputs.spindle, -100.0, 0.0);
     CHECK_EQ(MCC_motion_abort(&m), MCC_NO_ERR);
-    CHECK(!MCC_check_stop(&m));         /* the card does not know yet */
+    CHECK(!MCC_check_stop(&m)); /* the card does not know yet */
     run(&r);
     CHECK(MCC_check_stop(&m) && r.last.outputs.spindle == 0.0);
     CHECK_EQ(r.sum[0], 0);
@@ -203,8 +210,8 @@ static void stopped(void)
     CHECK_NEAR(r.last.outputs.spindle, 100.0, 0.0);
     run(&r);
     CHECK_EQ(r.sum[0], 40000);
-    CHECK(!MCC_check_stop(&m));                     /* a stop at the very end waits too */
-    CHECK_EQ(MCC_motion_hold(&m), MCC_NO_ERR);      /* held and stopped: both are needed */
+    CHECK(!MCC_check_stop(&m));                /* a stop at the very end waits too */
+    CHECK_EQ(MCC_motion_hold(&m), MCC_NO_ERR); /* held and stopped: both are needed */
     CHECK_EQ(task_continue(&m), MCC_NO_ERR);
     CHECK_EQ(task_status(&m), TASK_STOPPED);
     m.open = false;

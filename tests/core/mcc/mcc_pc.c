@@ -6,8 +6,12 @@ static const struct pc_panel calm = { .override = 1.0 };
 /* Bus 0.1 ms, IPO 1 ms, in clocks of 25 ns. */
 static struct pc_config usual(int32_t n, int32_t batch, double latency)
 {
-    return (struct pc_config){ .bus = 4000, .ipo = 40000, .latency = latency, .seed = 1,
-                               .min_stock = n, .batch = batch,
+    return (struct pc_config){ .bus = 4000,
+                               .ipo = 40000,
+                               .latency = latency,
+                               .seed = 1,
+                               .min_stock = n,
+                               .batch = batch,
                                .output_mode = { 1, 1, 1, 1, 1, 1 } };
 }
 
@@ -22,12 +26,15 @@ static void run(struct card *c, const char *text, int periods)
     card_advance(c, k * pc.config.bus + PCL_FIFO * c->dda);
 }
 
-static const char line_100[] = "G1 X100 F6000\nM2\n";   /* 1.1 s at 100 pulses per ms */
+static const char line_100[] = "G1 X100 F6000\nM2\n"; /* 1.1 s at 100 pulses per ms */
 
 /* Interrupt each N DDA times; stock n + N after the refill; no gap up to a latency of (n+1) T. */
 static void fifo_timing(void)
 {
-    static const struct { int32_t n, batch; int dda_length; } cases[] = {
+    static const struct {
+        int32_t n, batch;
+        int dda_length;
+    } cases[] = {
         { 3, 4, 12 }, { 3, 8, 11 }, { 0, 1, 12 }, { 7, 8, 11 }, { 10, 16, 10 },
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -40,10 +47,10 @@ static void fifo_timing(void)
             const int64_t dda = machine_dda_clocks(&m);
             /* The write must come before the boundary that ends the n+1 DDA times. */
             const double deadline = (double)((cases[i].n + 1) * dda);
-            struct pc_config config = usual(cases[i].n, cases[i].batch,
-                                            late ? deadline + 1.0 : deadline - 1.0);
+            struct pc_config config =
+                usual(cases[i].n, cases[i].batch, late ? deadline + 1.0 : deadline - 1.0);
             config.bus = 400;
-            config.start = 8000000;     /* at 0.2 s, when the FIFO runs steadily */
+            config.start = 8000000; /* at 0.2 s, when the FIFO runs steadily */
             card_start(&c, &m, &config, true);
             run(&c, line_100, 400000);
             CHECK_EQ(c.sum[0], 100000);
@@ -115,7 +122,7 @@ static void starved(void)
     struct pc_config config = usual(3, 4, 8000.0);
     struct card c;
     m.queue_depth = 16;
-    config.ipo = 800000;    /* 20 ms for 16 points of 1.024 ms */
+    config.ipo = 800000; /* 20 ms for 16 points of 1.024 ms */
     card_start(&c, &m, &config, true);
     run(&c, line_100, 20000);
     CHECK_EQ(c.sum[0], 100000);
@@ -143,13 +150,22 @@ static void refused(void)
  * transaction before; no more than the transaction has, and all if the counter begins anew. */
 static void frames_taken(void)
 {
-    static const struct { int32_t before, now, taken; } row[] = {
-        { 0, 0, 8 }, { 10, 10, 8 }, { 10, 13, 5 }, { 10, 18, 0 }, { 10, 25, 0 }, { 10, 3, 8 },
-        { INT32_MIN, INT32_MAX, 0 }, { INT32_MAX, INT32_MIN, 8 },
+    static const struct {
+        int32_t before, now, taken;
+    } row[] = {
+        { 0, 0, 8 },
+        { 10, 10, 8 },
+        { 10, 13, 5 },
+        { 10, 18, 0 },
+        { 10, 25, 0 },
+        { 10, 3, 8 },
+        { INT32_MIN, INT32_MAX, 0 },
+        { INT32_MAX, INT32_MIN, 8 },
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-        struct pcl p = { .seq = 1, .open = true, .count = 8, .prime = 20, .refused = row[i].before,
-                         .refusals = 2 };
+        struct pcl p = {
+            .seq = 1, .open = true, .count = 8, .prime = 20, .refused = row[i].before, .refusals = 2
+        };
         const struct pcl_card other = { .cmd_ack = 0, .frames_refused = row[i].now };
         const struct pcl_card card = { .cmd_ack = 1, .frames_refused = row[i].now };
         const struct pcl_card next = { .cmd_ack = 2, .frames_refused = row[i].now };
@@ -158,7 +174,7 @@ static void frames_taken(void)
         CHECK_EQ(pcl_acknowledged(&p, &card), row[i].taken);
         CHECK(!p.open && p.prime == 20 - row[i].taken);
         CHECK_EQ(p.refusals, row[i].taken > 0 ? 0 : 3);
-        p.open = true;                      /* nothing more is refused: all of the next is taken */
+        p.open = true; /* nothing more is refused: all of the next is taken */
         p.seq = 2;
         CHECK_EQ(pcl_acknowledged(&p, &next), 8);
         CHECK_EQ(p.refusals, 0);
@@ -240,7 +256,7 @@ static void program_stop(void)
     CHECK(c.sum[0] > 12000 && turned > 1000 && turned < 2000);
     CHECK_EQ(c.sum[1], 0);
     for (int k = 8000; k < 12000; k++) {
-        card_period(&c, k * config.bus, &p, text);      /* M1 is not asked for */
+        card_period(&c, k * config.bus, &p, text); /* M1 is not asked for */
     }
     CHECK(pc_done(&pc) && c.sum[0] == 20000 && pc.mcc.written.outputs.spindle == 0.0);
 }
@@ -300,8 +316,8 @@ static void conservation(void)
             }
         }
         const int32_t n = (int32_t)check_random(&seed, 0, 30);
-        struct pc_config config = usual(n, (int32_t)check_random(&seed, 1, 16),
-                                        (double)check_random(&seed, 0, 300000));
+        struct pc_config config =
+            usual(n, (int32_t)check_random(&seed, 1, 16), (double)check_random(&seed, 0, 300000));
         config.jitter = (double)check_random(&seed, 0, 300000);
         config.bus = check_random(&seed, 1, 8) * 1000;
         config.ipo = check_random(&seed, 4000, 400000);
@@ -314,8 +330,9 @@ static void conservation(void)
         for (; at < 60 * (int64_t)CLOCK_HZ && !pc_done(&pc); at += config.bus) {
             const int64_t die = check_random(&seed, 0, 2000000);
             p.hold = die < 2000 ? !p.hold : p.hold && die > 60000;
-            p.override = die > 1995000 ? (double)(die % 200) / 100.0 : die < 20000 ? 1.0
-                                                                               : p.override;
+            p.override = die > 1995000 ? (double)(die % 200) / 100.0
+                         : die < 20000 ? 1.0
+                                       : p.override;
             p.abort = aborts && at > CLOCK_HZ / 2;
             card_period(&c, at, &p, text);
         }

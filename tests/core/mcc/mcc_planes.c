@@ -24,9 +24,8 @@ static double sweep(int plane, double centre)
 /* From the origin about (0, 5) through (5, 5) or (-5, 5) to (0, 10): half a turn. */
 static void arcs(void)
 {
-    static int (*const arc[])(struct mcc *, double, double, double, double) = {
-        MCC_arc_xy, MCC_arc_yz, MCC_arc_zx
-    };
+    static int (*const arc[])(struct mcc *, double, double, double,
+                              double) = { MCC_arc_xy, MCC_arc_yz, MCC_arc_zx };
     for (int k = 0; k < 6; k++) {
         const int plane = k / 2;
         const double side = k % 2 ? 1.0 : -1.0;
@@ -39,9 +38,8 @@ static void arcs(void)
 
 static void circles(void)
 {
-    static int (*const circle[])(struct mcc *, double, double, int) = {
-        MCC_circle_xy, MCC_circle_yz, MCC_circle_zx
-    };
+    static int (*const circle[])(struct mcc *, double, double,
+                                 int) = { MCC_circle_xy, MCC_circle_yz, MCC_circle_zx };
     for (int k = 0; k < 6; k++) {
         const int plane = k / 2;
         begin(mcc_machine());
@@ -54,22 +52,21 @@ static void circles(void)
 /* One of the twelve calls: p is via and end of an arc, or the centre of a circle. */
 static int turn(int plane, bool circle, bool follow, const double p[4], bool ccw)
 {
-    static int (*const arc[])(struct mcc *, double, double, double, double) = {
-        MCC_arc_xy, MCC_arc_yz, MCC_arc_zx
-    };
-    static int (*const arc_uvw[])(struct mcc *, const double[4], const double[3]) = {
-        MCC_arc_xyuvw, MCC_arc_yzuvw, MCC_arc_zxuvw
-    };
-    static int (*const round[])(struct mcc *, double, double, int) = {
-        MCC_circle_xy, MCC_circle_yz, MCC_circle_zx
-    };
-    static int (*const round_uvw[])(struct mcc *, const double[2], int, const double[3]) = {
-        MCC_circle_xyuvw, MCC_circle_yzuvw, MCC_circle_zxuvw
-    };
+    static int (*const arc[])(struct mcc *, double, double, double,
+                              double) = { MCC_arc_xy, MCC_arc_yz, MCC_arc_zx };
+    static int (*const arc_uvw[])(struct mcc *, const double[4],
+                                  const double[3]) = { MCC_arc_xyuvw, MCC_arc_yzuvw,
+                                                       MCC_arc_zxuvw };
+    static int (*const round[])(struct mcc *, double, double, int) = { MCC_circle_xy, MCC_circle_yz,
+                                                                       MCC_circle_zx };
+    static int (*const round_uvw[])(struct mcc *, const double[2], int,
+                                    const double[3]) = { MCC_circle_xyuvw, MCC_circle_yzuvw,
+                                                         MCC_circle_zxuvw };
     const double uvw[3] = { 3.0, -6.0, 1.5 };
     return circle && follow ? round_uvw[plane](&m, p, ccw, uvw)
-         : circle ? round[plane](&m, p[0], p[1], ccw)
-         : follow ? arc_uvw[plane](&m, p, uvw) : arc[plane](&m, p[0], p[1], p[2], p[3]);
+           : circle         ? round[plane](&m, p[0], p[1], ccw)
+           : follow         ? arc_uvw[plane](&m, p, uvw)
+                            : arc[plane](&m, p[0], p[1], p[2], p[3]);
 }
 
 /* A place on the circle about `centre` from 0, turned so far. */
@@ -85,7 +82,7 @@ struct carried {
     double place[LONGEST][AXES], way[LONGEST];
 };
 
-static struct carried tool;    /* not on the stack */
+static struct carried tool; /* not on the stack */
 
 static void watch_tool(struct record *r)
 {
@@ -95,9 +92,9 @@ static void watch_tool(struct record *r)
         for (int i = 0; i < AXES; i++) {
             place[i] = r->last.pulses[i] / 1000.0;
         }
-        tool.way[tool.n] = (tool.n ? tool.way[tool.n - 1] : 0.0) +
-                           norm3((double[]){ place[0] - before[0], place[1] - before[1],
-                                             place[2] - before[2] });
+        tool.way[tool.n] =
+            (tool.n ? tool.way[tool.n - 1] : 0.0)
+            + norm3((double[]){ place[0] - before[0], place[1] - before[1], place[2] - before[2] });
         tool.n++;
     }
 }
@@ -129,7 +126,7 @@ static void half_way(int plane, bool circle, bool follow, bool ccw, bool increme
     CHECK_EQ(turn(plane, circle, follow, p, ccw), 2);
     watch_tool(&r);
     for (int quarter = 1; quarter <= 2; quarter++) {
-        const double part = 0.25 * quarter, near = 0.06;    /* a point's way is 0.05 mm */
+        const double part = 0.25 * quarter, near = 0.06; /* a point's way is 0.05 mm */
         double want[2];
         int k = 0;
         while (k < tool.n - 1 && tool.way[k] < part * tool.way[tool.n - 1]) {

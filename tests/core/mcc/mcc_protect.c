@@ -2,7 +2,7 @@
  * a card that puts out each point at once. mcc_emergency.c has the real one. */
 #include "mcc_react.h"
 
-static const double T = 1.024e-3;   /* [s] DDA time */
+static const double T = 1.024e-3; /* [s] DDA time */
 
 static struct machine limited(double low, double high)
 {
@@ -39,7 +39,7 @@ static void refused_before(void)
     CHECK_EQ(MCC_set_check_OT(&m, x), 0);
     CHECK_EQ(MCC_get_check_OT(&m, on), 0);
     CHECK(on[0] == 1 && on[1] == 0);
-    REFUSED(MCC_line_x(&m, 25.001), MCC_PARAMETER);     /* outside: only back */
+    REFUSED(MCC_line_x(&m, 25.001), MCC_PARAMETER); /* outside: only back */
     CHECK(MCC_line_x(&m, 24.0) > 0);
     CHECK(MCC_line_x(&m, 0.0) > 0);
     run(&r);
@@ -65,10 +65,10 @@ static void stopped_in_time(void)
         CHECK_EQ(MCC_set_check_OT(&m, (int[AXES]){ 1, 1 }), 0);
         run(&r);
         CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_TRAVEL);
-        const double way = high - r.last.place[0];      /* one DDA time at feed earlier at most */
+        const double way = high - r.last.place[0]; /* one DDA time at feed earlier at most */
         CHECK(r.last.pulses[0] <= lround(high * 1000.0) && way < 50.0 * T);
         CHECK_NEAR(r.last.place[1], -2.0 * r.last.place[0], 1e-9);
-        CHECK(r.change <= 2);                           /* 0.5 mm/s per DDA time, and rounding */
+        CHECK(r.change <= 2); /* 0.5 mm/s per DDA time, and rounding */
         REFUSED(MCC_line_x(&m, 0.0), MCC_RUN_TIME);
         CHECK_EQ(MCC_clear_error(&m), 0);
         REFUSED(MCC_line_x(&m, high + 0.001), MCC_PARAMETER);
@@ -124,8 +124,8 @@ static void stopped_in_a_program(void)
     int length = 0;
     for (int k = 1; k <= LINES; k++) {
         length += snprintf(text + length, sizeof text - (size_t)length, "%sX%.2fY%.2f\n",
-                           k == 1 ? "G64P.1G1F3000" : "",
-                           0.04 * (k <= 600 ? k : 1200 - k), 0.02 * (k % 2));
+                           k == 1 ? "G64P.1G1F3000" : "", 0.04 * (k <= 600 ? k : 1200 - k),
+                           0.02 * (k % 2));
     }
     struct source_text lines = { text, length };
     const struct source source = source_of(&lines);
@@ -168,13 +168,13 @@ static void by_hand(void)
         CHECK_EQ(MCC_jog_c(&m, 1, 1, 5.0), 0);
         if (i % 3 == 0) {
             CHECK_EQ(MCC_MPG_set(&m, 0, 6, 100.0), 0);
-            m.signals.enc_aux[0] = 1000;        /* 100 mm further */
+            m.signals.enc_aux[0] = 1000; /* 100 mm further */
         } else {
             CHECK_EQ(MCC_jog_c(&m, 0, 1, check_real(&seed, 1.0, 30.0)), 0);
         }
         run(&r);
-        CHECK(MCC_get_errcode(&m) == MCC_ERROR_TRAVEL ||
-              MCC_get_errcode(&m) == MCC_ERROR_TRAVEL + 1);
+        CHECK(MCC_get_errcode(&m) == MCC_ERROR_TRAVEL
+              || MCC_get_errcode(&m) == MCC_ERROR_TRAVEL + 1);
         const int axis = MCC_get_errcode(&m) - MCC_ERROR_TRAVEL;
         CHECK(r.last.pulses[0] <= lround(high * 1000.0));
         CHECK(r.last.pulses[1] <= lround(high * 1000.0));
@@ -214,9 +214,9 @@ static bool mixed(uint64_t seed, bool check, struct run *r)
         MCC_set_fspd(&m, check_real(&seed, 5.0, 100.0));
         const double radius = check_real(&seed, 0.2, 3.0), x = m.end[0];
         const int code = k % 5 == 4
-            ? MCC_circle_xy(&m, x > 0.0 ? x - radius : x + radius, m.end[1], k % 2)
-            : MCC_line(&m, (double[AXES]){ 10.0 - inside, y });
-        CHECK(code > 0 || code == MCC_PARAMETER);   /* some circles leave */
+                             ? MCC_circle_xy(&m, x > 0.0 ? x - radius : x + radius, m.end[1], k % 2)
+                             : MCC_line(&m, (double[AXES]){ 10.0 - inside, y });
+        CHECK(code > 0 || code == MCC_PARAMETER); /* some circles leave */
     }
     MCC_set_check_OT(&m, (int[AXES]){ check, check });
     while (r->n < LONGEST && point(r)) {
@@ -250,7 +250,7 @@ static void mixing(void)
         }
     }
     CHECK(leaves > 10 && leaves < 140);
-    CHECK(early <= leaves / 10);     /* the ramp would have left where the motion did not */
+    CHECK(early <= leaves / 10); /* the ramp would have left where the motion did not */
 }
 
 /* A change of the command above the limit: a ramp, which may change as it must. */
@@ -265,17 +265,17 @@ static void change_limit(void)
     CHECK_EQ(is[0], 2 * 4095);
     REFUSED(MCC_set_max_dda_acc(&m, none), MCC_PARAMETER);
     CHECK_EQ(MCC_set_max_dda_acc(&m, limit), 0);
-    MCC_set_dec_step(&m, 5.0);      /* 10.5 pulses per DDA time */
+    MCC_set_dec_step(&m, 5.0); /* 10.5 pulses per DDA time */
     CHECK(MCC_line_x(&m, 40.0) > 0);
     CHECK(MCC_line_y(&m, 40.0) > 0);
     run(&r);
     CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_ACC);
     CHECK(r.change >= 10 && r.change <= 12);
     CHECK_NEAR(r.last.feed, 0.0, 0.0);
-    CHECK(r.sum[0] >= 40000 - 52 && r.sum[0] <= 40000);     /* a DDA time early at most */
+    CHECK(r.sum[0] >= 40000 - 52 && r.sum[0] <= 40000); /* a DDA time early at most */
     CHECK_EQ(r.sum[1], 0);
     CHECK_EQ(MCC_clear_error(&m), 0);
-    MCC_set_acc_step(&m, 5.0);      /* already the first point would */
+    MCC_set_acc_step(&m, 5.0); /* already the first point would */
     CHECK(MCC_line_y(&m, 40.0) > 0);
     run(&r);
     CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_ACC);
@@ -344,12 +344,12 @@ static void switch_closes(void)
             REFUSED(MCC_line_y(&m, 0.0), MCC_RUN_TIME);
             CHECK_EQ(MCC_clear_error(&m), 0);
         }
-        CHECK(MCC_line_y(&m, -80.0) > 0);           /* further on: not one pulse */
+        CHECK(MCC_line_y(&m, -80.0) > 0); /* further on: not one pulse */
         run(&r);
         CHECK_EQ(r.sum[1], rest);
         CHECK_EQ(MCC_get_errcode(&m), error);
         CHECK_EQ(MCC_clear_error(&m), 0);
-        CHECK(MCC_line_x(&m, 0.0) > 0);             /* other axes may */
+        CHECK(MCC_line_x(&m, 0.0) > 0); /* other axes may */
         CHECK(MCC_line_y(&m, 0.0) > 0);
         run(&r);
         CHECK_EQ(r.sum[0], 0);
@@ -392,7 +392,7 @@ static void following_error(void)
     CHECK_EQ(protect_set_track_limit(&m, limit), 0);
     CHECK(MCC_line_x(&m, 40.0) > 0);
     points(&r, 300);
-    m.signals.err[0] = 5000;        /* not watched */
+    m.signals.err[0] = 5000; /* not watched */
     m.signals.err[2] = -100;
     point(&r);
     CHECK_EQ(MCC_get_errcode(&m), 0);
@@ -412,7 +412,7 @@ static void following_error(void)
     CHECK(MCC_line_x(&m, 0.0) > 0);
     run(&r);
     CHECK_EQ(r.sum[0], 0);
-    m.signals.err[1] = 101;         /* pushed at rest */
+    m.signals.err[1] = 101; /* pushed at rest */
     look();
     CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_TRACK + 1);
 }
@@ -432,10 +432,10 @@ static void overflow(void)
         }
         const struct reaction_look l = { .clocks = BUS, .flying = flying, .overflow = 2 };
         reaction_look(&m, &l);
-        CHECK_EQ(MCC_get_errcode(&m), 0);           /* not watched */
+        CHECK_EQ(MCC_get_errcode(&m), 0); /* not watched */
         protect_set_track_limit(&m, (int32_t[AXES]){ 1, 1 });
-        const int32_t y = flying ? queue_peek(&m.queue, flying - 1)->pulses[1]
-                                 : m.written.pulses[1];
+        const int32_t y =
+            flying ? queue_peek(&m.queue, flying - 1)->pulses[1] : m.written.pulses[1];
         reaction_look(&m, &l);
         CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_TRACK + 1);
         CHECK_EQ(m.queue.count, flying);
@@ -467,7 +467,7 @@ static void settings(void)
     REFUSED(MCC_init_motion(&m, &machine), MCC_PARAMETER);
     machine.axis[0].check_ot = false;
     open_machine(&machine);
-    REFUSED(MCC_set_check_OT(&m, on), MCC_PARAMETER);   /* no way between the limits */
+    REFUSED(MCC_set_check_OT(&m, on), MCC_PARAMETER); /* no way between the limits */
     REFUSED(MCC_set_max_dda_acc(&m, change), MCC_PARAMETER);
     REFUSED(MCC_enable_in_pos(&m, 64), MCC_PARAMETER);
     REFUSED(MCC_disable_in_pos(&m, -1), MCC_PARAMETER);

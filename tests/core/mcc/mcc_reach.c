@@ -3,7 +3,7 @@
 #include "mcc_react.h"
 #include "reach.h"
 
-static const double FAR = 1e5;  /* [mm] */
+static const double FAR = 1e5; /* [mm] */
 
 /* Lowest and highest point of the ramp from here. [pulses] */
 static void drive_ramp(int32_t low[AXES], int32_t high[AXES])
@@ -107,7 +107,8 @@ static void on_paths(bool quit, double tolerance)
             }
             const double x = check_real(&seed, -10.0, 10.0), y = check_real(&seed, -3.0, 3.0);
             CHECK((k % 4 == 3 ? MCC_circle_xy(&m, x, y, k % 8 == 3)
-                              : MCC_line(&m, (double[AXES]){ x, y })) > 0);
+                              : MCC_line(&m, (double[AXES]){ x, y }))
+                  > 0);
         }
         n += whole_motion(&seed, true);
     }
@@ -129,12 +130,14 @@ static void on_their_own(void)
         }
         open_machine(&machine);
         CHECK(MCC_ptp_asyn(&m, (double[AXES]){ check_real(&seed, -40.0, 40.0),
-                                               check_real(&seed, -40.0, 40.0) }) > 0);
+                                               check_real(&seed, -40.0, 40.0) })
+              > 0);
         n += whole_motion(&seed, false);
         struct run r = { 0 };
         for (int k = 0; k < 20; k++) {
             CHECK_EQ(MCC_jog_c(&m, k % 2, check_real(&seed, 0.0, 1.0) < 0.5 ? 1 : -1,
-                               check_real(&seed, 1.0, 30.0)), 0);
+                               check_real(&seed, 1.0, 30.0)),
+                     0);
             points(&r, r.n + (int)check_real(&seed, 1.0, 300.0));
             n += compared(false);
         }

@@ -8,9 +8,9 @@
 #include "reaction.h"
 #include "task.h"
 
-static struct mcc m, before;    /* 340 kB each: not on the stack */
-static const struct source *program;    /* NULL: calls of the API only */
-static const int64_t BUS = 4000;    /* [clocks] */
+static struct mcc m, before;         /* 340 kB each: not on the stack */
+static const struct source *program; /* NULL: calls of the API only */
+static const int64_t BUS = 4000;     /* [clocks] */
 enum { LONGEST = 100000 };
 
 /* The call must return the code and, if it is an error, leave the whole state as it was. */
@@ -24,7 +24,7 @@ enum { LONGEST = 100000 };
 /* What has been put out. */
 struct run {
     int n;
-    int32_t sum[AXES], change;  /* [pulses] all, and the largest change from one to the next */
+    int32_t sum[AXES], change; /* [pulses] all, and the largest change from one to the next */
     int32_t frame[AXES];
     struct point last;
 };
@@ -32,7 +32,7 @@ struct run {
 static inline struct machine one_ahead(void)
 {
     struct machine machine = mcc_machine();
-    machine.queue_depth = 1;    /* one point per cycle: the test acts between points */
+    machine.queue_depth = 1; /* one point per cycle: the test acts between points */
     return machine;
 }
 

@@ -91,7 +91,7 @@ static void pulse_limit(void)
     struct record r = { 0 };
     const int32_t limit[AXES] = { 40, 40, 40, 40, 40, 40 };
     begin(mcc_machine());
-    MCC_set_fspd(&m, 50.0);     /* 51.2 pulses per DDA time */
+    MCC_set_fspd(&m, 50.0); /* 51.2 pulses per DDA time */
     CHECK_EQ(MCC_set_max_dda_spd(&m, limit), 0);
     CHECK(MCC_line_x(&m, 100.0) > 0);
     CHECK(MCC_line_y(&m, 100.0) > 0);
@@ -120,7 +120,7 @@ static void pulse_limit_in_a_chain(char type)
         machine.acc_time = machine.dec_time = 0.02;
         machine.acc_type = machine.dec_type = type;
         begin(machine);
-        MCC_set_fspd(&m, 100.0);    /* 102.4 pulses per DDA time */
+        MCC_set_fspd(&m, 100.0); /* 102.4 pulses per DDA time */
         MCC_enable_quit(&m);
         CHECK_EQ(mcc_set_tolerance(&m, 0.01), 0);
         CHECK_EQ(MCC_set_max_dda_spd(&m, limit), 0);
@@ -130,9 +130,9 @@ static void pulse_limit_in_a_chain(char type)
         run(&r);
         CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_SPEED);
         CHECK_EQ(lround(m.end[0] * 1000.0), m.mover.pulses[0]);
-        at_once += r.last.feed > 0.0;       /* the first frame of the ramp was too large too */
+        at_once += r.last.feed > 0.0; /* the first frame of the ramp was too large too */
         if (type == 'T' && r.last.feed == 0.0) {
-            const double v = n / 1.024;     /* [mm/s] up and down at 5 m/s^2, to three DDA times */
+            const double v = n / 1.024; /* [mm/s] up and down at 5 m/s^2, to three DDA times */
             CHECK_NEAR(r.last.place[0], v * v / 5000.0, 3.0 * n / 1000.0);
         }
         CHECK_EQ(MCC_clear_error(&m), 0);
@@ -211,14 +211,15 @@ static void quiet_after_a_stop(void)
 {
     enum { BUS = 4000 };
     const struct machine machine = mcc_machine();
-    const int quiet = (int)ceil(2.0 * (double)machine_dda_clocks(&machine) / BUS);  /* 20.48 */
+    const int quiet = (int)ceil(2.0 * (double)machine_dda_clocks(&machine) / BUS); /* 20.48 */
     begin(machine);
     for (int k = -3; k <= 10 + quiet; k++) {
         m.signals.stop = k <= 0;
         m.signals.pulses[2] += k == 10;
         reaction_look(&m, &(struct reaction_look){ .clocks = BUS });
-        CHECK_EQ(MCC_clear_error(&m), k <= 0 ? MCC_RUN_TIME
-                                    : k < 10 + quiet ? MCC_COMMAND_NOTFINISHED : MCC_NO_ERR);
+        CHECK_EQ(MCC_clear_error(&m), k <= 0           ? MCC_RUN_TIME
+                                      : k < 10 + quiet ? MCC_COMMAND_NOTFINISHED
+                                                       : MCC_NO_ERR);
     }
 }
 

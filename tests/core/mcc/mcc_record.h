@@ -5,21 +5,21 @@
 #include "mcc_check.h"
 #include "task.h"
 
-static struct mcc m;    /* 300 kB: not on the stack */
-static const struct source *program;    /* NULL: calls of the API only */
+static struct mcc m;                 /* 300 kB: not on the stack */
+static const struct source *program; /* NULL: calls of the API only */
 enum { LONGEST = 200000 };
 
 /* A recording of everything the task queues. */
 struct record {
     int n;
     int32_t sum[AXES];
-    double  speed_max;
+    double speed_max;
     struct point last;
 };
 
 static void begin(struct machine machine)
 {
-    machine.queue_depth = 1;    /* one point per cycle: the test acts between points */
+    machine.queue_depth = 1; /* one point per cycle: the test acts between points */
     CHECK_EQ(MCC_init_motion(&m, &machine), MCC_NO_ERR);
 }
 

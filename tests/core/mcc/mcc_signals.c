@@ -5,7 +5,9 @@
 int main(void)
 {
     struct machine m = mcc_machine();
-    struct signals s = { .enc = { 5, 6, INT32_MIN }, .err = { -7, 8, 9 }, .latch = { 0, 1, 2 },
+    struct signals s = { .enc = { 5, 6, INT32_MIN },
+                         .err = { -7, 8, 9 },
+                         .latch = { 0, 1, 2 },
                          .pulses = { 3, 4, INT32_MIN } };
     m.axis[0].inverted = m.axis[2].inverted = true;
     const struct signals t = signals_turned(&s, &m), back = signals_turned(&t, &m);

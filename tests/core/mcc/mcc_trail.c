@@ -15,8 +15,8 @@ static void circle_is_exact(uint64_t seed)
 {
     for (int trial = 0; trial < 40; trial++) {
         const double radius = exp(check_real(&seed, log(0.5), log(2000.0)));
-        const double step = exp(check_real(&seed, log(1e-5), log(0.3)));    /* [rad] */
-        const double lag = check_real(&seed, 2.0, 8.0);                     /* frames */
+        const double step = exp(check_real(&seed, log(1e-5), log(0.3))); /* [rad] */
+        const double lag = check_real(&seed, 2.0, 8.0);                  /* frames */
         const double tilt = trial % 2 ? 0.7 : 0.0, c = cos(tilt), s = sin(tilt);
         double angle = 0.0, before[10] = { 0.0 };
         trail_start(&t, (double[3]){ radius, 0.0, 0.0 });
@@ -76,7 +76,7 @@ static void corner_and_rest(void)
         push(0.5 * n, 0.0, 0.0);
     }
     for (int n = 0; n < 300; n++) {
-        push(10.0, 0.0, 0.0);       /* exact stop */
+        push(10.0, 0.0, 0.0); /* exact stop */
     }
     for (int n = 1; n <= 20; n++) {
         push(10.0, 0.5 * n, 0.0);

@@ -11,8 +11,8 @@ static void place(const struct path *p, double t, double at[3])
 {
     const double u = 1.0 - t;
     for (int i = 0; i < 3; i++) {
-        at[i] = u * u * u * p->start[i] + 3.0 * u * u * t * p->bezier.inner[0][i] +
-                3.0 * u * t * t * p->bezier.inner[1][i] + t * t * t * p->end[i];
+        at[i] = u * u * u * p->start[i] + 3.0 * u * u * t * p->bezier.inner[0][i]
+                + 3.0 * u * t * t * p->bezier.inner[1][i] + t * t * t * p->end[i];
     }
 }
 
@@ -22,8 +22,8 @@ static double speed(const struct path *p, double t)
     double sum = 0.0;
     for (int i = 0; i < 3; i++) {
         const double a = p->bezier.inner[0][i], b = p->bezier.inner[1][i];
-        const double v = 3.0 * (u * u * (a - p->start[i]) + 2.0 * u * t * (b - a) +
-                                t * t * (p->end[i] - b));
+        const double v =
+            3.0 * (u * u * (a - p->start[i]) + 2.0 * u * t * (b - a) + t * t * (p->end[i] - b));
         sum += v * v;
     }
     return sqrt(sum);
@@ -40,10 +40,10 @@ static void random_cubic(struct path *p, uint64_t *seed)
         for (int i = 0; i < 6; i++) {
             inner[i / 3][i % 3] = check_real(seed, -50.0, 50.0);
         }
-        if (check_random(seed, 0, 2) > 0) {     /* most are flat, as G5 makes them */
+        if (check_random(seed, 0, 2) > 0) { /* most are flat, as G5 makes them */
             start[2] = end[2] = inner[0][2] = inner[1][2] = 3.0;
         }
-    } while (path_cubic(p, start, end, (const double (*)[3])inner) != PATH_OK);
+    } while (path_cubic(p, start, end, (const double(*)[3])inner) != PATH_OK);
 }
 
 /* y = x^2 from -1 to 2, made of degree 3: a closed form. */
@@ -57,20 +57,19 @@ static void parabola(void)
         inner[0][i] = start[i] + 2.0 / 3.0 * (corner[i] - start[i]);
         inner[1][i] = end[i] + 2.0 / 3.0 * (corner[i] - end[i]);
     }
-    CHECK_EQ(path_cubic(&p, start, end, (const double (*)[3])inner), PATH_OK);
-    const double length = 0.5 * (2.0 * sqrt(17.0) + sqrt(5.0)) +
-                          0.25 * (asinh(4.0) + asinh(2.0));
+    CHECK_EQ(path_cubic(&p, start, end, (const double(*)[3])inner), PATH_OK);
+    const double length = 0.5 * (2.0 * sqrt(17.0) + sqrt(5.0)) + 0.25 * (asinh(4.0) + asinh(2.0));
     CHECK_NEAR(p.length, length, 1e-13 * length);
     CHECK_NEAR(path_bend(&p), 2.0, 2.1e-3);
     CHECK(path_bend(&p) >= 2.0 - 1e-12);
     path_extent(&p, 1, 0.0, p.length, &low, &high);
     CHECK_NEAR(low, 0.0, 1e-12);
     CHECK_NEAR(high, 4.0, 0.0);
-    const double half = 0.5 * sqrt(5.0) + 0.25 * asinh(2.0);    /* from x = -1 to 0 */
+    const double half = 0.5 * sqrt(5.0) + 0.25 * asinh(2.0); /* from x = -1 to 0 */
     path_at(&p, half, at, slope);
     CHECK_NEAR(at[0], 0.0, 1e-12);
     CHECK_NEAR(at[1], 0.0, 1e-12);
-    CHECK_NEAR(at[3], 7.0 * half / length, 1e-12);  /* the others go evenly */
+    CHECK_NEAR(at[3], 7.0 * half / length, 1e-12); /* the others go evenly */
     CHECK_NEAR(slope[0], 1.0, 1e-12);
     CHECK_NEAR(slope[3], 7.0 / length, 1e-12);
     path_extent(&p, 1, half + 0.1, p.length, &low, &high);
@@ -158,7 +157,7 @@ static void at_random(void)
         }
     }
     CHECK(worst_place < 1e-8);
-    CHECK(least_bend > 0.7 && most_bend > 0.998);   /* the rest is between two places looked at */
+    CHECK(least_bend > 0.7 && most_bend > 0.998); /* the rest is between two places looked at */
     CHECK(most_twist > 0.2);
     printf("places %.1e mm; bend seen %.3f to %.5f of its bound, third derivative up to %.2f\n",
            worst_place, least_bend, most_bend, most_twist);
@@ -199,14 +198,14 @@ static void degenerate(void)
     CHECK_EQ(path_cubic(&p, start, end, line), PATH_OK);
     CHECK(!p.cubic && p.length == 9.0);
     CHECK_EQ(path_cubic(&p, start, end, back), PATH_CUSP);
-    CHECK_EQ(path_cubic(&p, start, end, still), PATH_CUSP);     /* B' is 0 at its start */
+    CHECK_EQ(path_cubic(&p, start, end, still), PATH_CUSP); /* B' is 0 at its start */
     CHECK_EQ(path_cubic(&p, start, (const double[AXES]){ 9.0, 0.0 }, loop), PATH_OK);
     /* x: B' is 0 at t = 1/2 if 2 (a - b) = end - start: a point where it turns round */
     const double point[2][3] = { { 9.0, 6.0 }, { 0.0, 6.0 } };
     CHECK_EQ(path_cubic(&p, start, end, point), PATH_CUSP);
     CHECK_EQ(path_cubic(&p, start, end, cusp), PATH_OK);
     const double closed[2][3] = { { 10.0, 5.0 }, { -10.0, 5.0 } };
-    CHECK_EQ(path_cubic(&p, start, start, closed), PATH_OK);    /* from a point back to it */
+    CHECK_EQ(path_cubic(&p, start, start, closed), PATH_OK); /* from a point back to it */
     double sum = 0.0;
     for (int k = 0; k < PARTS; k++) {
         sum += speed(&p, (k + 0.5) / PARTS) / PARTS;

@@ -5,15 +5,16 @@
 #include "check.h"
 #include "curve.h"
 
-static const double DT = 1e-3, FEED = 50.0, ACC = 1000.0;
+static const double DT = 1e-3, FEED
+= 50.0, ACC = 1000.0;
 
 static struct ring ring;
 static struct curve_plan plan;
 static struct curve curve;
 static double at[AXES];
 static int32_t sent, seen;
-static double steepest;         /* acceleration, of that of the ramp */
-static double last[2][AXES];    /* [mm] the two points before */
+static double steepest;      /* acceleration, of that of the ramp */
+static double last[2][AXES]; /* [mm] the two points before */
 
 /* A line of a program. */
 static void send(int32_t line, double x, double y)
@@ -69,7 +70,7 @@ static double tick(double override)
     const struct shape_mark *k;
     double left = curve_advance(&curve, &plan, &ring, override, DT);
 
-    if (left > 0.0 && !curve_done(&curve, &plan)) {     /* the ring is empty, and stays so */
+    if (left > 0.0 && !curve_done(&curve, &plan)) { /* the ring is empty, and stays so */
         left = curve_advance(&curve, &plan, &ring, override, left);
     }
     curve_sample(&curve, &plan);
@@ -136,14 +137,13 @@ static void blocks(void)
         curve_single(&curve, &plan, true);
         go_on();
         const double need = 0.5 * v * v / ACC;
-        CHECK(seen == before + (room < need) ||
-              (seen == before + 1 && room < 1.03 * need + 0.01));
+        CHECK(seen == before + (room < need) || (seen == before + 1 && room < 1.03 * need + 0.01));
         for (; !curve_done(&curve, &plan); curve_go(&curve, &plan, true), go_on()) {
             CHECK(curve_waits(&curve) && curve_rests(&curve));
             const double x = 3.0 * ((seen + 1) / 2), y = 3.0 * (seen / 2);
             CHECK(hypot(curve.point[0] - x, curve.point[1] - y) < 0.02);
             CHECK(hypot(curve.point[0] - x, curve.point[1] - y) > 0.005);
-            CHECK_EQ(tick(1.0), 0.0);       /* it stays */
+            CHECK_EQ(tick(1.0), 0.0); /* it stays */
             CHECK(curve_waits(&curve));
         }
         CHECK_EQ(seen, 12);
@@ -441,7 +441,7 @@ static void turn_back(void)
     int held = 0;
 
     begin();
-    steepest = 2.0;     /* one point is driven twice */
+    steepest = 2.0; /* one point is driven twice */
     send(1, 3.0, 0.0);
     send(2, 6.0, 0.0);
     send(3, 3.0, 0.0);

@@ -47,20 +47,20 @@ static void lines(void)
     struct path p;
     double at[AXES], slope[AXES];
     path_line(&p, a, b);
-    CHECK_NEAR(p.length, 13.0, 1e-14);      /* 3 4 12, X Y Z alone */
+    CHECK_NEAR(p.length, 13.0, 1e-14); /* 3 4 12, X Y Z alone */
     walk(&p, 1e-12);
     path_at(&p, 6.5, at, slope);
     CHECK_NEAR(at[4], 0.0, 1e-14);
     CHECK_NEAR(slope[4], -10.0 / 13.0, 1e-14);
     path_line(&p, a, c);
-    CHECK_NEAR(p.length, 13.0, 1e-14);      /* only U V W move */
+    CHECK_NEAR(p.length, 13.0, 1e-14); /* only U V W move */
 }
 
 /* Quarter circles from a point 10 right of the centre: counter-clockwise seen from the normal's
  * positive end turns the plane's first axis to its second: X to Y, Y to Z, Z to X. */
 static void planes(void)
 {
-    const int first[3] = { 1, 2, 0 }, second[3] = { 2, 0, 1 };  /* by normal X, Y, Z */
+    const int first[3] = { 1, 2, 0 }, second[3] = { 2, 0, 1 }; /* by normal X, Y, Z */
     for (int n = 0; n < 3; n++) {
         const int i = first[n], k = second[n];
         double start[AXES] = { 0 }, end[AXES] = { 0 }, at[AXES], slope[AXES], miss;
@@ -86,7 +86,7 @@ static void planes(void)
         CHECK(path_arc(&p, (enum path_plane)n, start, end, centre, false, 3, &miss) == PATH_OK);
         CHECK_NEAR(p.sweep, -1.5 * PI - 4.0 * PI, 1e-14);
         walk(&p, 1e-6);
-        path_at(&p, p.length * 0.75 / 2.75, at, slope);     /* after three quarters of a turn */
+        path_at(&p, p.length * 0.75 / 2.75, at, slope); /* after three quarters of a turn */
         CHECK_NEAR(at[i], 7.0, 1e-13);
         CHECK_NEAR(at[k], 8.0, 1e-13);
     }
@@ -99,7 +99,7 @@ static void full_circle(void)
     struct path p;
     CHECK(path_arc(&p, PATH_XY, start, start, centre, false, 1, &miss) == PATH_OK);
     CHECK_NEAR(p.length, 100.0 * PI, 1e-12);
-    path_at(&p, 25.0 * PI, at, slope);      /* clockwise from +X: first to -Y */
+    path_at(&p, 25.0 * PI, at, slope); /* clockwise from +X: first to -Y */
     CHECK_NEAR(at[0], 0.0, 1e-13);
     CHECK_NEAR(at[1], -50.0, 1e-13);
     CHECK_NEAR(slope[0], -1.0, 1e-14);
@@ -120,7 +120,8 @@ static void by_radius(void)
         const bool ccw = check_real(&seed, 0, 1) < 0.5, large = check_real(&seed, 0, 1) < 0.5;
         struct path p;
         CHECK_EQ(path_centre_by_radius(PATH_XY, start, end, large ? -r : r, ccw, 0.005, centre,
-                                       &half), PATH_OK);
+                                       &half),
+                 PATH_OK);
         CHECK_NEAR(hypot(start[0] - centre[0], start[1] - centre[1]), r, 1e-10 * r);
         CHECK(path_arc(&p, PATH_XY, start, end, centre, ccw, 1, &miss) == PATH_OK);
         const double small = 2.0 * asin(chord / 2.0 / r);
@@ -155,9 +156,8 @@ static void by_point(void)
     const double a[AXES] = { 0 }, b[AXES] = { 2.0, 2.0 };
     double centre[2];
     bool ccw;
-    CHECK(path_centre_by_point(PATH_XY, a, (double[]){ 1.0, 1.0 }, b, centre, &ccw) ==
-          PATH_OPEN);
-    for (double r = 10.0; r < 1e9; r *= 10.0) {     /* flat arcs with a chord of 2 mm */
+    CHECK(path_centre_by_point(PATH_XY, a, (double[]){ 1.0, 1.0 }, b, centre, &ccw) == PATH_OPEN);
+    for (double r = 10.0; r < 1e9; r *= 10.0) { /* flat arcs with a chord of 2 mm */
         const double from[AXES] = { -1.0 }, to[AXES] = { 1.0 };
         const double via[2] = { 0.0, 1.0 / (r + sqrt(r * r - 1.0)) };
         CHECK(path_centre_by_point(PATH_XY, from, via, to, centre, &ccw) == PATH_OK);
@@ -169,7 +169,10 @@ static void by_point(void)
 /* The tolerance of E1: 0.005 mm always, 0.5 mm never more, 0.1 % between. */
 static void tolerance(void)
 {
-    const struct { double r, error; enum path_status want; } cases[] = {
+    const struct {
+        double r, error;
+        enum path_status want;
+    } cases[] = {
         { 1.0, 0.0049, PATH_OK },  { 1.0, 0.0051, PATH_MISSES_END },
         { 100.0, 0.099, PATH_OK }, { 100.0, 0.101, PATH_MISSES_END },
         { 1000.0, 0.49, PATH_OK }, { 1000.0, 0.51, PATH_MISSES_END },
@@ -182,7 +185,7 @@ static void tolerance(void)
         CHECK(path_arc(&p, PATH_XY, start, end, centre, true, 1, &miss) == cases[i].want);
         CHECK_NEAR(miss, cases[i].error, 1e-12 * cases[i].r);
         if (cases[i].want == PATH_OK) {
-            walk(&p, 1e-6);     /* start and end are met; speed errs by less than 0.1 % */
+            walk(&p, 1e-6); /* start and end are met; speed errs by less than 0.1 % */
         }
     }
     const double zero[AXES] = { 0.0 }, centre[2] = { 0.0, 0.0 }, tiny[2] = { 5e-324, 0.0 };
@@ -217,7 +220,8 @@ static void tilted(void)
             end[b] = centre[1] + r * sin(sweep);
             const int turns = 1 + (int)floor(fabs(sweep) / (2.0 * PI));
             CHECK(path_arc(&flat, (enum path_plane)plane, start, end, centre, sweep > 0.0, turns,
-                           &miss) == PATH_OK);
+                           &miss)
+                  == PATH_OK);
             CHECK(path_tilted(&p, start, end, c, up, sweep) == PATH_OK);
             CHECK_NEAR(p.length, flat.length, 1e-9);
             CHECK_NEAR(path_bend(&p), path_bend(&flat), 1e-9);
@@ -238,7 +242,7 @@ static void tilted(void)
     }
     /* In a plane of its own, with a middle found by a point on the way. */
     const double out[3] = { 1.0 / 3.0, -2.0 / 3.0, -2.0 / 3.0 };
-    const double on[3] = { 2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0 };  /* normal x out */
+    const double on[3] = { 2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0 }; /* normal x out */
     for (double sweep = 0.5; sweep < 6.2; sweep += 0.7) {
         double start[AXES] = { 0 }, via[3], end[AXES] = { 0, 0, 0, 2, 1, 0 }, m[3], n[3], found;
         for (int i = 0; i < 3; i++) {
@@ -261,7 +265,7 @@ static void tilted(void)
     }
     const double a[AXES] = { 1, 2, 3 }, b[3] = { 2, 4, 6 }, c[3] = { 3, 6, 9 };
     double m[3], n[3], sweep;
-    for (double r = 10.0; r < 1e9; r *= 10.0) {     /* flat arcs with a chord of 2 mm */
+    for (double r = 10.0; r < 1e9; r *= 10.0) { /* flat arcs with a chord of 2 mm */
         const double high = sqrt(r * r - 1.0), rise = 1.0 / (r + high);
         const double from[3] = { -1.0, 0, 0 }, to[3] = { 1.0, 0, 0 };
         const double via[3] = { 0, 0.6 * rise, 0.8 * rise };

@@ -80,7 +80,7 @@ static void hold(const struct piece *p, double from, double to, bool tool, doubl
     struct piece_state s;
     double jerk[AXES];
 
-    const int samples = p->kind == PIECE_ARC ? 400 : 60;    /* arcs of several turns */
+    const int samples = p->kind == PIECE_ARC ? 400 : 60; /* arcs of several turns */
     piece_bounds(p, from, to, &b);
     ends(p, from, to, &b);
     memset(&most, 0, sizeof most);
@@ -130,7 +130,9 @@ static void smooth(const struct piece *p)
 
 static void line(void)
 {
-    struct piece p = { .kind = PIECE_LINE, .length = 5.0, .start = { 1, 2, 3, 4, 5, 6 },
+    struct piece p = { .kind = PIECE_LINE,
+                       .length = 5.0,
+                       .start = { 1, 2, 3, 4, 5, 6 },
                        .slope = { 0.6, 0.0, -0.8, 0.1, 0, 0 } };
     struct piece_state s;
     struct piece_bounds b;
@@ -164,7 +166,8 @@ static void arcs(uint64_t *random)
         if (plane == PATH_TILTED) {
             double middle[3], normal[3], sweep;
             CHECK(path_tilted_by_point(start, end, (double[]){ 1.0, 12.0, 3.0 }, middle, normal,
-                                       &sweep) == PATH_OK);
+                                       &sweep)
+                  == PATH_OK);
             sweep *= k % 8 == 3 ? 1.0 : -0.9;
             CHECK(path_tilted(&p.path, start, end, middle, normal, sweep) == PATH_OK);
         } else {
@@ -176,8 +179,7 @@ static void arcs(uint64_t *random)
             centre[1] = start[y] - r * sin(angle);
             end[x] = centre[0] + other * cos(angle + turn);
             end[y] = centre[1] + other * sin(angle + turn);
-            CHECK(path_arc(&p.path, plane, start, end, centre, k % 2, 1 + k % 3, &miss)
-                  == PATH_OK);
+            CHECK(path_arc(&p.path, plane, start, end, centre, k % 2, 1 + k % 3, &miss) == PATH_OK);
         }
         p.from = p.path.length * check_real(random, 0.0, 0.4);
         p.length = p.path.length - p.from;
@@ -204,7 +206,7 @@ static void cubics(uint64_t *random)
             inner[0][i] = start[i] + (i == 0 ? 10.0 : check_real(random, -8.0, 8.0));
             inner[1][i] = start[i] + (i == 0 ? 20.0 : check_real(random, -8.0, 8.0));
         }
-        CHECK_EQ(path_cubic(&p.path, start, end, (const double (*)[3])inner), PATH_OK);
+        CHECK_EQ(path_cubic(&p.path, start, end, (const double(*)[3])inner), PATH_OK);
         p.from = p.path.length * check_real(random, 0.0, 0.4);
         p.length = p.path.length - p.from;
         smooth(&p);

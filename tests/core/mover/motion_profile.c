@@ -54,8 +54,10 @@ static void replanned(void)
         struct profile p;
         double s = 0.0, v = 0.0, fastest = 0.0;
         for (int k = 0; k < 8; k++) {
-            const double target = k == 7 ? 50.0 : check_real(&seed, 0.0, 1.0) < 0.3
-                                ? 0.0 : check_real(&seed, 1.0, 300.0);
+            const double target = k == 7 ? 50.0
+                                  : check_real(&seed, 0.0, 1.0) < 0.3
+                                      ? 0.0
+                                      : check_real(&seed, 1.0, 300.0);
             const struct profile_limits l = { target, { acc, dec, 0.0, 0.0 } };
             const double s0 = s, v0 = v;
             fastest = fmax(fastest, target);
@@ -96,7 +98,7 @@ static void brake(void)
     CHECK(at(&p, p.total).v == 0.0);
     CHECK_NEAR(at(&p, 1.0).s, 3.5, 1e-14);
 
-    plan(&p, 9.5, 20.0, 10.0, &l);      /* exactly the way that is left */
+    plan(&p, 9.5, 20.0, 10.0, &l); /* exactly the way that is left */
     CHECK(p.ends && at(&p, p.total).s == 10.0);
     CHECK_NEAR(p.acc[2], -400.0, 1e-9);
 }

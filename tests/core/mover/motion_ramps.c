@@ -71,15 +71,17 @@ static void replanned(void)
         struct profile p;
         double fastest = 0.0;
         for (int k = 0; k < 8; k++) {
-            const double target = k == 7 ? 50.0 : check_real(&seed, 0.0, 1.0) < 0.3
-                                ? 0.0 : check_real(&seed, 1.0, 300.0);
+            const double target = k == 7 ? 50.0
+                                  : check_real(&seed, 0.0, 1.0) < 0.3
+                                      ? 0.0
+                                      : check_real(&seed, 1.0, 300.0);
             const struct profile_limits l = { target, r };
             const struct scurve_start before = x;
             fastest = fmax(fastest, target);
             profile_plan(&p, &x, way, &l);
             x = at(&p, 0.0);
             const bool far = way - before.s > 1e-5;
-            CHECK_NEAR(x.s, before.s, 1e-9 * way + 2e-9 * fastest);   /* 1 ns of a jump of a */
+            CHECK_NEAR(x.s, before.s, 1e-9 * way + 2e-9 * fastest); /* 1 ns of a jump of a */
             CHECK(!far || fabs(x.v - before.v) <= 1e-6 * fastest);
             CHECK(!far || i % 3 != 2 || fabs(x.a - before.a) <= 1e-6 * (r.acc + r.dec));
             const double t1 = k == 7 ? p.total : check_real(&seed, 0.0, 1.1) * p.total;

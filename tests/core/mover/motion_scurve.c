@@ -108,7 +108,7 @@ static void check_limits(const struct scurve *p, const struct move *m)
     enum { SAMPLES = 300 };
     const double more = 1.0 + TIGHT, dt = p->total / SAMPLES;
     const struct scurve_limits *l = &m->l;
-    bool inside = false;                    /* from then on v may not leave its limits */
+    bool inside = false; /* from then on v may not leave its limits */
     double slowest = m->from.v;
     struct state x = at(p, 0.0);
     for (int i = 0; i <= SAMPLES; i++) {
@@ -168,9 +168,12 @@ static void symmetries(void)
     for (int i = 0; i < 4000; i++) {
         const struct move m = random_move(&seed, (enum kind)(i % KINDS), 3.0);
         const double t = 1.7, u = -25.4, k = u / t;
-        struct move n = { { m.from.s * u, m.from.v * k, m.from.a * k / t }, m.s1 * u, m.v1 * k,
+        struct move n = { { m.from.s * u, m.from.v * k, m.from.a * k / t },
+                          m.s1 * u,
+                          m.v1 * k,
                           { m.l.speed * -k, m.l.dec * -k / t, m.l.acc * -k / t,
-                            m.l.jerk * -k / t / t }, m.kind };
+                            m.l.jerk * -k / t / t },
+                          m.kind };
         struct scurve p, q;
         CHECK(plan(&p, &m) == SCURVE_OK && plan(&q, &n) == SCURVE_OK);
         CHECK_NEAR(q.total, p.total * t, 1e-11 * q.total);

@@ -9,7 +9,7 @@ enum { LINES = 2000 };
 
 static struct shape shape;
 static struct piece before;
-static double jump[3];      /* most of place [mm], r' and r'' [1/mm] where pieces meet */
+static double jump[3]; /* most of place [mm], r' and r'' [1/mm] where pieces meet */
 
 static void drain(void)
 {
@@ -39,8 +39,12 @@ static int64_t walk(double start, double step, double tolerance, double merge)
     memset(&before, 0, sizeof before);
     shape_start(&shape, merge);
     for (int32_t k = 1; k <= LINES; k++) {
-        struct command c = { .type = COMMAND_LINE, .tolerance = tolerance, .feed = 50.0,
-                             .cap = 100.0, .ramp = { 1000.0, 1000.0, 0.0, 0.0 }, .index = k };
+        struct command c = { .type = COMMAND_LINE,
+                             .tolerance = tolerance,
+                             .feed = 50.0,
+                             .cap = 100.0,
+                             .ramp = { 1000.0, 1000.0, 0.0, 0.0 },
+                             .index = k };
         double to[AXES];
         angle += check_real(&dice, -0.5, 0.5);
         memcpy(to, from, sizeof to);
@@ -62,9 +66,13 @@ static int64_t walk(double start, double step, double tolerance, double merge)
 
 int main(void)
 {
-    static const double rows[][3] = {   /* step, tolerance, merge [mm] */
-        { 0.1, 0.01, 0.0 }, { 0.001, 1e-3, 0.0 },       /* a corner at each vertex */
-        { 0.001, 1e-4, 1.0 }, { 0.01, 1e-4, 1.0 }, { 0.001, 0.02, 1.0 }     /* splines */
+    static const double rows[][3] = {
+        /* step, tolerance, merge [mm] */
+        { 0.1, 0.01, 0.0 },
+        { 0.001, 1e-3, 0.0 }, /* a corner at each vertex */
+        { 0.001, 1e-4, 1.0 },
+        { 0.01, 1e-4, 1.0 },
+        { 0.001, 0.02, 1.0 } /* splines */
     };
 
     for (int k = 0; k < 5; k++) {
@@ -72,9 +80,9 @@ int main(void)
         const int64_t far = walk(1000.0, rows[k][0], rows[k][1], rows[k][2]);
         printf("%g mm, %g mm: %d pieces, %d at 1 m, jumps of r %.0e, r' %.0e, r'' %.0e /mm\n",
                rows[k][0], rows[k][1], (int)near, (int)far, jump[0], jump[1], jump[2]);
-        CHECK(jump[0] <= 1e-12);    /* two roundings of 1 m */
+        CHECK(jump[0] <= 1e-12); /* two roundings of 1 m */
         CHECK(jump[1] <= 1e-13);
-        CHECK(jump[2] <= 2e-9);     /* 1e-16 of some r' over 0.1 um */
+        CHECK(jump[2] <= 2e-9); /* 1e-16 of some r' over 0.1 um */
         CHECK(near > 20 && labs((long)(far - near)) <= near / 10);
     }
     return check_result();

@@ -6,26 +6,30 @@
 #include <math.h>
 #include <stdlib.h>
 
-struct path { bool line_b, high, a, b; int step; int cleared[2], end[2]; };
+struct path {
+    bool line_b, high, a, b;
+    int step;
+    int cleared[2], end[2];
+};
 
 /* Lines are the scale's, before the inverters; clocks count from the acceptance. */
 static void paths(void)
 {
     static const struct path PATHS[] = {
         /* line that changes, to what; lines A, B then; step; cleared, end: all and one */
-        {false, false, false, true,  +1, {31, 16}, {36, 36}},     /* A up, PGB = 0 */
-        {false, false, false, false, -1, {33, 16}, {38, 38}},     /* A up, PGB = 1 */
-        {false, true,  true,  true,  -1, {37, 22}, {42, 42}},     /* A down, PGB = 0 */
-        {false, true,  true,  false, +1, {39, 22}, {44, 44}},     /* A down, PGB = 1 */
-        {true,  false, true,  false, -1, {43, 30}, {48, 49}},     /* B up, PGA = 0 */
-        {true,  false, false, false, +1, {45, 30}, {50, 51}},     /* B up, PGA = 1 */
-        {true,  true,  true,  true,  +1, {50, 37}, {55, 56}},     /* B down, PGA = 0 */
-        {true,  true,  false, true,  -1, {50, 37}, {55, 56}},     /* B down, PGA = 1 */
+        { false, false, false, true, +1, { 31, 16 }, { 36, 36 } },  /* A up, PGB = 0 */
+        { false, false, false, false, -1, { 33, 16 }, { 38, 38 } }, /* A up, PGB = 1 */
+        { false, true, true, true, -1, { 37, 22 }, { 42, 42 } },    /* A down, PGB = 0 */
+        { false, true, true, false, +1, { 39, 22 }, { 44, 44 } },   /* A down, PGB = 1 */
+        { true, false, true, false, -1, { 43, 30 }, { 48, 49 } },   /* B up, PGA = 0 */
+        { true, false, false, false, +1, { 45, 30 }, { 50, 51 } },  /* B up, PGA = 1 */
+        { true, true, true, true, +1, { 50, 37 }, { 55, 56 } },     /* B down, PGA = 0 */
+        { true, true, false, true, -1, { 50, 37 }, { 55, 56 } },    /* B down, PGA = 1 */
     };
     for (int i = 0; i < 8; i++)
         for (int one = 0; one < 2; one++) {
             const struct path *w = &PATHS[i];
-            struct port p = {.clear = (enum port_clear)one};
+            struct port p = { .clear = (enum port_clear)one };
             port_edge(&p, w->line_b, w->high, w->step);
             int clock = port_begin(&p), cleared = 0, cycles;
             while ((cycles = port_go(&p, w->a, w->b)) > 0) {
@@ -44,7 +48,7 @@ static void paths(void)
 static void home_path(void)
 {
     for (int one = 0; one < 2; one++) {
-        struct port p = {.clear = (enum port_clear)one, .counter = 77, .counter_2 = 77};
+        struct port p = { .clear = (enum port_clear)one, .counter = 77, .counter_2 = 77 };
         port_home(&p);
         int clock = port_begin(&p), cycles;
         while ((cycles = port_go(&p, false, false)) > 0)
@@ -66,13 +70,15 @@ static void accounts(void)
     int lost = 0, turned = 0;
     for (int i = 0; i < 200; i++) {
         const struct msp430_config c = {
-            .sequence = {.acceleration = 1, .home_way = 1, .error_limit = 1}, .clear = i % 2,
-            .pwm = {.period = 800, .tau = 100.0, .high = 2.5, .gain = 8.0, .limit = 10.0},
-            .timer_period = 1000 + i, .timer_cycles = 300,
+            .sequence = { .acceleration = 1, .home_way = 1, .error_limit = 1 },
+            .clear = i % 2,
+            .pwm = { .period = 800, .tau = 100.0, .high = 2.5, .gain = 8.0, .limit = 10.0 },
+            .timer_period = 1000 + i,
+            .timer_cycles = 300,
         };
         struct msp430 m;
         msp430_reset(&m, &c);
-        const struct msp430_pins pins = {0};
+        const struct msp430_pins pins = { 0 };
         double phase = 0.1;
         int64_t clock = 0, passed = 0, before = 0;
         for (int k = 0; k < 300; k++, clock += 200) {

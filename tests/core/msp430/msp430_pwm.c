@@ -5,8 +5,9 @@
 
 #include <math.h>
 
-static const struct pwm_config PLAIN = {.period = 800, .tau = 16000.0, .high = 2.5,
-                                        .offset = 1.25, .gain = 8.0, .limit = 10.0};
+static const struct pwm_config PLAIN = {
+    .period = 800, .tau = 16000.0, .high = 2.5, .offset = 1.25, .gain = 8.0, .limit = 10.0
+};
 
 static double ripple(const struct pwm_config *c, double d)
 {
@@ -63,8 +64,10 @@ static void fine(void)
     for (int i = 0; i < 60; i++) {
         const struct pwm_config c = {
             .period = (int32_t)check_random(&seed, 2, 400),
-            .tau = (double)check_random(&seed, 10, 3000), .high = 3.3,
-            .offset = 0.01 * (double)check_random(&seed, 0, 330), .gain = 8.0,
+            .tau = (double)check_random(&seed, 10, 3000),
+            .high = 3.3,
+            .offset = 0.01 * (double)check_random(&seed, 0, 330),
+            .gain = 8.0,
             .limit = (double)check_random(&seed, 1, 12),
         };
         struct pwm p;
@@ -78,7 +81,7 @@ static void fine(void)
                 duty = wanted;
             const double end = place < duty ? c.high : 0.0;
             enum { PARTS = 8 };
-            for (int k = 0; k < PARTS; k++) {           /* midpoint rule */
+            for (int k = 0; k < PARTS; k++) { /* midpoint rule */
                 const double half = end + (v - end) * exp(-0.5 / PARTS / c.tau);
                 area += fmin(fmax(c.gain * (half - c.offset), -c.limit), c.limit) / PARTS;
                 v = end + (v - end) * exp(-1.0 / PARTS / c.tau);

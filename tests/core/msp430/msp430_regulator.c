@@ -26,15 +26,19 @@ static void against_sums(void)
             .band = (int16_t)(check_random(&seed, 0, 1) * check_random(&seed, 1, 20000)),
             .outside = (enum regulator_outside)check_random(&seed, 0, 1),
         };
-        struct regulator s = {0};
+        struct regulator s = { 0 };
         double count = 0.0, sum = 0.0;
         for (int k = 0; k < 200; k++) {
             const int16_t e = (int16_t)check_random(&seed, -32768, 32767);
             const bool on = c.kind != REGULATOR_P && (c.band == 0 || (e < c.band && -e < c.band));
-            count = c.kind != REGULATOR_LITERAL ? 0.0 : on ? count + 1.0 :
-                    c.outside == REGULATOR_RESET ? 0.0 : count;
-            sum = c.kind != REGULATOR_SUM ? 0.0 : on ? clip(sum + e, -2147483648.0, 2147483647.0) :
-                  c.outside == REGULATOR_RESET ? 0.0 : sum;
+            count = c.kind != REGULATOR_LITERAL    ? 0.0
+                    : on                           ? count + 1.0
+                    : c.outside == REGULATOR_RESET ? 0.0
+                                                   : count;
+            sum = c.kind != REGULATOR_SUM        ? 0.0
+                  : on                           ? clip(sum + e, -2147483648.0, 2147483647.0)
+                  : c.outside == REGULATOR_RESET ? 0.0
+                                                 : sum;
             const double factor = c.kind == REGULATOR_LITERAL ? count * e : sum;
             const double p = floor(ldexp((double)c.p_gain * e, -c.p_shift) + 0.5);
             const double n = floor(ldexp(c.i_gain * factor, -c.i_shift) + 0.5);
@@ -49,15 +53,15 @@ static void against_sums(void)
 /* Count and sum stop at the ends of their words. */
 static void saturation(void)
 {
-    const struct regulator_config literal = {.kind = REGULATOR_LITERAL, .i_gain = 1, .p_gain = 0};
-    struct regulator s = {0};
+    const struct regulator_config literal = { .kind = REGULATOR_LITERAL, .i_gain = 1, .p_gain = 0 };
+    struct regulator s = { 0 };
     for (int k = 0; k < 40000; k++)
         regulator_tick(&literal, &s, 1);
     CHECK_EQ(s.count, 32767);
     regulator_move(&s);
     CHECK_EQ(s.count, 0);
-    const struct regulator_config sum = {.kind = REGULATOR_SUM, .i_gain = 1, .i_shift = 16};
-    struct regulator w = {0};
+    const struct regulator_config sum = { .kind = REGULATOR_SUM, .i_gain = 1, .i_shift = 16 };
+    struct regulator w = { 0 };
     for (int k = 0; k < 80000; k++)
         regulator_tick(&sum, &w, 32767);
     CHECK_EQ(w.sum, INT32_MAX);
@@ -69,10 +73,11 @@ static void saturation(void)
 /* The band's own edge is outside. */
 static void edge_of_band(void)
 {
-    struct regulator_config c = {.kind = REGULATOR_SUM, .i_gain = 1, .band = 10,
-                                 .outside = REGULATOR_HOLD};
-    struct regulator s = {0};
-    const int errors[] = {10, -10, 9, -9, 9, -10}, sums[] = {0, 0, 9, 0, 9, 9};
+    struct regulator_config c = {
+        .kind = REGULATOR_SUM, .i_gain = 1, .band = 10, .outside = REGULATOR_HOLD
+    };
+    struct regulator s = { 0 };
+    const int errors[] = { 10, -10, 9, -9, 9, -10 }, sums[] = { 0, 0, 9, 0, 9, 9 };
     for (int i = 0; i < 6; i++) {
         regulator_tick(&c, &s, (int16_t)errors[i]);
         CHECK_EQ(s.sum, sums[i]);
@@ -89,19 +94,20 @@ static double worst(const struct regulator_config *c, double kp, double ki)
 {
     const double t = 1e-4;
     const int16_t step = 20000;
-    struct regulator s = {0};
+    struct regulator s = { 0 };
     double place = 0.0, most = 0.0;
     for (int k = 0; k < 30000; k++) {
         const double time = k * t;
         const double wn = sqrt(ki > 0.0 ? ki : 1.0), z = kp / (2.0 * wn);
         const double wd = wn * sqrt(1.0 - z * z);
         const double rest =
-            c->kind == REGULATOR_P ? exp(-kp * time) :
-            c->kind == REGULATOR_LITERAL ? exp(-kp * time - ki * time * time / 2.0) :
-            exp(-z * wn * time) * (cos(wd * time) - z * wn / wd * sin(wd * time));
+            c->kind == REGULATOR_P ? exp(-kp * time)
+            : c->kind == REGULATOR_LITERAL
+                ? exp(-kp * time - ki * time * time / 2.0)
+                : exp(-z * wn * time) * (cos(wd * time) - z * wn / wd * sin(wd * time));
         most = fmax(most, fabs((step - place) / step - rest));
         const int16_t error = (int16_t)lround(step - place);
-        place += regulator_tick(c, &s, error) * t;    /* u in counts/s */
+        place += regulator_tick(c, &s, error) * t; /* u in counts/s */
     }
     return most;
 }
@@ -110,7 +116,7 @@ static double worst(const struct regulator_config *c, double kp, double ki)
 static void closed_forms(void)
 {
     const double ki = 13.0 / 65536.0 / 1e-4;
-    struct regulator_config c = {.kind = REGULATOR_P, .p_gain = 1, .i_gain = 13, .i_shift = 16};
+    struct regulator_config c = { .kind = REGULATOR_P, .p_gain = 1, .i_gain = 13, .i_shift = 16 };
     CHECK(worst(&c, 1.0, 0.0) < 1e-3);
     c.kind = REGULATOR_LITERAL;
     CHECK(worst(&c, 1.0, ki) < 1e-3);

@@ -13,13 +13,13 @@ enum { RIG_PIN = 800, RIG_TICK = 8000, RIG_ONE = 1 << TRAPEZOID_POINT };
 struct rig {
     struct msp430 chip;
     struct msp430_pins pins;
-    double  place;              /* [counts] true */
-    double  home_at;            /* [counts] the switch is on from here downwards */
-    double  speed_per_volt;     /* [counts/s/V] */
-    bool    unplugged, stuck;   /* scale; home switch on always */
-    double  phase;              /* as the scale last showed it */
+    double place;          /* [counts] true */
+    double home_at;        /* [counts] the switch is on from here downwards */
+    double speed_per_volt; /* [counts/s/V] */
+    bool unplugged, stuck; /* scale; home switch on always */
+    double phase;          /* as the scale last showed it */
     int64_t clock;
-    int     states;             /* that were seen, a bit each */
+    int states; /* that were seen, a bit each */
 };
 
 /* 8 MHz, 1 ms, 20 counts/tick, 0.1 counts/tick^2; Kp = 1 PWM count per count, 20/s. */
@@ -42,7 +42,7 @@ static inline struct msp430_config rig_config(void)
 
 static inline struct rig rig_start(const struct msp430_config *c, double place)
 {
-    struct rig r = {.place = place, .phase = 0.25 * place, .speed_per_volt = 4000.0};
+    struct rig r = { .place = place, .phase = 0.25 * place, .speed_per_volt = 4000.0 };
     msp430_reset(&r.chip, c);
     return r;
 }

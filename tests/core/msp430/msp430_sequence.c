@@ -21,7 +21,7 @@ static void stopped(struct rig *r, int code, int homed)
     rig_run(r, 0.1);
     CHECK(fabs(r->place - place) < 0.01);
     CHECK_EQ(rig_state(r), SEQUENCE_FAULT);
-    rig_press(r, 2);                                /* nothing */
+    rig_press(r, 2); /* nothing */
     CHECK_EQ(r->chip.sequence.code, code);
     rig_press(r, 1);
     CHECK_EQ(rig_state(r), homed ? SEQUENCE_READY : SEQUENCE_UNHOMED);
@@ -34,13 +34,13 @@ static void power_up(void)
 {
     const struct msp430_config c = rig_config();
     struct rig r = rig_start(&c, 1000.3);
-    r.pins.pb1 = r.pins.pb2 = true;                 /* held at power-up: no press */
+    r.pins.pb1 = r.pins.pb2 = true; /* held at power-up: no press */
     rig_run(&r, 0.1);
     r.pins.pb1 = r.pins.pb2 = false;
     rig_run(&r, 0.1);
     CHECK_EQ(rig_state(&r), SEQUENCE_UNHOMED);
     CHECK(fabs(r.place - 1000.3) < 12.0);
-    r.pins.pb1 = true;                              /* too short */
+    r.pins.pb1 = true; /* too short */
     rig_run(&r, 0.004);
     r.pins.pb1 = false;
     rig_run(&r, 0.05);
@@ -61,7 +61,7 @@ static void debounced_to_the_tick(void)
     for (int ticks = 1; ticks <= 5; ticks += 2) {
         struct sequence_config c = rig_config().sequence;
         struct sequence s;
-        struct sequence_input in = {0};
+        struct sequence_input in = { 0 };
         c.debounce = ticks;
         sequence_reset(&s, false);
         for (int k = 0; k < ticks; k++)
@@ -105,7 +105,7 @@ static void home_from_above(void)
     CHECK(rig_counter(&r) < 0);
     CHECK_EQ(r.chip.port.zeroed, 1);
     CHECK_EQ(r.chip.port.lost + r.chip.port.turned, 0);
-    CHECK_EQ(fixed_word(r.chip.port.counter_2), floor(r.place) - 2000);    /* never cleared */
+    CHECK_EQ(fixed_word(r.chip.port.counter_2), floor(r.place) - 2000); /* never cleared */
 }
 
 /* On the switch: off it first, then as before. Again from READY. */
@@ -132,12 +132,12 @@ static void position(void)
 {
     const struct msp430_config c = rig_config();
     struct rig r = rig_homed(&c);
-    const int targets[] = {20000, 0, 5, 19990, -100, 25000};
+    const int targets[] = { 20000, 0, 5, 19990, -100, 25000 };
     for (int i = 0; i < 6; i++) {
         r.pins.target = targets[i];
         r.states = 0;
         rig_press(&r, 2);
-        r.pins.target = 12345;                      /* not taken before the next press */
+        r.pins.target = 12345; /* not taken before the next press */
         rig_run(&r, 2.5);
         CHECK_EQ(rig_state(&r), SEQUENCE_READY);
         CHECK_EQ(r.chip.sequence.track.place, (int64_t)targets[i] * RIG_ONE);
@@ -170,11 +170,11 @@ static void under_way(void)
     rig_run(&r, 1.0);
     CHECK_EQ(rig_state(&r), SEQUENCE_READY);
     const double way = (double)r.chip.sequence.track.place / RIG_ONE - place;
-    CHECK(way > v * v / 0.2 && way < v * v / 0.2 + 20 * v);     /* the button takes its time */
-    rig_press(&r, 1);                               /* again: home */
+    CHECK(way > v * v / 0.2 && way < v * v / 0.2 + 20 * v); /* the button takes its time */
+    rig_press(&r, 1);                                       /* again: home */
     rig_run(&r, 0.1);
     CHECK_EQ(rig_state(&r), SEQUENCE_SEARCH);
-    rig_press(&r, 1);                               /* and stop that */
+    rig_press(&r, 1); /* and stop that */
     rig_run(&r, 0.2);
     CHECK_EQ(rig_state(&r), SEQUENCE_UNHOMED);
 }
@@ -183,7 +183,7 @@ static void target_outside(void)
 {
     const struct msp430_config c = rig_config();
     struct rig r = rig_homed(&c);
-    const int bad[] = {25001, -101, INT32_MAX, INT32_MIN};
+    const int bad[] = { 25001, -101, INT32_MAX, INT32_MIN };
     for (int i = 0; i < 4; i++) {
         const int counter = rig_counter(&r);
         r.pins.target = bad[i];
@@ -209,7 +209,7 @@ static void scale_unplugged(void)
     rig_run(&r, 0.099);
     CHECK_EQ(rig_state(&r), SEQUENCE_CRUISE);
     rig_run(&r, 0.004);
-    CHECK(abs(rig_counter(&r) - counter) <= 8);     /* what was under way in a pin period */
+    CHECK(abs(rig_counter(&r) - counter) <= 8); /* what was under way in a pin period */
     stopped(&r, SEQUENCE_SCALE, 0);
 }
 
@@ -238,7 +238,7 @@ static void home_lost(void)
     const struct msp430_config c = rig_config();
     struct sequence s;
     sequence_reset(&s, false);
-    struct sequence_input in = {.share = 4095};
+    struct sequence_input in = { .share = 4095 };
     for (int k = 0; k < 20; k++)
         sequence_tick(&c.sequence, &s, &in);
     in.pb1 = true;
@@ -283,7 +283,7 @@ static void wrap(void)
     CHECK_EQ(rig_state(&r), SEQUENCE_READY);
     CHECK(fabs(r.place - 100000.0) < 3.0);
     CHECK(abs(rig_counter(&r) - (100000 - 131072)) <= 1);
-    rig_press(&r, 1);                               /* and home from there */
+    rig_press(&r, 1); /* and home from there */
     rig_run(&r, 1.0);
     rig_press(&r, 1);
     r.pins.target = 0;
@@ -304,7 +304,7 @@ static void over_the_switch(void)
         rig_press(&r, 2);
         rig_run(&r, 1.5);
         const double zero = r.place - rig_counter(&r);
-        r.home_at = 2000.0;                         /* the switch is found elsewhere */
+        r.home_at = 2000.0; /* the switch is found elsewhere */
         r.pins.target = -3000;
         rig_press(&r, 2);
         rig_run(&r, 2.0);
@@ -343,7 +343,7 @@ static void override(void)
     r.pins.target = 20000;
     rig_press(&r, 2);
     rig_run(&r, 0.3);
-    CHECK_EQ(r.chip.sequence.track.speed, 10 * RIG_ONE);    /* 2048 / 4096 */
+    CHECK_EQ(r.chip.sequence.track.speed, 10 * RIG_ONE); /* 2048 / 4096 */
     r.pins.volts = 0.0;
     rig_run(&r, 0.3);
     CHECK_EQ(r.chip.sequence.track.speed, 0);

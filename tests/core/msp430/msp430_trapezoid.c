@@ -50,7 +50,7 @@ static void move(int64_t from, int64_t to, int32_t limit, int32_t a)
         CHECK_EQ(t.speed - before, t.change);
         CHECK_EQ(t.place - place, t.speed);
         CHECK(way * (t.target - t.place) >= 0);
-        CHECK(!slowing || way * t.change < 0);      /* once it brakes, it brakes */
+        CHECK(!slowing || way * t.change < 0); /* once it brakes, it brakes */
         slowing |= way * t.change < 0;
         before = t.speed;
     }
@@ -143,7 +143,7 @@ static void stop(void)
         trapezoid_tick(&t, 20 * ONE, ONE / 10);
     CHECK(abs(ticks - 200) <= 1);
     const double way = (double)(t.place - from) / ONE;
-    CHECK(fabs(way - (20.0 * 20.0 / 0.2 - 10.0)) < 0.5);    /* half a tick of v less: 1990 */
+    CHECK(fabs(way - (20.0 * 20.0 / 0.2 - 10.0)) < 0.5); /* half a tick of v less: 1990 */
     trapezoid_shift(&t, -50);
     CHECK(trapezoid_done(&t));
 }

@@ -8,16 +8,18 @@ static const int64_t second = INT64_C(1000000000);
 
 /* A server made by hand on the channel. */
 struct peer {
-    struct session     card;
+    struct session card;
     struct net_channel server;
-    struct net_hello   hello;
-    struct net_secret  secret;
-    int64_t            now;
+    struct net_hello hello;
+    struct net_secret secret;
+    int64_t now;
 };
 
 static void start(struct peer *p, uint8_t key)
 {
-    const struct session_config c = {.card = 5, .slots = 2, .axes = 4, .key = {key}, .seed = {9}};
+    const struct session_config c = {
+        .card = 5, .slots = 2, .axes = 4, .key = { key }, .seed = { 9 }
+    };
     memset(p, 0, sizeof *p);
     session_start(&p->card, &c, 0);
 }
@@ -45,7 +47,7 @@ static uint8_t hear(struct peer *p)
 
 static void connect_card(struct peer *p)
 {
-    const struct session_about about = {.credit = 16, .state = NET_READY, .job = {3}};
+    const struct session_about about = { .credit = 16, .state = NET_READY, .job = { 3 } };
     net_channel_start(&p->server, false);
     session_connected(&p->card, &about, p->now);
     CHECK_EQ(hear(p), NET_HELLO);
@@ -55,9 +57,9 @@ static void connect_card(struct peer *p)
 /* Answer HELLO with this key and protocol. */
 static void challenge(struct peer *p, uint8_t key, uint16_t protocol)
 {
-    struct net_challenge c = {.protocol = protocol, .nonce = {4}};
+    struct net_challenge c = { .protocol = protocol, .nonce = { 4 } };
     uint8_t payload[NET_BYTES_challenge];
-    p->secret = (struct net_secret){.key = {key}, .card = p->hello.card, .protocol = protocol};
+    p->secret = (struct net_secret){ .key = { key }, .card = p->hello.card, .protocol = protocol };
     memcpy(p->secret.card_nonce, p->hello.nonce, NET_NONCE);
     memcpy(p->secret.server_nonce, c.nonce, NET_NONCE);
     net_prove(&p->secret, NET_OF_SERVER, c.proof);
@@ -74,7 +76,7 @@ static void say(struct peer *p, uint8_t type, const void *payload, size_t n)
 
 static void say_number(struct peer *p, uint8_t type, uint32_t number)
 {
-    const struct net_command command = {number};
+    const struct net_command command = { number };
     uint8_t payload[NET_BYTES_command];
     net_put_command(payload, &command);
     say(p, type, payload, sizeof payload);
@@ -82,7 +84,7 @@ static void say_number(struct peer *p, uint8_t type, uint32_t number)
 
 static void bring_up(struct peer *p, uint8_t key, uint16_t interval)
 {
-    const struct net_welcome welcome = {.interval = interval};
+    const struct net_welcome welcome = { .interval = interval };
     uint8_t payload[NET_BYTES_welcome], proof[NET_SHA_BYTES];
     start(p, key);
     connect_card(p);
@@ -120,7 +122,7 @@ static void check_handshake(void)
     CHECK_EQ(p.hello.credit, 16);
     CHECK_EQ(p.hello.job[0], 3);
     memcpy(nonce, p.hello.nonce, sizeof nonce);
-    challenge(&p, 2, NET_PROTOCOL);         /* a server without the key */
+    challenge(&p, 2, NET_PROTOCOL); /* a server without the key */
     CHECK(!session_wants(&p.card));
     CHECK_EQ(hear(&p), 0);
     p.now = p.card.due;
@@ -129,22 +131,22 @@ static void check_handshake(void)
     connect_card(&p);
     CHECK(memcmp(nonce, p.hello.nonce, sizeof nonce) != 0);
     memcpy(p.hello.nonce, nonce, sizeof nonce);
-    challenge(&p, 1, NET_PROTOCOL);         /* one that replays an earlier connection */
+    challenge(&p, 1, NET_PROTOCOL); /* one that replays an earlier connection */
     CHECK(!session_wants(&p.card));
     start(&p, 1);
     connect_card(&p);
-    challenge(&p, 1, 2);                    /* another protocol */
+    challenge(&p, 1, 2); /* another protocol */
     CHECK(!session_wants(&p.card));
     start(&p, 1);
     connect_card(&p);
-    say_number(&p, NET_START, 1);           /* a command before the proof */
+    say_number(&p, NET_START, 1); /* a command before the proof */
     CHECK(!session_wants(&p.card));
     CHECK_EQ(message(&p), 0);
 }
 
 static struct net_result heard_result(struct peer *p)
 {
-    struct net_result r = {0};
+    struct net_result r = { 0 };
     CHECK_EQ(hear(p), NET_RESULT);
     if (p->server.whole)
         net_get_result(net_channel_payload(&p->server), &r);
@@ -163,7 +165,7 @@ static void check_numbers(void)
         CHECK_EQ(r.number, number);
         CHECK_EQ(r.code, number % 2 ? NET_DONE : NET_STATE);
     }
-    for (uint32_t number = 0; number <= 12; number++) {     /* again: eight are known */
+    for (uint32_t number = 0; number <= 12; number++) { /* again: eight are known */
         say_number(&p, NET_PAUSE, number);
         CHECK_EQ(message(&p), 0);
         const struct net_result r = heard_result(&p);
@@ -172,21 +174,21 @@ static void check_numbers(void)
         CHECK_EQ(r.state, NET_RUNNING);
     }
     CHECK_EQ(p.card.repeats, 8);
-    for (uint32_t number = 100; number < 108; number++) {   /* eight without a result */
+    for (uint32_t number = 100; number < 108; number++) { /* eight without a result */
         say_number(&p, NET_HOME - 1, number);
         CHECK_EQ(message(&p), NET_STOP);
     }
     say_number(&p, NET_STOP, 108);
     CHECK_EQ(message(&p), 0);
     CHECK_EQ(heard_result(&p).code, NET_BUSY);
-    say_number(&p, NET_STOP, 103);          /* it is under way */
+    say_number(&p, NET_STOP, 103); /* it is under way */
     CHECK_EQ(message(&p), 0);
     CHECK_EQ(hear(&p), 0);
     session_result(&p.card, 103, NET_ALARM, NET_FAULT);
     CHECK_EQ(heard_result(&p).number, 103);
-    session_result(&p.card, 103, NET_DONE, NET_READY);      /* told once */
+    session_result(&p.card, 103, NET_DONE, NET_READY); /* told once */
     CHECK_EQ(hear(&p), 0);
-    say_number(&p, NET_STOP, 108);          /* was not taken before */
+    say_number(&p, NET_STOP, 108); /* was not taken before */
     CHECK_EQ(message(&p), NET_STOP);
     /* A result of a connection that is gone is told on the next. */
     session_cut(&p.card, p.now);
@@ -196,7 +198,7 @@ static void check_numbers(void)
 
 static struct net_ack heard_ack(struct peer *p)
 {
-    struct net_ack a = {0};
+    struct net_ack a = { 0 };
     CHECK_EQ(hear(p), NET_ACK);
     if (p->server.whole)
         net_get_ack(net_channel_payload(&p->server), &a);
@@ -206,17 +208,17 @@ static struct net_ack heard_ack(struct peer *p)
 static void check_job_answers(void)
 {
     struct peer p;
-    uint8_t payload[NET_PAYLOAD] = {0};
-    const struct net_job_pages pages = {0, 1};
+    uint8_t payload[NET_PAYLOAD] = { 0 };
+    const struct net_job_pages pages = { 0, 1 };
     struct net_nak nak;
     bring_up(&p, 0, 0);
-    say(&p, NET_JOB_BEGIN, payload, NET_BYTES_job_begin);   /* sequence 3 */
+    say(&p, NET_JOB_BEGIN, payload, NET_BYTES_job_begin); /* sequence 3 */
     CHECK_EQ(message(&p), NET_JOB_BEGIN);
-    say_number(&p, NET_STOP, 1);                            /* 4 */
+    say_number(&p, NET_STOP, 1); /* 4 */
     CHECK_EQ(message(&p), NET_STOP);
     session_ack(&p.card, 8, 0);
     CHECK_EQ(heard_ack(&p).sequence, 2);
-    say(&p, NET_JOB_BEGIN, payload, NET_BYTES_job_begin);   /* 5, one is under way */
+    say(&p, NET_JOB_BEGIN, payload, NET_BYTES_job_begin); /* 5, one is under way */
     CHECK_EQ(message(&p), 0);
     CHECK_EQ(hear(&p), NET_NAK);
     net_get_nak(net_channel_payload(&p.server), &nak);
@@ -232,7 +234,7 @@ static void check_job_answers(void)
     CHECK_EQ(message(&p), NET_JOB_DATA);
     session_ack(&p.card, 3, 8);
     CHECK_EQ(heard_ack(&p).sequence, 6);
-    say(&p, NET_JOB_END, payload, NET_BYTES_job_end);       /* 7 */
+    say(&p, NET_JOB_END, payload, NET_BYTES_job_end); /* 7 */
     CHECK_EQ(message(&p), NET_JOB_END);
     session_job(&p.card, NET_BAD_JOB, 2, 16, NET_NO_PAGE);
     CHECK_EQ(hear(&p), NET_NAK);
@@ -241,14 +243,14 @@ static void check_job_answers(void)
     CHECK_EQ(nak.code, NET_BAD_JOB);
     CHECK_EQ(nak.detail, 2);
     CHECK_EQ(heard_ack(&p).sequence, 7);
-    say(&p, 222, payload, 3);                               /* 8, of no type */
+    say(&p, 222, payload, 3); /* 8, of no type */
     CHECK_EQ(message(&p), 0);
     CHECK_EQ(hear(&p), NET_NAK);
     net_get_nak(net_channel_payload(&p.server), &nak);
     CHECK_EQ(nak.sequence, 8);
     CHECK_EQ(nak.code, NET_UNKNOWN);
     CHECK_EQ(nak.detail, 222);
-    say(&p, NET_STATUS, payload, NET_BYTES_status);         /* a server has no status */
+    say(&p, NET_STATUS, payload, NET_BYTES_status); /* a server has no status */
     CHECK_EQ(message(&p), 0);
     CHECK_EQ(hear(&p), NET_NAK);
     say(&p, NET_PING, payload, NET_BYTES_token);
@@ -260,7 +262,7 @@ static void check_job_answers(void)
 static void check_room(void)
 {
     struct peer p;
-    const struct net_status status = {.state = NET_READY};
+    const struct net_status status = { .state = NET_READY };
     uint8_t bytes[NET_OUT], payload[NET_BYTES_command];
     uint32_t number = 0, taken = 0, results = 0;
     bring_up(&p, 1, 10);
@@ -274,7 +276,7 @@ static void check_room(void)
     size_t held = 0, at = 0;
     for (int i = 0; i < 400; i++) {
         while (net_channel_room(&p.server, sizeof payload, 0)) {
-            const struct net_command command = {++number};
+            const struct net_command command = { ++number };
             net_put_command(payload, &command);
             net_channel_put(&p.server, NET_START, payload, sizeof payload);
         }
@@ -306,7 +308,7 @@ static void check_room(void)
     }
     CHECK_EQ(results, taken);
     CHECK_EQ(acks, 1);
-    CHECK(message(&p) == NET_START);        /* it goes on */
+    CHECK(message(&p) == NET_START); /* it goes on */
 }
 
 /* Silence: PING at 1, 2, 3 s, lost at 4 s; the next attempts 0.5 s doubling to 30 s, +-25 %. */
@@ -338,15 +340,15 @@ static void check_times(void)
         session_tick(&p.card, now);
         CHECK(session_wants(&p.card));
         CHECK_EQ(session_next_time(&p.card), now + SESSION_CALL_NS);
-        now += i % 2 ? SESSION_CALL_NS : 5;     /* nobody there, or refused at once */
+        now += i % 2 ? SESSION_CALL_NS : 5; /* nobody there, or refused at once */
         if (i % 2)
             session_tick(&p.card, now);
         else
             session_cut(&p.card, now);
         want = 2 * want < SESSION_RETRY_MOST ? 2 * want : SESSION_RETRY_MOST;
     }
-    CHECK_NEAR(sum, 30e9, 2e9);             /* uniform: 30 s +- 7.5 / sqrt(150) s, thrice */
-    start(&p, 1);                           /* a server that does not prove itself in 5 s */
+    CHECK_NEAR(sum, 30e9, 2e9); /* uniform: 30 s +- 7.5 / sqrt(150) s, thrice */
+    start(&p, 1);               /* a server that does not prove itself in 5 s */
     connect_card(&p);
     CHECK_EQ(session_next_time(&p.card), SESSION_PROVE_NS);
     session_tick(&p.card, SESSION_PROVE_NS);

@@ -98,7 +98,7 @@ static void check_other_card(struct rig *r)
         const struct net_host_order start_order = { .at = r->now, .type = NET_START, .axes = 3 };
         CHECK(net_host_give(&r->host, &start_order));
         const int64_t lost = r->to_card.passed + 1;
-        r->to_card.cut_after = lost;            /* in the midst of the command */
+        r->to_card.cut_after = lost; /* in the midst of the command */
         for (int i = 0; i < 1000 && r->cuts == 0; i++) {
             rig_step(r);
         }
@@ -106,7 +106,7 @@ static void check_other_card(struct rig *r)
         const struct net_host_order *o = &r->host.order[0];
         CHECK_EQ(o->stage, NET_HOST_SENT);
         r->card.session.config.card += other;
-        CHECK_EQ(r->card.session.life, life);   /* what else a card is known by */
+        CHECK_EQ(r->card.session.life, life); /* what else a card is known by */
         for (int i = 0; i < 3000; i++) {
             rig_step(r);
         }

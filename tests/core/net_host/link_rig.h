@@ -16,47 +16,47 @@ enum { RIG_PAGES = 64, RIG_CREDIT = 8, RIG_STREAM = 20000, RIG_NUMBERS = 64 };
 /* The card behind its session. */
 struct rig_card {
     struct session session;
-    uint8_t  hash[NET_SHA_BYTES], flash[RIG_PAGES * NET_PAGE_BYTES];
-    uint32_t pages, received, programmed;   /* of the transfer */
+    uint8_t hash[NET_SHA_BYTES], flash[RIG_PAGES * NET_PAGE_BYTES];
+    uint32_t pages, received, programmed; /* of the transfer */
     uint32_t crc;
-    int64_t  erased, committed;             /* [ns] end of what is under way; 0 none */
-    uint8_t  in_force[NET_SHA_BYTES];
-    bool     ended;
-    int      twice, refused;                /* pages that were there; out of step */
-    int      done[RIG_NUMBERS];             /* times a command number was done */
-    uint8_t  order[RIG_NUMBERS];            /* types in the order in which they were done */
-    int      orders;
-    uint32_t late_number;                   /* a HOME whose result comes later */
-    int64_t  late;
+    int64_t erased, committed; /* [ns] end of what is under way; 0 none */
+    uint8_t in_force[NET_SHA_BYTES];
+    bool ended;
+    int twice, refused;         /* pages that were there; out of step */
+    int done[RIG_NUMBERS];      /* times a command number was done */
+    uint8_t order[RIG_NUMBERS]; /* types in the order in which they were done */
+    int orders;
+    uint32_t late_number; /* a HOME whose result comes later */
+    int64_t late;
 };
 
 /* A stream one way: bytes, each with the time at which it is there. */
 struct rig_stream {
     uint8_t byte[RIG_STREAM];
     int64_t at[RIG_STREAM];
-    int     first, count;
-    int64_t passed;             /* since the start of the rig */
-    int64_t cut_after;          /* of `passed`; -1 never */
+    int first, count;
+    int64_t passed;    /* since the start of the rig */
+    int64_t cut_after; /* of `passed`; -1 never */
 };
 
 struct rig {
-    struct net_host   host;
-    struct rig_card   card;
+    struct net_host host;
+    struct rig_card card;
     struct rig_stream to_card, to_host;
-    uint8_t  job[RIG_PAGES * NET_PAGE_BYTES];
+    uint8_t job[RIG_PAGES * NET_PAGE_BYTES];
     uint32_t pages;
-    int64_t  now;
-    bool     connected;
-    int      cuts;
+    int64_t now;
+    bool connected;
+    int cuts;
     uint64_t seed;
-    int64_t  delay_most;        /* [ns] */
-    int      piece_most;        /* [byte] moved at a time */
+    int64_t delay_most; /* [ns] */
+    int piece_most;     /* [byte] moved at a time */
 };
 
 static void rig_start(struct rig *r, uint32_t pages, bool keyed, uint64_t seed)
 {
-    struct net_host_config host = {.interval = 5};
-    struct session_config card = {.card = 42, .firmware = 7, .slots = 2, .axes = NET_AXES};
+    struct net_host_config host = { .interval = 5 };
+    struct session_config card = { .card = 42, .firmware = 7, .slots = 2, .axes = NET_AXES };
     memset(r, 0, sizeof *r);
     r->seed = seed;
     r->pages = pages;
@@ -104,8 +104,8 @@ static void rig_data(struct rig_card *c, const struct session_message *m)
 {
     struct net_job_pages p;
     net_get_job_pages(m->payload, &p);
-    if (p.page != c->received || p.page + p.count > c->pages || p.count > rig_credit(c) ||
-        c->erased != 0) {
+    if (p.page != c->received || p.page + p.count > c->pages || p.count > rig_credit(c)
+        || c->erased != 0) {
         c->twice += p.page < c->received;
         c->refused++;
         session_nak(&c->session, m->sequence, NET_PAGE, p.page);
@@ -194,7 +194,7 @@ static void rig_push(struct rig *r, struct rig_stream *s, const uint8_t *bytes, 
     int64_t at = r->now;
     if (r->delay_most > 0)
         at += check_random(&r->seed, 0, r->delay_most);
-    if (s->count > 0) {         /* order is kept */
+    if (s->count > 0) { /* order is kept */
         const int64_t last = s->at[(s->first + s->count - 1) % RIG_STREAM];
         at = at < last ? last : at;
     }
@@ -212,8 +212,8 @@ static size_t rig_ready(const struct rig *r, const struct rig_stream *s, uint8_t
                         size_t most)
 {
     size_t n = 0;
-    while (n < most && n < (size_t)s->count && s->at[(s->first + (int)n) % RIG_STREAM] <= r->now &&
-           (s->cut_after < 0 || s->passed + (int64_t)n < s->cut_after)) {
+    while (n < most && n < (size_t)s->count && s->at[(s->first + (int)n) % RIG_STREAM] <= r->now
+           && (s->cut_after < 0 || s->passed + (int64_t)n < s->cut_after)) {
         bytes[n] = s->byte[(s->first + (int)n) % RIG_STREAM];
         n++;
     }
@@ -251,7 +251,7 @@ static void rig_carry(struct rig *r)
     const size_t n = rig_ready(r, &r->to_host, bytes, rig_piece(r));
     net_host_bytes(&r->host, bytes, n, r->now);
     rig_pop(&r->to_host, n);
-    struct rig_stream *both[2] = {&r->to_card, &r->to_host};
+    struct rig_stream *both[2] = { &r->to_card, &r->to_host };
     for (int i = 0; i < 2; i++) {
         if (both[i]->cut_after >= 0 && both[i]->passed >= both[i]->cut_after && r->connected) {
             both[i]->cut_after = -1;
@@ -265,7 +265,7 @@ static void rig_connect(struct rig *r)
 {
     struct rig_card *c = &r->card;
     const struct rig_card *k = c;
-    struct session_about about = {.credit = rig_credit(k), .state = NET_READY};
+    struct session_about about = { .credit = rig_credit(k), .state = NET_READY };
     memcpy(about.job, c->in_force, sizeof about.job);
     r->connected = true;
     session_connected(&c->session, &about, r->now);
@@ -275,7 +275,7 @@ static void rig_connect(struct rig *r)
 static void rig_step(struct rig *r)
 {
     struct session *s = &r->card.session;
-    struct net_status status = {.state = NET_READY};
+    struct net_status status = { .state = NET_READY };
     r->now += RIG_MS;
     rig_store(&r->card, r->now);
     if (session_next_time(s) <= r->now)
@@ -312,12 +312,14 @@ static inline bool rig_run(struct rig *r, int64_t most)
 /* Commands through the upload and behind it; a HOME among them is slow to answer. */
 static int rig_orders(struct rig *r)
 {
-    static const uint8_t type[] = {NET_START, NET_HOME, NET_PAUSE, NET_OUTPUT, NET_START, NET_STOP};
+    static const uint8_t type[] = {
+        NET_START, NET_HOME, NET_PAUSE, NET_OUTPUT, NET_START, NET_STOP
+    };
     enum { ORDERS = sizeof type };
     for (int i = 0; i < ORDERS; i++) {
-        const struct net_host_order order = {
-            .at = (3 + 4 * i) * RIG_MS, .type = type[i], .axes = 3
-        };
+        const struct net_host_order order = { .at = (3 + 4 * i) * RIG_MS,
+                                              .type = type[i],
+                                              .axes = 3 };
         CHECK(net_host_give(&r->host, &order));
     }
     return ORDERS;

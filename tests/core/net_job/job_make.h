@@ -15,22 +15,25 @@ struct made {
     struct job_header header;
     int32_t frames;
     struct job_frame frame[MAKE_FRAMES];
-    size_t  bytes;
+    size_t bytes;
     uint8_t file[MAKE_PAGES * JOB_PAGE_BYTES];
 };
 
-static const uint32_t MAKE_START[JOB_AXES] = {3000, 3000, 3000, 3000};  /* 3 pulses in 1 ms */
+static const uint32_t MAKE_START[JOB_AXES] = { 3000, 3000, 3000, 3000 }; /* 3 pulses in 1 ms */
 
 static inline struct job_header make_header(uint32_t axes, uint32_t events)
 {
-    struct job_header h = {.period_ns = 1000000, .axes = axes, .events = events,
-                           .pulses_per_m = {1000000, 1000000, 1, 2},
-                           .speed_max = {1, 2, 3, 4}, .acc_max = {5, 6, 7, 0xffffffff},
-                           .jerk_max = {8, 9, 10, 0xfedcba9876543210}};
+    struct job_header h = { .period_ns = 1000000,
+                            .axes = axes,
+                            .events = events,
+                            .pulses_per_m = { 1000000, 1000000, 1, 2 },
+                            .speed_max = { 1, 2, 3, 4 },
+                            .acc_max = { 5, 6, 7, 0xffffffff },
+                            .jerk_max = { 8, 9, 10, 0xfedcba9876543210 } };
     for (int k = 0; k < JOB_ORIGIN_BYTES; k++)
         h.origin[k] = (uint8_t)(17 * k + 3);
     for (uint32_t k = 0; k < events; k++)
-        h.event[k] = (struct job_event){(uint16_t)(1u << k), k & 1, 1, k & 1 ? 1000000 : 0};
+        h.event[k] = (struct job_event){ (uint16_t)(1u << k), k & 1, 1, k & 1 ? 1000000 : 0 };
     return h;
 }
 

@@ -10,14 +10,14 @@ static void literal(void)
     static const uint8_t payload[] = {
         0x04, 0x01, 0x05, 0x00, 0x01, 0x06, 0x02, 0xa0, 0x8d, 0x06, 0x00, 0xbe, 0x9a, 0x0c, 0x00,
     };
-    static const uint8_t begin[JOB_PAYLOAD_AT] = {[20] = 5, [22] = sizeof payload};
+    static const uint8_t begin[JOB_PAYLOAD_AT] = { [20] = 5, [22] = sizeof payload };
     m.header = make_header(3, 1);
     m.frames = 5;
     memset(m.frame, 0, sizeof m.frame);
-    m.frame[0] = (struct job_frame){{1, -1}, 0};
-    m.frame[1] = (struct job_frame){{2, -1}, 1};
-    m.frame[3] = (struct job_frame){{25000}, 0};
-    m.frame[4] = (struct job_frame){{-25000}, 0};
+    m.frame[0] = (struct job_frame){ { 1, -1 }, 0 };
+    m.frame[1] = (struct job_frame){ { 2, -1 }, 1 };
+    m.frame[3] = (struct job_frame){ { 25000 }, 0 };
+    m.frame[4] = (struct job_frame){ { -25000 }, 0 };
     make_file(&m);
     const uint8_t *page = m.file + JOB_PAGE_BYTES;
     CHECK_EQ(m.bytes, 2 * JOB_PAGE_BYTES);
@@ -27,10 +27,10 @@ static void literal(void)
         CHECK_EQ(page[k], 0xff);
     CHECK_EQ(job_get32(page + JOB_CRC_AT), 0x3b9d4f5d);
     static const uint8_t header[32] = {
-        'M', 'C', 'J', '1', 1, 0, 0, 1, 3, 20, 37, 54, 0x40, 0x42, 0x0f, 0, 3, 0, 0, 0,
-        1, 0, 0, 0, 5, 0, 0, 0, 1, 0, 0, 0,
+        'M', 'C', 'J', '1', 1, 0, 0, 1, 3, 20, 37, 54, 0x40, 0x42, 0x0f, 0,
+        3,   0,   0,   0,   1, 0, 0, 0, 5, 0,  0,  0,  1,    0,    0,    0,
     };
-    static const uint8_t ends[16] = {3, 0, 0, 0, 0xfe, 0xff, 0xff, 0xff};
+    static const uint8_t ends[16] = { 3, 0, 0, 0, 0xfe, 0xff, 0xff, 0xff };
     CHECK(!memcmp(m.file, header, sizeof header));
     CHECK(!memcmp(m.file + 112, ends, sizeof ends));
     CHECK_EQ(job_get32(m.file + JOB_CRC_AT), 0x50f426d8);
@@ -42,7 +42,7 @@ static int32_t decode(const uint8_t *page, uint32_t axes, struct job_frame *out)
     int64_t number[JOB_PAGE_BYTES];
     const int frames = page[20] + 256 * page[21], bytes = page[22] + 256 * page[23];
     int at = 0;
-    struct job_frame last = {0};
+    struct job_frame last = { 0 };
     for (int k = 0; k < frames; k++) {
         int n = 0;
         for (int i = 0; i < JOB_AXES; i++)
@@ -74,10 +74,10 @@ static void there_and_back(void)
     uint64_t random = 7;
     int64_t bytes = 0, numbers = 0;
     for (int k = 0; k < 300; k += CHECK_EACH) {
-        static const int32_t step[] = {1, 20, 300, 5000, 50000, 20};
+        static const int32_t step[] = { 1, 20, 300, 5000, 50000, 20 };
         make_job(&m, &random, (int32_t)check_random(&random, 2, 1500), step[k % 6]);
         uint32_t frame = 0, page = 1;
-        int32_t position[JOB_AXES] = {0};
+        int32_t position[JOB_AXES] = { 0 };
         for (; page <= m.header.pages; page++) {
             const uint8_t *at = m.file + page * JOB_PAGE_BYTES;
             struct job_page p;
@@ -130,7 +130,7 @@ static void damaged_bits(void)
 static void any_content(void)
 {
     uint64_t random = 11;
-    int good = 0, seen[JOB_FAULTS] = {0};
+    int good = 0, seen[JOB_FAULTS] = { 0 };
     for (int k = 0; k < 60000; k += CHECK_EACH) {
         if (k % 600 == 0)
             make_job(&m, &random, (int32_t)check_random(&random, 2, 200), 300);

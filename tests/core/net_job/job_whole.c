@@ -116,10 +116,10 @@ static void header_faults(void)
     CHECK_EQ(with(0, 112, (uint32_t)m.header.end[0] + 1, 4, m.header.pages + 1), JOB_END);
     CHECK_EQ(with(0, 162, 2, 1, 0), JOB_EVENT);
     CHECK_EQ(with(0, 163, 2, 1, 0), JOB_EVENT);
-    CHECK_EQ(with(0, 164, 1, 4, 0), JOB_EVENT);         /* a level has no width */
+    CHECK_EQ(with(0, 164, 1, 4, 0), JOB_EVENT); /* a level has no width */
     CHECK_EQ(with(0, 170, 2, 1, 0), JOB_EVENT);
-    CHECK_EQ(with(0, 172, 0, 4, 0), JOB_EVENT);         /* a pulse has, */
-    CHECK_EQ(with(0, 172, 1000001, 4, 0), JOB_EVENT);   /* up to a second */
+    CHECK_EQ(with(0, 172, 0, 4, 0), JOB_EVENT);       /* a pulse has, */
+    CHECK_EQ(with(0, 172, 1000001, 4, 0), JOB_EVENT); /* up to a second */
     CHECK_EQ(with(0, 172, 1, 4, 0), JOB_GOOD);
     CHECK_EQ(with(0, 247, 1, 1, 0), JOB_EVENT);
     CHECK_EQ(with(0, 248, 1, 1, 0), JOB_FILL);
@@ -132,7 +132,7 @@ static void page_faults(void)
     CHECK_EQ(with(3, 0, 0, 4, 3), JOB_FRAMES);
     CHECK_EQ(with(3, 0, 0xffffffff, 4, 3), JOB_FRAMES);
     CHECK_EQ(with(3, 4, 12345678, 4, 3), JOB_POSITION);
-    CHECK_EQ(with(3, 16, 1, 4, 3), JOB_POSITION);       /* an axis that the mask does not have */
+    CHECK_EQ(with(3, 16, 1, 4, 3), JOB_POSITION); /* an axis that the mask does not have */
     CHECK_EQ(with(3, 4, 0x7fffffff, 4, 3), JOB_POSITION);
     CHECK_EQ(with(3, 4, 0x80000000, 4, 3), JOB_POSITION);
     CHECK_EQ(with(3, 20, 0, 2, 3), JOB_FRAMES);
@@ -140,9 +140,9 @@ static void page_faults(void)
     CHECK_EQ(with(3, 22, 229, 2, 3), JOB_VARINT);
     CHECK_EQ(with(3, 22, 65535, 2, 3), JOB_VARINT);
     CHECK_EQ(with(last, 251, 0, 1, last), JOB_FILL);
-    CHECK_EQ(with(1, JOB_PAYLOAD_AT, 0x80, 2, 1), JOB_VARINT);      /* 0 in two bytes */
+    CHECK_EQ(with(1, JOB_PAYLOAD_AT, 0x80, 2, 1), JOB_VARINT); /* 0 in two bytes */
     CHECK_EQ(with(1, JOB_PAYLOAD_AT, 0xffffffff, 4, 1), JOB_VARINT);
-    CHECK_EQ(with(1, JOB_PAYLOAD_AT, 20, 1, 1), JOB_REST);          /* 5 pulses, 3 + 1 may be */
+    CHECK_EQ(with(1, JOB_PAYLOAD_AT, 20, 1, 1), JOB_REST); /* 5 pulses, 3 + 1 may be */
     CHECK_EQ(with(1, JOB_PAYLOAD_AT, 16, 1, 2), JOB_POSITION);
     CHECK_EQ(with(2, JOB_PAYLOAD_AT, 0x0c3500 << 1 | 0x8080, 3, 2), JOB_COMMAND);
 }
@@ -185,8 +185,7 @@ static void rest(void)
             memset(m.frame, 0, sizeof m.frame);
             m.frame[end ? m.frames - 1 : 0].command[0] = c;
             make_file(&m);
-            CHECK_EQ(judged(end ? m.header.pages + 1 : 1),
-                     c < -4 || c > 4 ? JOB_REST : JOB_GOOD);
+            CHECK_EQ(judged(end ? m.header.pages + 1 : 1), c < -4 || c > 4 ? JOB_REST : JOB_GOOD);
         }
 }
 
@@ -209,16 +208,20 @@ static void refused(void)
     struct job_writer w;
     struct job_check c;
     uint8_t page[JOB_PAGE_BYTES], header[JOB_PAGE_BYTES];
-    static const struct { struct job_frame f; enum job_fault fault; } bad[] = {
-        {{{25001}, 0}, JOB_COMMAND}, {{{0, -25001}, 0}, JOB_COMMAND}, {{{0, 0, 1}, 0}, JOB_MASK},
-        {{{0}, 3}, JOB_EVENT}, {{{0}, -1}, JOB_EVENT},
+    static const struct {
+        struct job_frame f;
+        enum job_fault fault;
+    } bad[] = {
+        { { { 25001 }, 0 }, JOB_COMMAND }, { { { 0, -25001 }, 0 }, JOB_COMMAND },
+        { { { 0, 0, 1 }, 0 }, JOB_MASK },  { { { 0 }, 3 }, JOB_EVENT },
+        { { { 0 }, -1 }, JOB_EVENT },
     };
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         const struct job_header h = make_header(3, 2);
         job_writer_start(&w, &h);
         CHECK(!job_writer_add(&w, &bad[k].f, page));
         CHECK_EQ(w.fault, bad[k].fault);
-        CHECK(!job_writer_add(&w, &(struct job_frame){{0}, 0}, page));
+        CHECK(!job_writer_add(&w, &(struct job_frame){ { 0 }, 0 }, page));
         CHECK_EQ(job_writer_end(&w, page, header), bad[k].fault);
     }
     struct job_header h = make_header(1, 0);
@@ -229,10 +232,10 @@ static void refused(void)
     CHECK_EQ(job_command_max(1000000), 25000);
     job_writer_start(&w, &h);
     for (int32_t k = 0; k < 65538; k++)
-        job_writer_add(&w, &(struct job_frame){{-32767}, 0}, page);
+        job_writer_add(&w, &(struct job_frame){ { -32767 }, 0 }, page);
     CHECK_EQ(w.fault, JOB_GOOD);
     CHECK_EQ(w.header.end[0], -2147483646);
-    job_writer_add(&w, &(struct job_frame){{-2}, 0}, page);
+    job_writer_add(&w, &(struct job_frame){ { -2 }, 0 }, page);
     CHECK_EQ(w.fault, JOB_POSITION);
 
     m.header = h;

@@ -8,15 +8,15 @@
 #include "net_channel.h"
 #include "net_crc.h"
 
-static const uint8_t key[NET_SHA_BYTES] = {1, 2, 3};
+static const uint8_t key[NET_SHA_BYTES] = { 1, 2, 3 };
 
 /* Three frames of the server: a command, four pages, one of a type to come. */
 static size_t three_frames(bool keyed, uint8_t *bytes, size_t most)
 {
     struct net_channel server;
     uint8_t payload[NET_PAYLOAD];
-    const struct net_job_pages pages = {12, NET_PAGES};
-    const struct net_command command = {77};
+    const struct net_job_pages pages = { 12, NET_PAGES };
+    const struct net_command command = { 77 };
     net_channel_start(&server, false);
     if (keyed)
         net_channel_key(&server, key);
@@ -108,23 +108,23 @@ static void check_forged(void)
     uint8_t open[2 * NET_FRAME], keyed[2 * NET_FRAME];
     const size_t n = three_frames(false, open, sizeof open);
     const size_t first = 12 + 4 + 8;
-    const uint8_t other[NET_SHA_BYTES] = {9};
+    const uint8_t other[NET_SHA_BYTES] = { 9 };
     struct net_channel card;
     three_frames(true, keyed, sizeof keyed);
-    card_of(&card, true);       /* replayed */
+    card_of(&card, true); /* replayed */
     CHECK_EQ(net_channel_take(&card, keyed, first), first);
     net_channel_drop(&card);
     expect_fault(&card, keyed, first, NET_BAD_SEQUENCE);
-    card_of(&card, true);       /* reordered */
+    card_of(&card, true); /* reordered */
     expect_fault(&card, keyed + first, NET_FRAME, NET_BAD_SEQUENCE);
-    card_of(&card, true);       /* a CRC instead of a MAC, and the other way round */
+    card_of(&card, true); /* a CRC instead of a MAC, and the other way round */
     expect_fault(&card, open, n, NET_BAD_FLAGS);
     card_of(&card, false);
     expect_fault(&card, keyed, first, NET_BAD_FLAGS);
-    net_channel_start(&card, true);     /* another key */
+    net_channel_start(&card, true); /* another key */
     net_channel_key(&card, other);
     expect_fault(&card, keyed, first, NET_BAD_CHECK);
-    net_channel_start(&card, false);    /* sent back to its sender */
+    net_channel_start(&card, false); /* sent back to its sender */
     net_channel_key(&card, key);
     expect_fault(&card, keyed, first, NET_BAD_CHECK);
 }
@@ -171,10 +171,10 @@ static void check_noise(uint64_t *seed)
         card_of(&card, round & 1);
         for (size_t i = 0; i < sizeof noise; i++)
             noise[i] = (uint8_t)check_random(seed, 0, 255);
-        if (round & 2) {        /* a header that could be */
-            const uint8_t like[6] = {0x4D, 0x43, 1, NET_PING, round & 1, 0};
+        if (round & 2) { /* a header that could be */
+            const uint8_t like[6] = { 0x4D, 0x43, 1, NET_PING, round & 1, 0 };
             memcpy(noise, like, sizeof like);
-            memcpy(noise + 6, (const uint8_t[]){1, 0, 0, 0, 4, 0}, 6);
+            memcpy(noise + 6, (const uint8_t[]){ 1, 0, 0, 0, 4, 0 }, 6);
         }
         CHECK_EQ(take_all(&card, noise, sizeof noise, (size_t)check_random(seed, 1, 200)), 0);
         CHECK(card.fault != NET_FINE);
@@ -185,7 +185,7 @@ static void check_noise(uint64_t *seed)
 static void check_queue(uint64_t *seed)
 {
     struct net_channel out, in;
-    uint8_t payload[NET_PAYLOAD] = {0}, bytes[700];
+    uint8_t payload[NET_PAYLOAD] = { 0 }, bytes[700];
     int put = 0, got = 0;
     net_channel_start(&out, false);
     net_channel_start(&in, true);
@@ -208,7 +208,7 @@ static void check_queue(uint64_t *seed)
 /* Streams through the ring, over the wrap of the counts. */
 static void check_ring(uint64_t *seed)
 {
-    int32_t words[BYTE_RING_WORDS] = {0}, count = INT32_MAX - 3000, taken = count;
+    int32_t words[BYTE_RING_WORDS] = { 0 }, count = INT32_MAX - 3000, taken = count;
     uint8_t sent = 0, seen = 0, bytes[600];
     int64_t total = 0;
     for (int round = 0; round < 2000; round++) {
@@ -219,8 +219,8 @@ static void check_ring(uint64_t *seed)
         const size_t put = byte_ring_put(words, &count, taken, bytes, n);
         CHECK_EQ(put, n < (size_t)(512 - held) ? n : (size_t)(512 - held));
         sent = (uint8_t)(sent + put);
-        const size_t got = byte_ring_look(words, count, taken, bytes,
-                                          (size_t)check_random(seed, 0, 600));
+        const size_t got =
+            byte_ring_look(words, count, taken, bytes, (size_t)check_random(seed, 0, 600));
         for (size_t i = 0; i < got; i++)
             CHECK_EQ(bytes[i], (uint8_t)(seen + i));
         seen = (uint8_t)(seen + got);

@@ -6,7 +6,7 @@
 
 /* The members of each message in bytes, as the protocol's table has them. */
 struct layout {
-    const char *name, *sizes;   /* a digit a number; x: a spare byte; s: 16, h: 32 bytes */
+    const char *name, *sizes; /* a digit a number; x: a spare byte; s: 16, h: 32 bytes */
     size_t bytes;
 };
 
@@ -21,24 +21,31 @@ static size_t bytes_of(const char *sizes)
 static void check_layouts(void)
 {
     static const struct layout all[] = {
-        {"hello", "422s411" "24h1x2", NET_BYTES_hello},
-        {"challenge", "2xxsh", NET_BYTES_challenge},
-        {"auth", "h", NET_BYTES_auth},
-        {"welcome", "2xx", NET_BYTES_welcome},
-        {"job_begin", "4h4", NET_BYTES_job_begin},
-        {"job_pages", "22", NET_BYTES_job_pages},
-        {"job_end", "4", NET_BYTES_job_end},
-        {"ack", "422", NET_BYTES_ack},
-        {"nak", "422", NET_BYTES_nak},
-        {"command", "4", NET_BYTES_command},
-        {"home", "41xxx", NET_BYTES_home},
-        {"output", "42114", NET_BYTES_output},
-        {"result", "422", NET_BYTES_result},
-        {"config_get", "22", NET_BYTES_config_get},
-        {"config_set", "4228", NET_BYTES_config_set},
-        {"config", "228", NET_BYTES_config},
-        {"status", "112224444444" "42222222" "24", NET_BYTES_status},
-        {"token", "4", NET_BYTES_token},
+        { "hello",
+          "422s411"
+          "24h1x2",
+          NET_BYTES_hello },
+        { "challenge", "2xxsh", NET_BYTES_challenge },
+        { "auth", "h", NET_BYTES_auth },
+        { "welcome", "2xx", NET_BYTES_welcome },
+        { "job_begin", "4h4", NET_BYTES_job_begin },
+        { "job_pages", "22", NET_BYTES_job_pages },
+        { "job_end", "4", NET_BYTES_job_end },
+        { "ack", "422", NET_BYTES_ack },
+        { "nak", "422", NET_BYTES_nak },
+        { "command", "4", NET_BYTES_command },
+        { "home", "41xxx", NET_BYTES_home },
+        { "output", "42114", NET_BYTES_output },
+        { "result", "422", NET_BYTES_result },
+        { "config_get", "22", NET_BYTES_config_get },
+        { "config_set", "4228", NET_BYTES_config_set },
+        { "config", "228", NET_BYTES_config },
+        { "status",
+          "112224444444"
+          "42222222"
+          "24",
+          NET_BYTES_status },
+        { "token", "4", NET_BYTES_token },
     };
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         if (bytes_of(all[i].sizes) != all[i].bytes)
@@ -70,14 +77,25 @@ static void check_round_trips(uint64_t *seed)
 static void check_places(void)
 {
     const struct net_status status = {
-        .state = NET_FAULT, .error = 9, .inputs = 0x1234, .stock = 512, .job = 0xA1B2C3D4,
-        .position = {-1, INT32_MIN, INT32_MAX, 2}, .load = {1, 2, 3, 4, 5, 6, 1000}, .rate = 999,
+        .state = NET_FAULT,
+        .error = 9,
+        .inputs = 0x1234,
+        .stock = 512,
+        .job = 0xA1B2C3D4,
+        .position = { -1, INT32_MIN, INT32_MAX, 2 },
+        .load = { 1, 2, 3, 4, 5, 6, 1000 },
+        .rate = 999,
         .wear = 100000,
     };
-    const struct net_config_set set = {7, 258, 3, -2};
+    const struct net_config_set set = { 7, 258, 3, -2 };
     const struct net_hello hello = {
-        .card = 0x01020304, .newest = 1, .nonce = {0xAA}, .last_command = 5, .job = {0xBB},
-        .state = 6, .life = 0x0708,
+        .card = 0x01020304,
+        .newest = 1,
+        .nonce = { 0xAA },
+        .last_command = 5,
+        .job = { 0xBB },
+        .state = 6,
+        .life = 0x0708,
     };
     uint8_t b[NET_PAYLOAD];
     net_put_status(b, &status);
@@ -112,7 +130,7 @@ static void check_places(void)
 static void check_lengths(void)
 {
     enum { KINDS = 22 };
-    uint8_t payload[NET_PAYLOAD + 1] = {0};
+    uint8_t payload[NET_PAYLOAD + 1] = { 0 };
     int known = 0, commands = 0;
     for (int type = 0; type < 256; type++) {
         const bool of_card = net_is_known((uint8_t)type, true);
@@ -129,7 +147,7 @@ static void check_lengths(void)
     CHECK_EQ(known, KINDS);
     CHECK_EQ(commands, 7);
     for (int count = 0; count < 7; count++) {
-        const struct net_job_pages pages = {0, (uint16_t)count};
+        const struct net_job_pages pages = { 0, (uint16_t)count };
         net_put_job_pages(payload, &pages);
         for (size_t n = 0; n <= sizeof payload; n++) {
             const bool right = count >= 1 && count <= 4 && n == 4 + 256 * (size_t)count;

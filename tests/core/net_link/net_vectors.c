@@ -132,7 +132,7 @@ static void check_rfc(void)
 
 static void check_equal(void)
 {
-    uint8_t a[40] = {0}, b[40] = {0};
+    uint8_t a[40] = { 0 }, b[40] = { 0 };
     for (int i = 0; i < 40; i++) {
         CHECK(net_equal(a, b, sizeof a));
         b[i] = (uint8_t)(1 << i % 8);
@@ -145,7 +145,7 @@ static void check_equal(void)
 /* Draws differ from each other and with the seed, and are the same again. */
 static void check_random_bytes(void)
 {
-    uint8_t seed[NET_SHA_BYTES] = {7}, drawn[3][NET_NONCE], again[NET_NONCE];
+    uint8_t seed[NET_SHA_BYTES] = { 7 }, drawn[3][NET_NONCE], again[NET_NONCE];
     struct net_random r;
     net_random_start(&r, seed);
     net_random_draw(&r, drawn[0], NET_NONCE);

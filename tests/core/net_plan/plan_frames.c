@@ -15,10 +15,15 @@ static const double SCALE = 800.0, SPEED = 180.0, ACC = 1500.0, JERK = 60000.0, 
 
 static struct net_plan_config config_of(enum net_plan_pen pen)
 {
-    struct net_plan_config c = {
-        .period_ns = 1000000, .tolerance = 0.02, .rapid = 150.0, .reserve = RESERVE, .pen = pen,
-        .pen_axis = 2, .up = 2.0, .down = -0.5, .dwell = 0.03
-    };
+    struct net_plan_config c = { .period_ns = 1000000,
+                                 .tolerance = 0.02,
+                                 .rapid = 150.0,
+                                 .reserve = RESERVE,
+                                 .pen = pen,
+                                 .pen_axis = 2,
+                                 .up = 2.0,
+                                 .down = -0.5,
+                                 .dwell = 0.03 };
     for (int i = 0; i < 3; i++) {
         c.axis[i] = (struct net_plan_axis){ SCALE, SPEED, ACC, JERK };
     }
@@ -35,18 +40,18 @@ static int32_t draw(void)
         const double radius = 1.0 + 4.0 * k;
         for (int i = 0; i <= 1200; i++) {
             const double a = 2.0 * 3.14159265358979 * i / 1200;
-            vertex[n++] = (struct net_plan_vertex){
-                { floor(40.0 * (30.0 * k + radius * cos(a)) + 0.5) / 40.0,
-                  floor(40.0 * radius * sin(a) + 0.5) / 40.0 },
-                80.0, i == 0 ? NET_PLAN_MOVE : NET_PLAN_DRAW
-            };
+            vertex[n++] =
+                (struct net_plan_vertex){ { floor(40.0 * (30.0 * k + radius * cos(a)) + 0.5) / 40.0,
+                                            floor(40.0 * radius * sin(a) + 0.5) / 40.0 },
+                                          80.0,
+                                          i == 0 ? NET_PLAN_MOVE : NET_PLAN_DRAW };
         }
     }
     static const double square[5][2] = { { 5, 5 }, { 25, 5 }, { 25, 25 }, { 5, 25 }, { 5, 5 } };
     for (int i = 0; i < 5; i++) {
-        vertex[n++] = (struct net_plan_vertex){
-            { square[i][0], square[i][1] }, 80.0, i == 0 ? NET_PLAN_MOVE : NET_PLAN_STOP
-        };
+        vertex[n++] = (struct net_plan_vertex){ { square[i][0], square[i][1] },
+                                                80.0,
+                                                i == 0 ? NET_PLAN_MOVE : NET_PLAN_STOP };
     }
     vertex[n++] = (struct net_plan_vertex){ { 40.0, 1.0 }, 80.0, NET_PLAN_MOVE };
     vertex[n++] = (struct net_plan_vertex){ { 40.0, 1.0 }, 80.0, NET_PLAN_DRAW };
@@ -54,14 +59,13 @@ static int32_t draw(void)
 }
 
 /* All frames; `early` takes frames as soon as there are any, else as late as can be. */
-static int32_t run(const struct net_plan_config *c, int32_t n, bool early,
-                   struct net_plan_frame *f)
+static int32_t run(const struct net_plan_config *c, int32_t n, bool early, struct net_plan_frame *f)
 {
     int32_t made = 0;
     enum net_plan_result r = NET_PLAN_WANTS;
 
     net_plan_start(&plan, c);
-    for (int32_t i = 0; i < n; ) {
+    for (int32_t i = 0; i < n;) {
         if (net_plan_take(&plan, &vertex[i])) {
             i++;
             while (early && made < FRAMES && net_plan_next(&plan, &f[made]) == NET_PLAN_FRAME) {
@@ -89,8 +93,7 @@ static double place(const struct net_plan_frame *f, int32_t n, int32_t k, int ax
 }
 
 /* Differences of places are means of the derivatives, so the limits hold for them. */
-static void check_limits(const struct net_plan_config *c, const struct net_plan_frame *f,
-                         int32_t n)
+static void check_limits(const struct net_plan_config *c, const struct net_plan_frame *f, int32_t n)
 {
     const double t = 1e-9 * c->period_ns, rounding = 1e-6;
     double most[3][JOB_AXES] = { { 0.0 } };
@@ -155,15 +158,16 @@ static void test_output_pen(void)
         rest -= rest > 0;
     }
     CHECK_EQ(lowered, 5);
-    CHECK_EQ(raised, 6);    /* at the begin, too */
+    CHECK_EQ(raised, 6); /* at the begin, too */
     CHECK(!down);
     CHECK_EQ(plan.stops, 3);
     CHECK(sizeof plan < 1000000);
-    for (int32_t k = 0; k < 4; k++) {       /* exactly at the corners */
+    for (int32_t k = 0; k < 4; k++) { /* exactly at the corners */
         bool there = false;
         for (int32_t i = 0; i < n && !there; i++) {
             there = hypot(frame[0][i].place[0] - vertex[3603 + k].point[0],
-                          frame[0][i].place[1] - vertex[3603 + k].point[1]) < 1e-9;
+                          frame[0][i].place[1] - vertex[3603 + k].point[1])
+                    < 1e-9;
         }
         CHECK(there);
     }
@@ -172,12 +176,18 @@ static void test_output_pen(void)
 /* The pen's rest is the smallest whole number of periods that is not shorter, one at least. */
 static void test_dwell(void)
 {
-    static const struct { double dwell; int32_t period_ns, rest; } CASES[] = {
-        { 0.03, 1000000, 30 }, { 0.0301, 1000000, 31 }, { 0.0309999, 1000000, 31 },
-        { 0.0005, 1000000, 1 }, { 0.0, 1000000, 1 }, { 0.007, 2000000, 4 }, { 0.1, 300000, 334 },
-        /* 0.0105: the quotient is above 15 in double precision */
-        { 0.0105, 700000, 15 }
-    };
+    static const struct {
+        double dwell;
+        int32_t period_ns, rest;
+    } CASES[] = { { 0.03, 1000000, 30 },
+                  { 0.0301, 1000000, 31 },
+                  { 0.0309999, 1000000, 31 },
+                  { 0.0005, 1000000, 1 },
+                  { 0.0, 1000000, 1 },
+                  { 0.007, 2000000, 4 },
+                  { 0.1, 300000, 334 },
+                  /* 0.0105: the quotient is above 15 in double precision */
+                  { 0.0105, 700000, 15 } };
     for (size_t i = 0; i < sizeof CASES / sizeof *CASES; i++) {
         struct net_plan_config c = config_of(NET_PLAN_OUTPUT);
         c.dwell = CASES[i].dwell;
@@ -237,9 +247,9 @@ static void test_rests_beyond_a_plan(void)
         c.axis[i] = (struct net_plan_axis){ 1000.0, 83.7941, 2316.9, 37535.5 };
     }
     for (int i = 0; i < 4; i++) {
-        vertex[i] = (struct net_plan_vertex){
-            { to[i][0], to[i][1] }, 2.37185, i == 0 ? NET_PLAN_MOVE : NET_PLAN_DRAW
-        };
+        vertex[i] = (struct net_plan_vertex){ { to[i][0], to[i][1] },
+                                              2.37185,
+                                              i == 0 ? NET_PLAN_MOVE : NET_PLAN_DRAW };
     }
     const int32_t n = run(&c, 4, false, frame[0]);
     const double dt = 1e-9 * c.period_ns;
@@ -247,9 +257,10 @@ static void test_rests_beyond_a_plan(void)
     for (int32_t k = 3; k < n; k++) {
         for (int i = 0; i < 2; i++) {
             const struct net_plan_frame *f = &frame[0][k];
-            const double j = (f[0].place[i] - 3.0 * f[-1].place[i] + 3.0 * f[-2].place[i] -
-                              f[-3].place[i]) / (dt * dt * dt);
-            CHECK(fabs(j) < (1.0 - RESERVE) * 37535.5 + 50.0);     /* places are rounded */
+            const double j =
+                (f[0].place[i] - 3.0 * f[-1].place[i] + 3.0 * f[-2].place[i] - f[-3].place[i])
+                / (dt * dt * dt);
+            CHECK(fabs(j) < (1.0 - RESERVE) * 37535.5 + 50.0); /* places are rounded */
         }
     }
 }

@@ -14,19 +14,20 @@
 
 enum { BENCH_JOB = 1 << 19, BENCH_FRAMES = 4096 };
 
-static uint8_t bench_job[BENCH_JOB];    /* file of the latest bench_make() */
+static uint8_t bench_job[BENCH_JOB]; /* file of the latest bench_make() */
 static uint32_t bench_bytes;
-static int64_t bench_end[CARD_AXES];    /* [pulses] where it ends */
+static int64_t bench_end[CARD_AXES];        /* [pulses] where it ends */
 static int64_t bench_path[BENCH_FRAMES][2]; /* [pulses] X, Y where the first frames begin */
-static uint32_t bench_rest;             /* the last event is for rest, in no frame */
+static uint32_t bench_rest;                 /* the last event is for rest, in no frame */
 
 /* A job of so many frames of 1 ms: axes X and Y up to `top` pulses a frame and back to rest, with
  * a sine on Y; events as the table says, event n in frame 100 n. */
 static inline void bench_make(int32_t frames, int32_t top, const struct job_event *events, int n)
 {
     static struct job_writer w;
-    struct job_header h = { .period_ns = 1000000, .axes = 3, .events = (uint32_t)n,
-                            .rest = bench_rest };
+    struct job_header h = {
+        .period_ns = 1000000, .axes = 3, .events = (uint32_t)n, .rest = bench_rest
+    };
     uint8_t page[JOB_PAGE_BYTES];
 
     for (int i = 0; i < JOB_AXES; i++) {

@@ -10,8 +10,8 @@ static struct net_host host;
 static bool linked;
 static struct {
     uint8_t byte[4096];
-    size_t  count;
-} waiting;                          /* bytes that the card has not taken yet */
+    size_t count;
+} waiting; /* bytes that the card has not taken yet */
 
 /* Connect or cut as both ends and the cable want it. */
 static inline void cable_plug(bool wants)

@@ -14,14 +14,14 @@
 static const char *const name[] = { "parse", "storage", "home", "stop", "pause", "run" };
 static const char letter[] = "--hspr";
 static const char *const command_name[] = { "start", "pause", "stop", "home" };
-enum { BUTTON_START, BUTTON_PAUSE, BUTTON_STOP, BUTTON_HOME };   /* inputs, and their vectors */
+enum { BUTTON_START, BUTTON_PAUSE, BUTTON_STOP, BUTTON_HOME }; /* inputs, and their vectors */
 static struct netcard c;
 static char text[200000];
 static size_t length;
 static int64_t seen;
 static int units;
 static enum card_command packet;
-static bool hidden;                 /* the interrupts of buttons are left out */
+static bool hidden; /* the interrupts of buttons are left out */
 
 static inline void say(const char *format, ...)
 {
@@ -61,7 +61,7 @@ static inline void read_log(void)
 static inline void pass(int64_t ns)
 {
     for (const int64_t end = c.now + ns; c.now < end;) {
-        const bool on = bench_count(&c, 0) <= -300;     /* the origin switch of axis X */
+        const bool on = bench_count(&c, 0) <= -300; /* the origin switch of axis X */
         if (on != (c.axes.origin & 1)) {
             netcard_set_axes(&c, &(struct netcard_axes){ .origin = on });
         }

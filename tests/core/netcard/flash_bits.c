@@ -23,7 +23,7 @@ static void start(int32_t spread)
     c.spread = spread;
     c.seed = ++seed;
     flash_start(&f, &c);
-    memset(f.array, 0x5a, sizeof f.array);      /* what nobody wrote may hold anything */
+    memset(f.array, 0x5a, sizeof f.array); /* what nobody wrote may hold anything */
     memset(plain, 0xff, sizeof plain);
 }
 
@@ -45,7 +45,7 @@ static void unwritten(const struct flash_chip *chip)
 static void bits(void)
 {
     uint64_t random = 3;
-    uint32_t wear[FLASH_SECTORS] = {0}, refused = 0;
+    uint32_t wear[FLASH_SECTORS] = { 0 }, refused = 0;
     int64_t now = 0, programs = 0;
     start(1000);
     for (int k = 0; k < 4000; k++) {
@@ -80,7 +80,7 @@ static void bits(void)
         CHECK(flash_erase_sector(&f, 0, now) == 0 && flash_erase_block(&f, 0, now) == 0);
         refused += 4;
         now += took;
-        CHECK_EQ(flash_read(&f, at, read, now), 49715);     /* 261 bytes at 42 MHz */
+        CHECK_EQ(flash_read(&f, at, read, now), 49715); /* 261 bytes at 42 MHz */
         CHECK(!memcmp(read, plain + at * FLASH_PAGE, FLASH_PAGE));
         if (k % 100 == 0)
             unwritten(&f);
@@ -132,7 +132,7 @@ static void torn_programs(void)
     }
     start(0);
     flash_program(&f, 0, page, 0);
-    flash_cut(&f, 700000);      /* it was over */
+    flash_cut(&f, 700000); /* it was over */
     CHECK_EQ(all(&f)[0], 0xa5);
 }
 
@@ -164,7 +164,7 @@ static void seeds(void)
     static struct flash_chip g, h;
     static uint8_t zeros[FLASH_BLOCK];
     struct flash_config c = flash_config_usual();
-    static struct flash_chip *const chip[] = {&f, &g, &h};
+    static struct flash_chip *const chip[] = { &f, &g, &h };
     for (int k = 0; k < 3; k++) {
         c.seed = k < 2 ? 4 : 5;
         flash_start(chip[k], &c);

@@ -2,9 +2,9 @@
  * the same each time. The rest event is put out when a job is given up. */
 #include "card_bench.h"
 
-enum { TOOL_DOWN = 1, TOOL = 8 };   /* event; output 3 */
+enum { TOOL_DOWN = 1, TOOL = 8 }; /* event; output 3 */
 static const struct job_event events[] = { { TOOL, 0, 1, 0 }, { TOOL, 0, 0, 0 } };
-static const int64_t MOST = 6000;   /* [ms] of any run */
+static const int64_t MOST = 6000; /* [ms] of any run */
 
 static struct netcard c, copy;
 
@@ -36,8 +36,8 @@ static void on_the_path(void)
 
     for (int i = 0; i < 2 && k >= 0 && c.state == NET_RUNNING; i++) {
         const int64_t off = netcard_position(&c, i) - bench_path[k][i];
-        CHECK(llabs(off) <= llabs(bench_path[k < 999 ? k + 1 : k][i] - bench_path[k][i]) + 1 ||
-              k == 999);
+        CHECK(llabs(off) <= llabs(bench_path[k < 999 ? k + 1 : k][i] - bench_path[k][i]) + 1
+              || k == 999);
     }
 }
 
@@ -85,7 +85,7 @@ static void comes_back(void)
     play(3);
     CHECK(!c.approach);
     plays_all();
-    CHECK(tool_on());       /* the job leaves it so */
+    CHECK(tool_on()); /* the job leaves it so */
     for (int stop = 0; stop < 3; stop++) {
         start();
         play(3);
@@ -114,7 +114,7 @@ static void comes_back(void)
 static void keeps_the_limits(void)
 {
     static const int64_t AT[] = { 20000, -3000, 7000, -5000 };
-    const double v = 50.0, a = 2.0 * 0.9;   /* [pulses/ms, /ms^2] */
+    const double v = 50.0, a = 2.0 * 0.9; /* [pulses/ms, /ms^2] */
     int64_t was[CARD_AXES], step[CARD_AXES] = { 0 };
 
     begin();
@@ -133,7 +133,7 @@ static void keeps_the_limits(void)
         for (int i = 0; c.approach && i < CARD_AXES; i++) {
             const int64_t now = netcard_position(&c, i), move = now - was[i];
             CHECK(llabs(move) <= 51);
-            CHECK(llabs(move - step[i]) <= 5);  /* of whole pulses: a + 3 */
+            CHECK(llabs(move - step[i]) <= 5); /* of whole pulses: a + 3 */
             CHECK(!tool || i >= 2 || move == 0);
             CHECK(move == 0 || (move > 0) == (AT[i] < 0));
             step[i] = move;

@@ -7,7 +7,9 @@
 #include "home_cycle.h"
 
 /* An axis as it is: a switch on [from, to), limit switches outside (low, high), a pulse a step. */
-struct axis { int64_t position, from, to, low, high; };
+struct axis {
+    int64_t position, from, to, low, high;
+};
 
 static struct home_cycle h;
 static struct home_cycle_config config;
@@ -49,7 +51,10 @@ static void play(const struct frame *f)
 }
 
 /* What the run shows. */
-struct shown { int periods; int64_t begun[CARD_AXES], ended[CARD_AXES]; };
+struct shown {
+    int periods;
+    int64_t begun[CARD_AXES], ended[CARD_AXES];
+};
 
 static long long steps;
 static double quickest;
@@ -80,8 +85,8 @@ static struct shown run(uint32_t mask, int stop)
                          acc = a->acc * t * t, start = a->start * t + 1e-12;
             CHECK(fabs(v) <= fmax(a->fast, a->slow) * t && fabs(f.command[i] - v) <= 1.0);
             /* up to the start speed it may start and stop at once */
-            CHECK(dv <= acc * (1.0 + 1e-9) || (fabs(v) <= start && last[i] == 0.0) ||
-                  (fabs(last[i]) <= start && fabs(v) <= fabs(last[i]) && v * last[i] >= 0.0));
+            CHECK(dv <= acc * (1.0 + 1e-9) || (fabs(v) <= start && last[i] == 0.0)
+                  || (fabs(last[i]) <= start && fabs(v) <= fabs(last[i]) && v * last[i] >= 0.0));
             quickest = fmax(quickest, dv > start ? dv / acc : 0.0);
             last[i] = v;
             const enum home_cycle_phase phase = h.axis[i].phase;
@@ -89,7 +94,7 @@ static struct shown run(uint32_t mask, int stop)
                 s.begun[i] = s.periods;
             }
             const int64_t left = h.axis[i].place - h.axis[i].motion.commanded;
-            if (phase == HOME_CYCLE_OFFSET) {   /* straight to its target */
+            if (phase == HOME_CYCLE_OFFSET) { /* straight to its target */
                 CHECK(left == 0 || (left > 0) == (f.command[i] > 0) || f.command[i] == 0);
             }
             s.ended[i] = f.command[i] != 0 ? s.periods : s.ended[i];
@@ -120,7 +125,8 @@ static void random_axis(uint64_t *seed, int i)
                              .slow = check_real(seed, 100.0, 3e3),
                              .acc = check_real(seed, 2e5, 5e6),
                              .start = check_random(seed, 0, 1) ? check_real(seed, 0.0, 1e3) : 0.0,
-                             .travel = 200000, .offset = (int)check_random(seed, -500, 500) };
+                             .travel = 200000,
+                             .offset = (int)check_random(seed, -500, 500) };
     /* A level is only seen once a period. */
     const int least = a->trigger >= CARD_HIGH ? (int)(a->fast * config.period) + 2 : 1;
     const int rest = (int)(a->fast * a->fast / (2.0 * a->acc) + 4.0 * a->fast * config.period) + 2;
@@ -137,8 +143,8 @@ static void any_start(void)
     uint64_t seed = 31;
     long long on = 0, turned = 0;
     for (int n = 0; n < 300 && !check_failures; n += CHECK_EACH) {
-        config = (struct home_cycle_config){ .period = 1e-3,
-                                             .settle = (int)check_random(&seed, 3, 30) };
+        config =
+            (struct home_cycle_config){ .period = 1e-3, .settle = (int)check_random(&seed, 3, 30) };
         for (int i = 0; i < CARD_AXES; i++) {
             random_axis(&seed, i);
             on += within(&axis[i]);
@@ -153,30 +159,36 @@ static void any_start(void)
         for (int i = 0; i < 3; i++) {
             const struct home_axis *a = &config.axis[i];
             const int64_t edge = a->plus ? axis[i].from : axis[i].to - 1;
-            const double seen = (double)(home_cycle_zero(&h, i) - a->offset - edge) *
-                                (a->plus ? 1.0 : -1.0);
+            const double seen =
+                (double)(home_cycle_zero(&h, i) - a->offset - edge) * (a->plus ? 1.0 : -1.0);
             turned += h.axis[i].turned;
             if (a->trigger < CARD_HIGH) {
-                CHECK_EQ(home_cycle_zero(&h, i), edge + a->offset);     /* to the pulse */
+                CHECK_EQ(home_cycle_zero(&h, i), edge + a->offset); /* to the pulse */
             } else {
                 CHECK(seen >= 0.0 && seen <= ceil(a->slow * config.period));
             }
             CHECK_EQ(axis[i].position, home_cycle_zero(&h, i));
-            for (int k = 0; k < 3; k++) {       /* orders one behind the other, equals together */
+            for (int k = 0; k < 3; k++) { /* orders one behind the other, equals together */
                 CHECK(a->order >= config.axis[k].order || s.ended[i] < s.begun[k]);
                 CHECK(a->order != config.axis[k].order || s.begun[i] == s.begun[k]);
             }
         }
     }
     printf("home: %lld periods, %lld starts on the switch, %lld axes turned at a limit, speed "
-           "changes up to %.6f of the acceleration\n", steps, on, turned, quickest);
+           "changes up to %.6f of the acceleration\n",
+           steps, on, turned, quickest);
     CHECK(CHECK_EACH > 1 || (on > 50 && turned > 100));
 }
 
 static void plain(int i)
 {
-    config.axis[i] = (struct home_axis){ .order = 1, .trigger = CARD_RISING, .fast = 2e4,
-                                         .slow = 1e3, .acc = 1e6, .back = 500, .travel = 100000 };
+    config.axis[i] = (struct home_axis){ .order = 1,
+                                         .trigger = CARD_RISING,
+                                         .fast = 2e4,
+                                         .slow = 1e3,
+                                         .acc = 1e6,
+                                         .back = 500,
+                                         .travel = 100000 };
     axis[i] = (struct axis){ 10000, 0, 300, -20000, 20000 };
 }
 
@@ -192,13 +204,13 @@ static void one_axis(void)
 static void faults(void)
 {
     one_axis();
-    axis[1].from = axis[1].to = 100000;         /* no switch */
+    axis[1].from = axis[1].to = 100000; /* no switch */
     run(15, -1);
     CHECK(h.state == HOME_CYCLE_FAILED && h.fault == HOME_CYCLE_NO_ORIGIN && h.fault_axis == 1);
-    CHECK(axis[1].position > 20000 && axis[1].position < 20400);    /* v^2 / 2a behind the limit */
+    CHECK(axis[1].position > 20000 && axis[1].position < 20400); /* v^2 / 2a behind the limit */
 
     one_axis();
-    axis[1].from = axis[1].to = 100000;         /* nor limits */
+    axis[1].from = axis[1].to = 100000; /* nor limits */
     axis[1].low = -1000000;
     config.axis[1].travel = 30000;
     run(15, -1);
@@ -207,22 +219,22 @@ static void faults(void)
 
     one_axis();
     axis[1] = (struct axis){ 10000, -1000000, 1000000, -20000, 1000000 };
-    run(15, -1);                                /* always on */
+    run(15, -1); /* always on */
     CHECK(h.state == HOME_CYCLE_FAILED && h.fault == HOME_CYCLE_STUCK);
 
     one_axis();
-    axis[1].to = axis[1].high + 1000;           /* on as far as the limit */
+    axis[1].to = axis[1].high + 1000; /* on as far as the limit */
     run(15, -1);
     CHECK(h.state == HOME_CYCLE_FAILED && h.fault == HOME_CYCLE_LIMIT);
 
     one_axis();
-    axis[1].low = 100;                          /* the limit behind the edge, met at speed */
+    axis[1].low = 100; /* the limit behind the edge, met at speed */
     config.axis[1].offset = -400;
     run(15, -1);
     CHECK(h.state == HOME_CYCLE_FAILED && h.fault == HOME_CYCLE_LIMIT);
 
     one_axis();
-    run(13, -1);                                /* a mask without it: nothing to do */
+    run(13, -1); /* a mask without it: nothing to do */
     CHECK(h.state == HOME_CYCLE_ENDED && axis[1].position == 10000);
 
     one_axis();

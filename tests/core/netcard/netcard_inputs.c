@@ -9,11 +9,11 @@ static struct card_inputs c;
 
 /* --- The model: a line is one small machine; what its routine has to do is kept as a list. --- */
 struct line {
-    int level, known;       /* at the pin; as the program believes */
-    int queued;             /* 0, 1: the routine is to be called */
-    int by_timer;           /* called for the end of the deaf time and nothing else */
-    int left;               /* units of the deaf time; 0: over or none */
-    int later;              /* the action waits */
+    int level, known; /* at the pin; as the program believes */
+    int queued;       /* 0, 1: the routine is to be called */
+    int by_timer;     /* called for the end of the deaf time and nothing else */
+    int left;         /* units of the deaf time; 0: over or none */
+    int later;        /* the action waits */
 };
 static struct line model[CARD_INPUTS];
 static long long lost, ignored;
@@ -21,12 +21,9 @@ static long long lost, ignored;
 static int is_wanted(const struct card_input *in, int level)
 {
     switch (in->edge) {
-    case CARD_EDGE_RISE:
-        return level == 1;
-    case CARD_EDGE_FALL:
-        return level == 0;
-    default:
-        return 1;
+    case CARD_EDGE_RISE: return level == 1;
+    case CARD_EDGE_FALL: return level == 0;
+    default:             return 1;
     }
 }
 
@@ -89,10 +86,10 @@ static void against_model(void)
     for (int run = 0; run < 600 && !check_failures; run += CHECK_EACH) {
         struct card_inputs_config k;
         for (int i = 0; i < CARD_INPUTS; i++) {
-            k.line[i] = (struct card_input){ (enum card_action)check_random(&seed, 0, 5),
-                                             (enum card_edge)check_random(&seed, 0, 2),
-                                             check_random(&seed, 0, 2) ? check_random(&seed, 1, 60)
-                                                                       : 0 };
+            k.line[i] =
+                (struct card_input){ (enum card_action)check_random(&seed, 0, 5),
+                                     (enum card_edge)check_random(&seed, 0, 2),
+                                     check_random(&seed, 0, 2) ? check_random(&seed, 1, 60) : 0 };
         }
         uint32_t levels = (uint32_t)check_random(&seed, 0, 0xFFFF);
         const int often = (int)check_random(&seed, 1, 60), lazy = (int)check_random(&seed, 1, 30);
@@ -115,8 +112,8 @@ static void against_model(void)
                 card_inputs_advance(&c, now);
             }
             if (check_random(&seed, 0, often) == 0) {
-                levels ^= (uint32_t)(check_random(&seed, 0, 0xFFFF) &
-                                     check_random(&seed, 0, 0xFFFF));
+                levels ^=
+                    (uint32_t)(check_random(&seed, 0, 0xFFFF) & check_random(&seed, 0, 0xFFFF));
                 for (int i = 0; i < CARD_INPUTS; i++) {
                     model_level(i, &k.line[i], levels >> i & 1);
                 }
@@ -137,8 +134,8 @@ static void against_model(void)
                 }
                 const struct card_input_served s = card_inputs_serve(&c, vector, now);
                 CHECK_EQ(s.line, want);
-                const enum card_action action = want < 0 ? CARD_NONE
-                                                         : model_routine(want, &k.line[want]);
+                const enum card_action action =
+                    want < 0 ? CARD_NONE : model_routine(want, &k.line[want]);
                 CHECK_EQ(s.action, action);
                 actions += action != CARD_NONE;
                 served += want >= 0;
@@ -147,8 +144,8 @@ static void against_model(void)
             CHECK(c.lost == lost && c.ignored == ignored);
         }
     }
-    printf("inputs: %lld served, %lld actions, %lld times the lowest of several\n", served,
-           actions, shared);
+    printf("inputs: %lld served, %lld actions, %lld times the lowest of several\n", served, actions,
+           shared);
     CHECK(CHECK_EACH > 1 || (served > 50000 && actions > 30000 && shared > 1000));
 }
 
@@ -197,9 +194,9 @@ static void buttons(void)
     int64_t first;
     for (int bounces = 0; bounces < 12; bounces++) {
         CHECK_EQ(press(CARD_STOP, CARD_EDGE_RISE, 100000000, bounces, &first), 1);
-        CHECK_EQ(first, 1002000);               /* the first edge, and the routine's latency */
+        CHECK_EQ(first, 1002000); /* the first edge, and the routine's latency */
         CHECK_EQ(press(CARD_START, CARD_EDGE_RISE, 100000000, bounces, &first), 1);
-        CHECK_EQ(first, 11004000);              /* the end of the deaf time */
+        CHECK_EQ(first, 11004000); /* the end of the deaf time */
         CHECK_EQ(press(CARD_PAUSE, CARD_EDGE_FALL, 100000000, bounces, &first), 1);
         CHECK_EQ(first, 101002000);
         CHECK_EQ(press(CARD_EVENT, CARD_EDGE_BOTH, 100000000, bounces, &first), 2);

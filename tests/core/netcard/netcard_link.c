@@ -1,13 +1,13 @@
 /* The card with a PC: upload, commands, a flood of packets, writes while it runs, a lost link. */
 #include "card_cable.h"
 
-static uint8_t file[BENCH_JOB];     /* the one that is sent */
+static uint8_t file[BENCH_JOB]; /* the one that is sent */
 static uint32_t file_bytes;
-static bool cut;                    /* the cable */
-static bool flood;                  /* JOB_DATA without end, as fast as the line */
-static int64_t carried;             /* [byte] to the card */
+static bool cut;        /* the cable */
+static bool flood;      /* JOB_DATA without end, as fast as the line */
+static int64_t carried; /* [byte] to the card */
 
-enum { STEP = 20000, LINE = 250 };  /* [ns], [byte] of a step at 100 Mbit/s */
+enum { STEP = 20000, LINE = 250 }; /* [ns], [byte] of a step at 100 Mbit/s */
 
 static void carry(void)
 {
@@ -47,8 +47,8 @@ static int64_t give(uint8_t type)
     struct net_host_order *o = host.order;
 
     CHECK(net_host_give(&host, &(struct net_host_order){ .at = c.now, .type = type, .axes = 15 }));
-    while (o < host.order + NET_HOST_ORDERS - 1 &&
-           !(o->type == type && o->stage != NET_HOST_ANSWERED)) {
+    while (o < host.order + NET_HOST_ORDERS - 1
+           && !(o->type == type && o->stage != NET_HOST_ANSWERED)) {
         o++;
     }
     for (int i = 0; i < 1000 && o->stage != NET_HOST_ANSWERED; i++) {
@@ -103,7 +103,7 @@ static void upload(void)
 static void loads(void)
 {
     enum { CYCLES = 40000, FRAMES = 3000, LONGEST = 30000 };
-    static int64_t had[LONGEST];        /* [ns] by run, each ms */
+    static int64_t had[LONGEST]; /* [ns] by run, each ms */
     struct netcard_config config = bench_config();
     int statuses = 0, most = 0;
 
@@ -134,7 +134,7 @@ static void loads(void)
         statuses++;
     }
     CHECK(statuses > 40);
-    CHECK_NEAR(most, CYCLES / 168.0, 80.0);     /* a frame each ms, in batches of half a FIFO */
+    CHECK_NEAR(most, CYCLES / 168.0, 80.0); /* a frame each ms, in batches of half a FIFO */
     CHECK_EQ(c.state, NET_READY);
     CHECK_EQ(host.status.load[NETCARD_RUN], 0);
     CHECK(host.status.load[NETCARD_TASKS] <= 1);

@@ -5,7 +5,7 @@
 static void priorities(void)
 {
     begin();
-    for (int i = 0; i < NETCARD_TASKS; i++) {       /* the document's, 7 and 6 are ours */
+    for (int i = 0; i < NETCARD_TASKS; i++) { /* the document's, 7 and 6 are ours */
         static const int PRIORITY[] = { 7, 6, 5, 4, 3, 1 };
         CHECK_EQ(kernel_priority(&c.kernel, i), PRIORITY[i]);
     }
@@ -28,7 +28,7 @@ static void home_during_run(void)
         at = strchr(at, ' ') + 1;
     }
     pass(BENCH_MS);
-    CHECK(c.phase == JOB_DRAINING && c.state == NET_RUNNING);    /* written, not yet played */
+    CHECK(c.phase == JOB_DRAINING && c.state == NET_RUNNING); /* written, not yet played */
     pass(350 * BENCH_MS);
     CHECK_EQ(c.state, NET_READY);
     snprintf(tokens, sizeof tokens, "h%d 2>5 >run r%d r%d ", 3 + last, 4 + last, 5 + last);

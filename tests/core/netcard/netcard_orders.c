@@ -31,11 +31,11 @@ static void at_one_instant(void)
     pass(100000);
     shows("r3 !stop >parse >stop s4 >pause p5 p6 ");
     begin();
-    both(3, CARD_DO_PAUSE, CARD_DO_HOME);       /* home lowers itself below pause */
+    both(3, CARD_DO_PAUSE, CARD_DO_HOME); /* home lowers itself below pause */
     pass(100000);
     shows("r3 !pause >parse >home 5>2 >pause p4 p5 ");
     begin();
-    both(3, CARD_DO_STOP, CARD_DO_HOME);        /* and below stop, which ends it */
+    both(3, CARD_DO_STOP, CARD_DO_HOME); /* and below stop, which ends it */
     pass(100000);
     shows("r3 !stop >parse >home 5>2 >stop s4 >home ");
 }
@@ -52,7 +52,7 @@ static void stop_during_home(void)
     pass(50 * BENCH_MS);
     CHECK_EQ(units, 6);
     CHECK_EQ(c.state, NET_READY);
-    anew();                             /* the same without a job under way */
+    anew(); /* the same without a job under way */
     send_behind(0, CARD_DO_HOME);
     send_behind(2, CARD_DO_STOP);
     until("2>5 ");
@@ -120,7 +120,7 @@ static void button_in_the_parser(void)
     pass(100000);
     shows("r3 !pause >parse !button-home >home 5>2 >pause p4 p5 ");
     begin();
-    send_behind(3, CARD_DO_PAUSE);      /* and while pause holds the processor */
+    send_behind(3, CARD_DO_PAUSE); /* and while pause holds the processor */
     while (units < 5) {
         pass(500);
     }

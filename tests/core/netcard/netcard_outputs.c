@@ -7,7 +7,10 @@
 
 static struct card_outputs c;
 
-struct pin { int level, asked, left; struct mc_po po; };
+struct pin {
+    int level, asked, left;
+    struct mc_po po;
+};
 
 static void against_model(void)
 {
@@ -36,8 +39,9 @@ static void against_model(void)
                                           (uint8_t)check_random(&seed, 0, 1),
                                           (uint8_t)check_random(&seed, 0, 1),
                                           (uint32_t)check_random(&seed, 1, 50) };
-                const uint32_t pins = 1u << po.pin | (check_random(&seed, 0, 2) ? 0
-                                      : (uint32_t)check_random(&seed, 0, 0xFFFF));
+                const uint32_t pins =
+                    1u << po.pin
+                    | (check_random(&seed, 0, 2) ? 0 : (uint32_t)check_random(&seed, 0, 0xFFFF));
                 CHECK(card_outputs_flag_pins(&c, pins, &po));
                 for (int i = 0; i < CARD_OUTPUTS; i++) {
                     if (pins >> i & 1) {
@@ -83,7 +87,10 @@ static void against_model(void)
 
 static void refused(void)
 {
-    const struct mc_po bad[] = { { 16, 0, 1, 0 }, { 0, 2, 1, 1 }, { 0, 0, 2, 0 }, { 0, 1, 1, 0 },
+    const struct mc_po bad[] = { { 16, 0, 1, 0 },
+                                 { 0, 2, 1, 1 },
+                                 { 0, 0, 2, 0 },
+                                 { 0, 1, 1, 0 },
                                  { 0, 1, 1, 1000001 } },
                        good = { 3, 1, 1, 1000000 };
     card_outputs_start(&c);
@@ -95,7 +102,7 @@ static void refused(void)
     CHECK(!card_outputs_flag_pins(&c, 0x10000, &good));
     CHECK(!memcmp(&c, &before, sizeof c));
     CHECK(card_outputs_flag(&c, &good));
-    CHECK_EQ(c.levels, 0);      /* nothing switches before the software interrupt */
+    CHECK_EQ(c.levels, 0); /* nothing switches before the software interrupt */
     CHECK_EQ(card_outputs_serve(&c, 5), 8);
     CHECK_EQ(card_outputs_next(&c), 1000000005);
 }

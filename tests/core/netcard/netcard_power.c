@@ -2,7 +2,7 @@
  * it the old job is there or the new one, whole, and the upload goes on by itself to its end. */
 #include "card_cable.h"
 
-enum { STEP = 200000, LINE = 2500, SHARES = 3 };    /* [ns], [byte] of a step at 100 Mbit/s */
+enum { STEP = 200000, LINE = 2500, SHARES = 3 }; /* [ns], [byte] of a step at 100 Mbit/s */
 
 static struct netcard first;
 static struct net_host first_host;

@@ -17,9 +17,9 @@ static uint32_t draw(uint32_t below)
 
 /* Codes of START PAUSE STOP HOME RESET in each state, as the README tells. */
 static const char *const codes[] = {
-    [NET_EMPTY] = "43000", [NET_READY] = "03000", [NET_RUNNING] = "30003",
+    [NET_EMPTY] = "43000",   [NET_READY] = "03000",  [NET_RUNNING] = "30003",
     [NET_PAUSING] = "00003", [NET_PAUSED] = "00003", [NET_STOPPING] = "33033",
-    [NET_HOMING] = "30033", [NET_FAULT] = "AA0A0"
+    [NET_HOMING] = "30033",  [NET_FAULT] = "AA0A0"
 };
 
 static enum net_code wanted(enum net_state state, enum card_command command)
@@ -44,12 +44,12 @@ static void pass(int64_t ns)
         const uint32_t origin = bench_count(&c, 0) <= -200;
         if (origin != (c.axes.origin & 1)) {
             netcard_set_axes(&c, &(struct netcard_axes){ .origin = origin, .stop = c.axes.stop });
-            netcard_set_axes(&twin, &(struct netcard_axes){ .origin = origin,
-                                                            .stop = c.axes.stop });
+            netcard_set_axes(&twin,
+                             &(struct netcard_axes){ .origin = origin, .stop = c.axes.stop });
         }
         const int64_t to = c.now + slice < end ? c.now + slice : end;
         netcard_advance(&twin, to);
-        while (c.now < to) {        /* in pieces */
+        while (c.now < to) { /* in pieces */
             const int64_t piece = c.now + 1 + draw(1000000);
             netcard_advance(&c, piece < to ? piece : to);
             bench_urgent(&c.kernel);
@@ -104,8 +104,8 @@ static void play(void)
             netcard_set_axes(&twin, &a);
             CHECK(!stop || c.state == NET_FAULT);
         }
-        const enum card_command command = (enum card_command)(draw(100) < 45 ? CARD_DO_START
-                                                              : draw(CARD_DO_RESET + 1));
+        const enum card_command command =
+            (enum card_command)(draw(100) < 45 ? CARD_DO_START : draw(CARD_DO_RESET + 1));
         const int32_t before = c.result.count;
         enum net_state state = c.state;
         CHECK(netcard_command(&c, command, 1));
@@ -114,7 +114,7 @@ static void play(void)
             state = c.state;
             netcard_advance(&c, c.now + 1);
         }
-        for (int k = 0; k < 400; k++) {     /* what the tasks do about it, in small pieces */
+        for (int k = 0; k < 400; k++) { /* what the tasks do about it, in small pieces */
             netcard_advance(&c, c.now + 250);
         }
         netcard_advance(&twin, c.now);

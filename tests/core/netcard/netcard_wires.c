@@ -3,7 +3,7 @@
 #include "card_bench.h"
 
 static struct netcard c;
-static const int64_t SWITCH = -1234;    /* [pulses] origin switch of axis X: on from here down */
+static const int64_t SWITCH = -1234; /* [pulses] origin switch of axis X: on from here down */
 
 static void wires(bool stop)
 {
@@ -82,7 +82,7 @@ static void homes_what_is_asked(void)
     config.settings.must_home = true;
     config.settings.home_order[2] = config.settings.home_order[3] = 0;
     bench_start(&c, &config);
-    for (int turn = 0; turn < 3; turn++) {      /* Y, X, then Y again */
+    for (int turn = 0; turn < 3; turn++) { /* Y, X, then Y again */
         const int axis = turn != 1;
         const uint32_t asked = 1u << axis, before = c.homed & ~asked;
         CHECK_EQ(c.state, NET_READY);
@@ -99,14 +99,14 @@ static void homes_what_is_asked(void)
             netcard_set_axes(&c, &switches);
             netcard_advance(&c, c.now + 20000);
             moved = moved || bench_count(&c, 1 - axis) != other;
-            CHECK(c.state != NET_HOMING || !c.homing || c.home.state == HOME_CYCLE_IDLE ||
-                  c.homed == before);
+            CHECK(c.state != NET_HOMING || !c.homing || c.home.state == HOME_CYCLE_IDLE
+                  || c.homed == before);
             if (i > 100 && c.state == NET_READY) {
                 break;
             }
         }
         CHECK_EQ(c.state, NET_READY);
-        CHECK(turn == 2 || !moved);             /* a job was given up for the last one */
+        CHECK(turn == 2 || !moved); /* a job was given up for the last one */
         CHECK_EQ(c.homed, before | asked);
         CHECK_EQ(netcard_position(&c, axis), 0);
         CHECK_EQ(c.zero[1 - axis], zero[1 - axis]);
@@ -114,7 +114,7 @@ static void homes_what_is_asked(void)
     CHECK_EQ(c.homed, 3);
     CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
     CHECK_EQ(c.state, NET_RUNNING);
-    netcard_set_power(&c, false);               /* without power nothing is homed */
+    netcard_set_power(&c, false); /* without power nothing is homed */
     netcard_set_power(&c, true);
     CHECK_EQ(bench_order(&c, CARD_DO_START), NET_NOT_HOMED);
 }
@@ -181,7 +181,7 @@ static void keeps_off_limits(void)
     CHECK_EQ(c.error, NET_LIMIT);
     CHECK_EQ(bench_order(&c, CARD_DO_RESET), NET_DONE);
     CHECK_EQ(bench_order(&c, CARD_DO_START), NET_DONE);
-    bench_pass(&c, 1000);   /* away from it to the begin; the first frame of the job meets it */
+    bench_pass(&c, 1000); /* away from it to the begin; the first frame of the job meets it */
     CHECK_EQ(c.state, NET_FAULT);
 }
 
@@ -214,7 +214,8 @@ static void hears_buttons(void)
 static void switches_outputs(void)
 {
     const struct netcard_config config = bench_config();
-    const struct job_event events[] = { { 0x8003, 0, 1, 0 }, { 0x0001, 0, 0, 0 },
+    const struct job_event events[] = { { 0x8003, 0, 1, 0 },
+                                        { 0x0001, 0, 0, 0 },
                                         { 0x0040, 1, 1, 25000 } };
     int64_t at = -1;
 
@@ -267,7 +268,7 @@ static void clears_alarms(void)
 {
     const struct netcard_config config = bench_config();
 
-    for (int64_t helps = 5; helps < 30; helps += 20) {     /* [ms] behind the command */
+    for (int64_t helps = 5; helps < 30; helps += 20) { /* [ms] behind the command */
         bench_start(&c, &config);
         bench_pass(&c, 10);
         netcard_set_axes(&c, &(struct netcard_axes){ .alarm = 4 });
@@ -317,7 +318,7 @@ static void keeps_range(void)
     for (int64_t was = 0, step = 0; c.now < 2100 * BENCH_MS;) {
         bench_pass(&c, 1);
         const int64_t now = bench_count(&c, 0);
-        CHECK(llabs(now - was - step) <= 6);        /* 4 pulses a period are its acceleration */
+        CHECK(llabs(now - was - step) <= 6); /* 4 pulses a period are its acceleration */
         step = now - was;
         was = now;
     }

@@ -4,7 +4,7 @@
 
 static struct made first_file, second_file, third_file, large_file;
 static struct rig base, cut, again;
-static const int32_t SHARE[] = {0, 100, 500, 900, 1000};
+static const int32_t SHARE[] = { 0, 100, 500, 900, 1000 };
 enum { SHARES = sizeof SHARE / sizeof *SHARE, EACH_SHARE = CHECK_EACH == 1 ? 1 : 2 };
 
 /* At power-up: 1 the new job, 0 the old one, which is none on an empty chip and may be none with
@@ -92,7 +92,8 @@ static void everywhere(const char *what, const struct sent *old, const struct se
         }
     }
     printf("%s: %u pages, %u operations (%u blocks), %u cuts, %u with the new job, %u twice; "
-           "at most %u pages sent\n", what, pages, all, blocks, cuts, news, twice, most);
+           "at most %u pages sent\n",
+           what, pages, all, blocks, cuts, news, twice, most);
     CHECK(news >= 1 && news < SHARES);
     CHECK(most > pages && most <= pages + STORE_BUFFER + FLASH_SECTOR_PAGES + 1);
 }
@@ -100,10 +101,10 @@ static void everywhere(const char *what, const struct sent *old, const struct se
 /* Uploads with cuts at random, for a long time. Once new, the job is never the old one again. */
 static void on_and_on(int32_t slots, int uploads)
 {
-    static struct made *const file[] = {&first_file, &second_file, &third_file};
+    static struct made *const file[] = { &first_file, &second_file, &third_file };
     uint64_t random = 77;
     uint32_t cuts = 0;
-    struct sent old = {0};
+    struct sent old = { 0 };
     rig_start(&base, slots);
     for (int k = 0; k < uploads; k++) {
         const struct sent new = sent_of(file[k % 3]);

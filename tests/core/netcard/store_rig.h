@@ -7,7 +7,11 @@
 #include "net_crc.h"
 #include "store_layout.h"
 
-struct sent { const struct made *file; uint8_t hash[NET_SHA_BYTES]; uint32_t crc; };
+struct sent {
+    const struct made *file;
+    uint8_t hash[NET_SHA_BYTES];
+    uint32_t crc;
+};
 
 struct rig {
     struct flash_chip chip;
@@ -15,14 +19,14 @@ struct rig {
     int64_t now;
     int32_t slots;
     uint32_t pages_sent;
-    uint32_t operations;    /* begun so far */
-    uint32_t cut;           /* in this operation the power goes; 0: it does not, */
-    int32_t  share;         /* [1/1000] of its time */
+    uint32_t operations; /* begun so far */
+    uint32_t cut;        /* in this operation the power goes; 0: it does not, */
+    int32_t share;       /* [1/1000] of its time */
 };
 
 static inline struct sent sent_of(const struct made *file)
 {
-    struct sent s = {.file = file, .crc = net_crc(0, file->file, file->bytes)};
+    struct sent s = { .file = file, .crc = net_crc(0, file->file, file->bytes) };
     net_sha(file->file, file->bytes, s.hash);
     return s;
 }
@@ -69,12 +73,12 @@ static inline bool rig_step(struct rig *r, int64_t *took)
     }
     uint8_t page[FLASH_PAGE];
     flash_look(c, c->at / FLASH_PAGE, page);
-    CHECK(c->work != FLASH_PROGRAM || store_blank(page));   /* only what is erased is programmed */
+    CHECK(c->work != FLASH_PROGRAM || store_blank(page)); /* only what is erased is programmed */
     if (++r->operations != r->cut) {
         r->now += *took;
         return true;
     }
-    const int64_t last = *took - 1;     /* 1000: the last ns before its end */
+    const int64_t last = *took - 1; /* 1000: the last ns before its end */
     flash_cut(&r->chip, r->now + (r->share >= 1000 ? last : last * r->share / 1000));
     r->now += 1000000000;
     rig_power(r);
@@ -101,8 +105,7 @@ static inline bool rig_send(struct rig *r, const struct sent *s, enum net_code *
             return false;
     for (int32_t page; *result == NET_DONE && (page = job_store_missing(&r->store)) >= 0;) {
         if (job_store_credit(&r->store) > 0) {
-            *result = job_store_page(&r->store, (uint32_t)page,
-                                     s->file->file + FLASH_PAGE * page);
+            *result = job_store_page(&r->store, (uint32_t)page, s->file->file + FLASH_PAGE * page);
             r->pages_sent++;
         } else if (!rig_step(r, &took)) {
             return false;

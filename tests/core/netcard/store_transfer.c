@@ -126,7 +126,7 @@ static void known(void)
     CHECK(rig_send(&r, &b, &result) && result == NET_DONE && rig_holds(&r, &b));
     CHECK_EQ(r.chip.programs, programs);
     CHECK(rig_send(&r, &a, &result) && result == NET_DONE && rig_holds(&r, &a));
-    CHECK_EQ(r.chip.programs, programs + 1);    /* its record */
+    CHECK_EQ(r.chip.programs, programs + 1); /* its record */
     CHECK_EQ(r.store.job.sequence, 3);
     CHECK_EQ(r.pages_sent, sent);
     rig_power(&r);
@@ -170,7 +170,7 @@ static void no_job(void)
     CHECK(rig_send(&r, &a, &result) && result == NET_DONE);
     bad = other;
     uint8_t *page = bad.file + 3 * FLASH_PAGE;
-    job_put(page + 4, 1234567, 4);      /* a position */
+    job_put(page + 4, 1234567, 4); /* a position */
     job_page_seal(page);
     const struct sent b = sent_of(&bad);
     CHECK(rig_send(&r, &b, &result));
@@ -200,8 +200,8 @@ static void fallen_back(void)
     static struct rig both;
     rig_start(&both, 2);
     CHECK(rig_send(&both, &a, &result) && rig_send(&both, &b, &result));
-    static const int32_t at[] = {510 * FLASH_SECTOR, 510 * FLASH_SECTOR + 31, 256 * FLASH_SECTOR,
-                                 256 * FLASH_SECTOR + 5000};
+    static const int32_t at[] = { 510 * FLASH_SECTOR, 510 * FLASH_SECTOR + 31, 256 * FLASH_SECTOR,
+                                  256 * FLASH_SECTOR + 5000 };
     for (size_t k = 0; k < sizeof at / sizeof *at; k++) {
         r = both;
         r.chip.array[at[k]] ^= 1;
@@ -213,10 +213,10 @@ static void fallen_back(void)
         CHECK(rig_holds(&r, &b));
     }
     r = both;
-    r.chip.array[511 * FLASH_SECTOR + 20] ^= 1;     /* without its mark it has no hash */
+    r.chip.array[511 * FLASH_SECTOR + 20] ^= 1; /* without its mark it has no hash */
     rig_power(&r);
     CHECK_EQ(r.store.job.slot, 1);
-    CHECK(!memcmp(r.store.job.hash, (uint8_t[NET_SHA_BYTES]){0}, NET_SHA_BYTES));
+    CHECK(!memcmp(r.store.job.hash, (uint8_t[NET_SHA_BYTES]){ 0 }, NET_SHA_BYTES));
 }
 
 static void from_workshop(void)
@@ -263,8 +263,8 @@ static void times(void)
         CHECK_EQ(r.chip.sector_erases, 14 + 2);
         const double seconds = (double)(r.now - begin) * 1e-9;
         printf("%u pages: %.2f s\n", pages, seconds);
-        const double want = longest ? 15 * 2.0 + 16 * 0.4 + 4065 * 3e-3
-                                    : 15 * 0.15 + 16 * 0.045 + 4065 * 0.7e-3;
+        const double want =
+            longest ? 15 * 2.0 + 16 * 0.4 + 4065 * 3e-3 : 15 * 0.15 + 16 * 0.045 + 4065 * 0.7e-3;
         CHECK_NEAR(seconds, want, 1e-3);
     }
 }

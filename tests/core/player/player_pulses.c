@@ -7,7 +7,10 @@ static struct player one, two, image;
 static struct ticks t;
 
 /* What a drive sees of an axis. */
-struct seen { int64_t rise, fall, turn; struct lines l; };
+struct seen {
+    int64_t rise, fall, turn;
+    struct lines l;
+};
 static struct seen seen[FRAME_AXES];
 static long long pulses, turns, tight, waits, drys, edges;
 
@@ -56,8 +59,8 @@ static void compare(int64_t clock, int64_t edge[FRAME_AXES])
         }
     }
     CHECK_EQ(one.fifo.stock, t.stock);
-    CHECK(one.dry == t.dry && one.refused == t.refused && one.dead == t.dead &&
-          one.frames == t.frames);
+    CHECK(one.dry == t.dry && one.refused == t.refused && one.dead == t.dead
+          && one.frames == t.frames);
 }
 
 static void random_frame(uint64_t *seed, struct frame *f, int most)
@@ -93,7 +96,7 @@ static void machine(uint64_t *seed, int clocks)
                                      (int)check_random(seed, 0, 40) };
     struct player_job job = { .period = period, .reserve = 0.1 };
     const double seconds = period * 20e-9;
-    for (int i = 0; i < FRAME_AXES; i++) {      /* ramps of some thousand clocks */
+    for (int i = 0; i < FRAME_AXES; i++) { /* ramps of some thousand clocks */
         job.acc[i] = check_random(seed, 0, 3) ? 5e4 * period / 4 / seconds : 0.0;
         job.jerk[i] = check_random(seed, 0, 1) ? job.acc[i] * 1e5 : 0.0;
     }
@@ -173,7 +176,7 @@ static void machine(uint64_t *seed, int clocks)
     }
     player_advance(&two, clocks);
     player_take(&two);
-    CHECK(!memcmp(&one, &two, sizeof one));     /* whatever the steps */
+    CHECK(!memcmp(&one, &two, sizeof one)); /* whatever the steps */
     waits += t.dead;
     drys += t.dry;
 }
@@ -185,7 +188,8 @@ static void against_ticks(void)
         machine(&seed, 20000);
     }
     printf("player: %lld pulses, %lld turns, %lld at the set-up's clock, %lld dead clocks, "
-           "%lld dry periods, %lld edges foretold\n", pulses, turns, tight, waits, drys, edges);
+           "%lld dry periods, %lld edges foretold\n",
+           pulses, turns, tight, waits, drys, edges);
     CHECK(CHECK_EACH > 1 || (pulses > 50000 && turns > 3000 && tight > 100 && drys > 500));
 }
 
@@ -209,7 +213,8 @@ static void any_pauses(void)
     int64_t paused_for = 0;
     for (int run = 0; run < 40; run += CHECK_EACH) {
         const struct player_config c = { 512, 50, 250, 250 };
-        const struct player_job job = { .period = 50000, .reserve = 0.1,
+        const struct player_job job = { .period = 50000,
+                                        .reserve = 0.1,
                                         .speed = { 1e5, 1e5, 0.0, 5e3 },
                                         .acc = { 1e6, 1e6, 1e6, 1e7 },
                                         .jerk = { 5e7, 5e7, 5e7, 0.0 } };
@@ -298,8 +303,11 @@ static void conserved(void)
 
 static void refused(void)
 {
-    const struct player_config bad[] = { { 0, 1, 0, 0 }, { 2305, 1, 0, 0 }, { 8, 0, 0, 0 },
-                                         { 8, 1, -1, 0 }, { 8, 1, 0, -1 } },
+    const struct player_config bad[] = { { 0, 1, 0, 0 },
+                                         { 2305, 1, 0, 0 },
+                                         { 8, 0, 0, 0 },
+                                         { 8, 1, -1, 0 },
+                                         { 8, 1, 0, -1 } },
                                good = { 8, 50, 250, 250 };
     struct player_job job = { .period = 50000, .reserve = 0.1 };
     struct frame f = { { 500, -500, 0, 0 }, 31 };
@@ -307,7 +315,7 @@ static void refused(void)
         CHECK(!player_start(&one, &bad[i]));
     }
     CHECK(player_start(&one, &good));
-    CHECK_EQ(player_largest(&one, 50000), 500);     /* 500 kHz at 1 us high and 1 us low */
+    CHECK_EQ(player_largest(&one, 50000), 500); /* 500 kHz at 1 us high and 1 us low */
     CHECK_EQ(player_begin(&one, &job, 7), PLAYER_OK);
     CHECK_EQ(player_push(&one, &f), PLAYER_OK);
     f.command[1] = -501;

@@ -12,7 +12,10 @@ static struct player p;
  *     axis 0: X (u - sin(2 pi u) / 2 pi)                   there
  *     axis 1: Y sin^2(pi k u) sin^2(pi u)                  and back, k times
  * Derivative d (0 .. 3) by planned time. */
-struct plan { double length, x, y; int k, frames; };
+struct plan {
+    double length, x, y;
+    int k, frames;
+};
 
 static double planned(const struct plan *m, int axis, int d, double time)
 {
@@ -44,8 +47,8 @@ static struct frame frame_of(const struct plan *m, int n)
 {
     struct frame f = { { 0 }, 0 };
     for (int i = 0; i < 2; i++) {
-        f.command[i] = (int16_t)(lround(planned(m, i, 0, 1e-3 * (n + 1))) -
-                                 lround(planned(m, i, 0, 1e-3 * n)));
+        f.command[i] = (int16_t)(lround(planned(m, i, 0, 1e-3 * (n + 1)))
+                                 - lround(planned(m, i, 0, 1e-3 * n)));
     }
     return f;
 }
@@ -56,13 +59,18 @@ static long long samples, ramps, turned, tight;
 /* Planned time that has been played. */
 static double played(const struct player *q)
 {
-    return 1e-3 * (double)(q->frames - 1) +
-           TICK * ((double)q->phase / PLAYER_FULL_RATE +
-                   (double)q->rate / PLAYER_FULL_RATE * (double)(q->clock - q->base));
+    return 1e-3 * (double)(q->frames - 1)
+           + TICK
+                 * ((double)q->phase / PLAYER_FULL_RATE
+                    + (double)q->rate / PLAYER_FULL_RATE * (double)(q->clock - q->base));
 }
 
 /* The sample before: of a ramp that goes on, its slope; else 0. */
-static struct { int64_t clock; double rate, slope; struct rate_bounds bounds; } before;
+static struct {
+    int64_t clock;
+    double rate, slope;
+    struct rate_bounds bounds;
+} before;
 
 /* At a sample of a ramp: rate and slope go on from the sample before, within their bounds, and with
  * them the motion is within its limits. The bend of a piece is that of the slopes around it. */
@@ -147,7 +155,7 @@ static void limits_kept(void)
             job.acc[i] = largest(&m, i, 2) / (1.0 - job.reserve);
             job.jerk[i] = largest(&m, i, 3) / (1.0 - job.reserve);
         }
-        if (known) {            /* it looks ahead in the FIFO */
+        if (known) { /* it looks ahead in the FIFO */
             job.speed[0] *= 3.0, job.speed[1] *= 3.0;
         }
         player_start(&p, &c);
@@ -178,8 +186,9 @@ static void limits_kept(void)
             if (p.ramping) {
                 within(&m, &job);
             } else {
-                CHECK(!p.begun || fabs(player_rate(&p) - before.rate) <=
-                                      TICK * PLAYER_GRID * fabs(before.slope) + 0x1p-20);
+                CHECK(!p.begun
+                      || fabs(player_rate(&p) - before.rate)
+                             <= TICK * PLAYER_GRID * fabs(before.slope) + 0x1p-20);
                 before.rate = player_rate(&p);
                 before.slope = 0.0;
             }
@@ -209,13 +218,16 @@ static void limits_kept(void)
 }
 
 /* An axis of steady speed [pulses/s] is paused at a clock: way and time to rest. */
-struct rest { double way, time; };
+struct rest {
+    double way, time;
+};
 
 static struct rest pause(double speed, double acc, double jerk, double reserve)
 {
     const struct player_config c = { 2304, 1, 0, 0 };
-    const struct player_job job = { .period = 50000, .reserve = reserve, .speed = { speed },
-                                    .acc = { acc }, .jerk = { jerk } };
+    const struct player_job job = {
+        .period = 50000, .reserve = reserve, .speed = { speed }, .acc = { acc }, .jerk = { jerk }
+    };
     const struct frame f = { { (int16_t)lround(speed * 1e-3) }, 0 };
     int64_t a[FRAME_AXES], b[FRAME_AXES];
     player_start(&p, &c);
@@ -247,10 +259,10 @@ static void distances(void)
     uint64_t seed = 7;
     double longest = 0.0;
     for (int i = 0; i < 300; i += CHECK_EACH) {
-        const double v = 1e3 * (double)check_random(&seed, 1, 300), reserve =
-                     check_real(&seed, 0.02, 0.6), a = v * check_real(&seed, 4.0, 40.0),
-                     q = 1.0 - reserve, j = check_random(&seed, 0, 1) ?
-                     a * check_real(&seed, 10.0, 200.0) : 0.0;
+        const double v = 1e3 * (double)check_random(&seed, 1, 300),
+                     reserve = check_real(&seed, 0.02, 0.6), a = v * check_real(&seed, 4.0, 40.0),
+                     q = 1.0 - reserve,
+                     j = check_random(&seed, 0, 1) ? a * check_real(&seed, 10.0, 200.0) : 0.0;
         const struct rest r = pause(v, a, j, reserve);
         const double pulse = 2.0 + v * TICK * 2.0 * PLAYER_GRID;
         if (j == 0.0) {

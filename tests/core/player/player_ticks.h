@@ -15,10 +15,10 @@ struct ticks {
     int stock, high;
     int running, playing, whole;
     int64_t clock, accumulator, tick, wait, dead, dry, refused, frames;
-    int64_t sum[FRAME_AXES], count[FRAME_AXES];     /* the DDA's accumulators; pulses */
-    int high_left[FRAME_AXES], since[FRAME_AXES];   /* clocks of the pulse; since its end */
-    int backward[FRAME_AXES], wanted[FRAME_AXES];   /* the line; the frame's */
-    int64_t turn_in[FRAME_AXES];                    /* clocks to the change of the line */
+    int64_t sum[FRAME_AXES], count[FRAME_AXES];   /* the DDA's accumulators; pulses */
+    int high_left[FRAME_AXES], since[FRAME_AXES]; /* clocks of the pulse; since its end */
+    int backward[FRAME_AXES], wanted[FRAME_AXES]; /* the line; the frame's */
+    int64_t turn_in[FRAME_AXES];                  /* clocks to the change of the line */
     uint32_t told, events;
 };
 
@@ -107,7 +107,7 @@ static inline void ticks_period(struct ticks *t)
 /* The clock after this one, at this rate since. */
 static inline void ticks_clock(struct ticks *t, int64_t rate)
 {
-    int pulse[FRAME_AXES] = {0}, end = 0;
+    int pulse[FRAME_AXES] = { 0 }, end = 0;
 
     t->clock++;
     if (t->running && t->wait > 0) {

@@ -13,8 +13,8 @@ enum {
     DEPTH = 512,
     HALF = DEPTH / 2,
     CLOCK_NS = 20,
-    TIME = 1000000 / CLOCK_NS,      /* [clocks] 1 ms */
-    WIDTH = 1000 / CLOCK_NS,        /* [clocks] 1 us */
+    TIME = 1000000 / CLOCK_NS, /* [clocks] 1 ms */
+    WIDTH = 1000 / CLOCK_NS,   /* [clocks] 1 us */
     SENT_MAX = 8192,
 };
 
@@ -23,7 +23,7 @@ struct literal {
     int32_t sent[SENT_MAX], written, taken;
     int32_t accumulator, command;
     int64_t count;
-    int64_t latest;                 /* [clock] of the latest pulse of this DDA time, -1 if none */
+    int64_t latest; /* [clock] of the latest pulse of this DDA time, -1 if none */
     struct lines lines;
     int64_t received;
 };
@@ -34,14 +34,14 @@ struct rig {
     int32_t entry[CHANNELS][DEPTH];
     struct pulse pulse[CHANNELS];
     struct literal literal[CHANNELS];
-    int32_t falls;                  /* of a stock to half */
+    int32_t falls; /* of a stock to half */
 };
 
 static const struct pulse_config CONFIG[CHANNELS] = {
-    {PULSE_DIRECTION, 0, WIDTH},
-    {PULSE_CW_CCW, 0, WIDTH},
-    {PULSE_AB, 0, WIDTH},
-    {PULSE_DIRECTION, LINES_A_INVERSE | LINES_SWAP, WIDTH},
+    { PULSE_DIRECTION, 0, WIDTH },
+    { PULSE_CW_CCW, 0, WIDTH },
+    { PULSE_AB, 0, WIDTH },
+    { PULSE_DIRECTION, LINES_A_INVERSE | LINES_SWAP, WIDTH },
 };
 
 static struct rig rig;
@@ -91,11 +91,12 @@ static void receive(struct rig *r, int i, int64_t clock)
     if (CONFIG[i].format == PULSE_CW_CCW)
         m->received += (now.a && !was.a) - (now.b && !was.b);
     else if (CONFIG[i].format == PULSE_AB)
-        m->received += now.a != was.a ? (now.a != now.b ? 1 : -1)
-                     : now.b != was.b ? (now.a == now.b ? 1 : -1) : 0;
+        m->received += now.a != was.a   ? (now.a != now.b ? 1 : -1)
+                       : now.b != was.b ? (now.a == now.b ? 1 : -1)
+                                        : 0;
     else if (CONFIG[i].wiring == 0)
         m->received += now.a && !was.a ? (now.b ? -1 : 1) : 0;
-    else    /* direction on A, the pulse on B, low while it is on */
+    else /* direction on A, the pulse on B, low while it is on */
         m->received += !now.b && was.b ? (now.a ? -1 : 1) : 0;
     m->lines = now;
 }
@@ -119,7 +120,7 @@ static void step(struct rig *r, int i, int64_t clock)
 /* The boundary: what was put out is what was taken; another rate from here on. */
 static void boundary(struct rig *r, int32_t ticks)
 {
-    int32_t next[CHANNELS] = {0};
+    int32_t next[CHANNELS] = { 0 };
     for (int i = 0; i < CHANNELS; i++) {
         struct literal *m = &r->literal[i];
         int64_t sum = 0;
@@ -162,7 +163,7 @@ static void run(uint64_t seed, int32_t ticks, int times)
             }
         }
         clock--;
-        for (int k = check_random(&seed, 0, 5) ? 0 : 600; k > 0; k--)   /* taken, put out at rest */
+        for (int k = check_random(&seed, 0, 5) ? 0 : 600; k > 0; k--) /* taken, put out at rest */
             for (int i = 0; i < CHANNELS && r->fifo[i].stock > 0; i++) {
                 int32_t command = 0, before = r->fifo[i].stock;
                 struct literal *m = &r->literal[i];

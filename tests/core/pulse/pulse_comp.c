@@ -86,9 +86,9 @@ static void backlash(void)
     CHECK_EQ(sum, 25);
     CHECK_EQ(c.added, 0);
     CHECK_EQ(comp_step(&t, &c, 996, 995, &l), 0);
-    CHECK_EQ(comp_step(&t, &c, -4, -1000, &l), 0);      /* no room in this command */
-    CHECK_EQ(comp_step(&t, &c, -1000, -996, &l), -4);   /* four pulses of room */
-    CHECK_EQ(comp_step(&t, &c, -2500, -1500, &l), 0);   /* beyond the limit by itself */
+    CHECK_EQ(comp_step(&t, &c, -4, -1000, &l), 0);    /* no room in this command */
+    CHECK_EQ(comp_step(&t, &c, -1000, -996, &l), -4); /* four pulses of room */
+    CHECK_EQ(comp_step(&t, &c, -2500, -1500, &l), 0); /* beyond the limit by itself */
 }
 
 static void refusals(void)

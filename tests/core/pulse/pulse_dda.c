@@ -7,7 +7,7 @@
 enum {
     CHANNELS = 6,
     LENGTH_MAX = 15,
-    ACCUMULATOR = 1 << LENGTH_MAX,      /* shorter commands are shifted up */
+    ACCUMULATOR = 1 << LENGTH_MAX, /* shorter commands are shifted up */
 };
 
 struct brute {
@@ -35,10 +35,10 @@ static void against_brute_force(uint64_t seed)
     dda_reset(&d, CHANNELS, 1 << length, divider);
     struct brute b[CHANNELS];
     for (int i = 0; i < CHANNELS; i++)
-        b[i] = (struct brute){.accumulator = ACCUMULATOR / 2};
+        b[i] = (struct brute){ .accumulator = ACCUMULATOR / 2 };
     int64_t clock = 0;
     for (int period = 0; period < 12; period++) {
-        int32_t edges[CHANNELS] = {0};
+        int32_t edges[CHANNELS] = { 0 };
         int64_t end = dda_boundary(&d);
         CHECK_EQ(end - clock, (int64_t)divider << length);
         for (int64_t ticks = 0; clock < end;) {
@@ -60,7 +60,7 @@ static void against_brute_force(uint64_t seed)
         divider = (int32_t)check_random(&seed, 1, 7);
         dda_set_time(&d, 1 << length, divider, clock);
         int32_t largest = dda_largest(1 << length);
-        int32_t next[CHANNELS] = {largest, -largest, 0, 1, -1};
+        int32_t next[CHANNELS] = { largest, -largest, 0, 1, -1 };
         next[5] = (int32_t)check_random(&seed, -largest, largest);
         next[3] = (int32_t)check_random(&seed, -20, 20);
         dda_begin(&d, next);
@@ -95,7 +95,7 @@ static void stop_and_go(void)
     struct dda d;
     int64_t counts[CHANNELS];
     dda_reset(&d, CHANNELS, 1024, 3);
-    dda_begin(&d, (int32_t[CHANNELS]){700, -700});
+    dda_begin(&d, (int32_t[CHANNELS]){ 700, -700 });
     CHECK_EQ(dda_boundary(&d), 2 * 3072);
     dda_set_run(&d, false, 4000);
     dda_set_run(&d, false, 4500);
@@ -119,11 +119,11 @@ static void change_of_time(void)
     CHECK_EQ(dda_boundary(&d), 1024);
     dda_set_time(&d, 32768, 2, 1);
     CHECK_EQ(dda_boundary(&d), 1024);
-    dda_begin(&d, (int32_t[CHANNELS]){1});
+    dda_begin(&d, (int32_t[CHANNELS]){ 1 });
     CHECK_EQ(dda_boundary(&d), 1024 + 65536);
     dda_set_time(&d, 1024, 1, 1024);
     CHECK_EQ(dda_boundary(&d), 1024 + 65536);
-    dda_begin(&d, (int32_t[CHANNELS]){0});
+    dda_begin(&d, (int32_t[CHANNELS]){ 0 });
     CHECK_EQ(dda_boundary(&d), 1024 + 65536 + 1024);
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { UNIT = 64 };     /* phases here are whole 64ths of a line, so that all sums are exact */
+enum { UNIT = 64 }; /* phases here are whole 64ths of a line, so that all sums are exact */
 
 static int64_t floor_mod(int64_t a, int64_t b)
 {
@@ -22,8 +22,8 @@ struct pins {
 static struct pins source(int64_t num, int64_t den, int32_t index_lines)
 {
     int64_t p = floor_mod(num, den * UNIT), turn = floor_mod(num, den * UNIT * index_lines);
-    return (struct pins){p < den * UNIT / 2, p >= den * UNIT / 4 && p < den * UNIT * 3 / 4,
-                         turn < den * UNIT / 4};
+    return (struct pins){ p < den * UNIT / 2, p >= den * UNIT / 4 && p < den * UNIT * 3 / 4,
+                          turn < den * UNIT / 4 };
 }
 
 /* A shift register per pin: a level is taken when the last `filter` looks agree. */
@@ -33,7 +33,7 @@ struct filter {
 
 static int filtered(struct filter *f, int pin, int clocks)
 {
-    if (f->stood >= clocks)     /* it has stood the looks before this one */
+    if (f->stood >= clocks) /* it has stood the looks before this one */
         f->level = f->last;
     f->stood = pin == f->last ? f->stood + 1 : 1;
     f->last = pin;
@@ -44,10 +44,10 @@ static int filtered(struct filter *f, int pin, int clocks)
 
 struct decoder {
     struct encoder_config c;
-    bool low;           /* the index is ON when low, behind the wiring */
+    bool low; /* the index is ON when low, behind the wiring */
     struct filter f[3];
     int a, b, index;
-    int64_t x[5];       /* count at rate 1, 2, 4 */
+    int64_t x[5]; /* count at rate 1, 2, 4 */
     int64_t compare;
     int reached;
     int64_t compare_clock, index_clock, index_count;
@@ -72,9 +72,9 @@ static void wire(const struct decoder *d, struct pins *p)
 static void count(struct decoder *d, int a, int b)
 {
     if (a != d->a && b != d->b) {
-        ;   /* no step of the code */
+        ; /* no step of the code */
     } else if (a != d->a) {
-        int up = a != b;    /* A rises with B low, or falls with B high */
+        int up = a != b; /* A rises with B low, or falls with B high */
         d->x[4] += up ? 1 : -1;
         d->x[2] += up ? 1 : -1;
         if (!b)
@@ -106,11 +106,11 @@ static void look(struct decoder *d, struct pins p, int64_t clock)
 
 static void begin(struct decoder *d, const struct encoder_config *c, bool low, struct pins p)
 {
-    *d = (struct decoder){.c = *c, .low = low, .compare_clock = -1, .index_clock = -1};
+    *d = (struct decoder){ .c = *c, .low = low, .compare_clock = -1, .index_clock = -1 };
     wire(d, &p);
-    int pin[3] = {p.a, p.b, p.c};
+    int pin[3] = { p.a, p.b, p.c };
     for (int i = 0; i < 3; i++)
-        d->f[i] = (struct filter){pin[i], pin[i], 1 << 20};
+        d->f[i] = (struct filter){ pin[i], pin[i], 1 << 20 };
     d->a = p.a;
     d->b = p.b;
     d->index = p.c;
@@ -120,11 +120,11 @@ static int64_t next_place(uint64_t *seed, int piece, int64_t at, int64_t fastest
 {
     int64_t way = check_random(seed, -fastest, fastest);
     if (piece % 3 == 0)
-        way = fastest - check_random(seed, 0, fastest / 8);     /* near the limit of the filter */
+        way = fastest - check_random(seed, 0, fastest / 8); /* near the limit of the filter */
     if (piece % 7 == 0)
-        way = check_random(seed, -UNIT / 2, UNIT / 2);          /* trembling */
+        way = check_random(seed, -UNIT / 2, UNIT / 2); /* trembling */
     if (piece % 13 == 0)
-        way = -floor_mod(at, UNIT) + UNIT * (piece % 3 - 1);    /* exactly on an edge */
+        way = -floor_mod(at, UNIT) + UNIT * (piece % 3 - 1); /* exactly on an edge */
     if (piece % 11 == 0)
         way = 0;
     if (llabs(way) > fastest)
@@ -147,9 +147,9 @@ static void against_brute_force(uint64_t seed, const struct encoder_config *c, b
     int64_t lost_before = 0;
     for (int piece = 0; piece < 200; piece++) {
         int64_t span = check_random(&seed, 200, 400);
-        int64_t half = c->filter > 2 ? c->filter : 2;       /* [clocks] shortest half line period */
+        int64_t half = c->filter > 2 ? c->filter : 2; /* [clocks] shortest half line period */
         int64_t fastest = span * UNIT / 2 / half * (overload ? 3 : 1);
-        fastest = fastest < span * UNIT / 4 ? fastest : span * UNIT / 4;    /* an edge a clock */
+        fastest = fastest < span * UNIT / 4 ? fastest : span * UNIT / 4; /* an edge a clock */
         int64_t to = next_place(&seed, piece, at, fastest);
         int32_t indices = d.indices, seen = e.index_seen;
         int64_t compared = d.compare_clock;
@@ -189,8 +189,8 @@ static int go(struct encoder *e, double phase, int64_t clock)
 static void start_rate_and_range(void)
 {
     struct encoder e, before;
-    encoder_reset(&e, &(struct encoder_config){ENCODER_AB, 4, 0, 0, 10});
-    CHECK_EQ(go(&e, -3.3, 0), 0);       /* floor(-13.2) = -14 */
+    encoder_reset(&e, &(struct encoder_config){ ENCODER_AB, 4, 0, 0, 10 });
+    CHECK_EQ(go(&e, -3.3, 0), 0); /* floor(-13.2) = -14 */
     CHECK_EQ(e.count, 0);
     CHECK_EQ(go(&e, 1e15, 4000), ENCODER_INDEX);
     CHECK_EQ(e.count, 4000000000000000 + 14);
@@ -207,7 +207,7 @@ static void start_rate_and_range(void)
     go(&e, -1e15 + 1.0, 16000);
     CHECK_EQ(e.count, 4);
     for (int i = 0; i < 2; i++) {
-        struct encoder_config c = {i ? ENCODER_NONE : ENCODER_AB, i ? 4 : 0, 0, 0, 10};
+        struct encoder_config c = { i ? ENCODER_NONE : ENCODER_AB, i ? 4 : 0, 0, 0, 10 };
         encoder_reset(&e, &c);
         go(&e, 0.0, 0);
         CHECK_EQ(go(&e, 1000.0, 40000), 0);
@@ -219,7 +219,7 @@ static void start_rate_and_range(void)
 static void overload_ends(void)
 {
     struct encoder e;
-    encoder_reset(&e, &(struct encoder_config){ENCODER_AB, 4, 0, 40, 2500});
+    encoder_reset(&e, &(struct encoder_config){ ENCODER_AB, 4, 0, 40, 2500 });
     go(&e, 0.0, 0);
     go(&e, 1e15, 4000);
     CHECK(e.too_fast);
@@ -238,18 +238,18 @@ static void wiring_and_formats(void)
         int32_t rate;
         int want;
     } ROW[] = {
-        {ENCODER_AB, 0, 4, 40},
-        {ENCODER_AB, LINES_SWAP, 4, -40},
-        {ENCODER_AB, LINES_A_INVERSE, 4, -40},
-        {ENCODER_AB, LINES_A_INVERSE | LINES_B_INVERSE, 4, 40},
-        {ENCODER_CW_CCW, 0, 1, 10},
-        {ENCODER_CW_CCW, LINES_SWAP, 1, -10},
-        {ENCODER_CW_CCW, LINES_A_INVERSE, 2, 20},
-        {ENCODER_PULSE_DIRECTION, 0, 4, 20},
-        {ENCODER_PULSE_DIRECTION, LINES_B_INVERSE, 1, -10},
+        { ENCODER_AB, 0, 4, 40 },
+        { ENCODER_AB, LINES_SWAP, 4, -40 },
+        { ENCODER_AB, LINES_A_INVERSE, 4, -40 },
+        { ENCODER_AB, LINES_A_INVERSE | LINES_B_INVERSE, 4, 40 },
+        { ENCODER_CW_CCW, 0, 1, 10 },
+        { ENCODER_CW_CCW, LINES_SWAP, 1, -10 },
+        { ENCODER_CW_CCW, LINES_A_INVERSE, 2, 20 },
+        { ENCODER_PULSE_DIRECTION, 0, 4, 20 },
+        { ENCODER_PULSE_DIRECTION, LINES_B_INVERSE, 1, -10 },
     };
     for (size_t i = 0; i < sizeof ROW / sizeof ROW[0]; i++) {
-        struct encoder_config c = {ROW[i].format, ROW[i].rate, ROW[i].wiring, 0, 100};
+        struct encoder_config c = { ROW[i].format, ROW[i].rate, ROW[i].wiring, 0, 100 };
         struct encoder e;
         CHECK_EQ(encoder_check(&c), ENCODER_OK);
         encoder_reset(&e, &c);
@@ -264,31 +264,31 @@ static void wiring_and_formats(void)
 static void compare_and_clear(void)
 {
     struct encoder e;
-    encoder_reset(&e, &(struct encoder_config){ENCODER_AB, 4, 0, 0, 100});
+    encoder_reset(&e, &(struct encoder_config){ ENCODER_AB, 4, 0, 0, 100 });
     go(&e, 0.0, 0);
     CHECK_EQ(encoder_set_compare(&e, true, 10, 0), 0);
-    CHECK_EQ(go(&e, 2.75, 400), ENCODER_COMPARE);               /* 11 counts: passed it */
-    CHECK_EQ(e.compare_clock, 364);                             /* ceil(400 * 2.5 / 2.75) */
-    CHECK_EQ(go(&e, 5.0, 800), 0);                              /* once */
+    CHECK_EQ(go(&e, 2.75, 400), ENCODER_COMPARE); /* 11 counts: passed it */
+    CHECK_EQ(e.compare_clock, 364);               /* ceil(400 * 2.5 / 2.75) */
+    CHECK_EQ(go(&e, 5.0, 800), 0);                /* once */
     CHECK_EQ(go(&e, 1.0, 1200), 0);
-    CHECK_EQ(go(&e, 2.5, 1600), ENCODER_COMPARE);               /* reached again */
-    CHECK_EQ(encoder_set_compare(&e, true, 5, 1600), ENCODER_COMPARE);  /* by the write */
-    CHECK_EQ(encoder_set_compare(&e, true, 5, 1600), 0);        /* the same write again */
+    CHECK_EQ(go(&e, 2.5, 1600), ENCODER_COMPARE);                      /* reached again */
+    CHECK_EQ(encoder_set_compare(&e, true, 5, 1600), ENCODER_COMPARE); /* by the write */
+    CHECK_EQ(encoder_set_compare(&e, true, 5, 1600), 0);               /* the same write again */
     CHECK_EQ(encoder_set_compare(&e, false, 5, 1600), 0);
     CHECK_EQ(go(&e, 0.5, 2000), 0);
     CHECK_EQ(go(&e, 9.0, 2400), 0);
     CHECK_EQ(encoder_set_compare(&e, true, 0, 2400), ENCODER_COMPARE);
     CHECK_EQ(go(&e, -1.0, 3600), ENCODER_INDEX);
-    CHECK_EQ(encoder_clear(&e, 3600), ENCODER_COMPARE);         /* -4 becomes 0 */
+    CHECK_EQ(encoder_clear(&e, 3600), ENCODER_COMPARE); /* -4 becomes 0 */
 }
 
 static void refusals(void)
 {
-    struct encoder_config good = {ENCODER_AB, 4, 0, 0, 100}, c = good;
+    struct encoder_config good = { ENCODER_AB, 4, 0, 0, 100 }, c = good;
     CHECK_EQ(encoder_check(&c), ENCODER_OK);
     c.format = (enum encoder_format)4;
     CHECK_EQ(encoder_check(&c), ENCODER_BAD_FORMAT);
-    c.format = (enum encoder_format)-1;
+    c.format = (enum encoder_format) - 1;
     CHECK_EQ(encoder_check(&c), ENCODER_BAD_FORMAT);
     c = good;
     c.rate = 3;
@@ -311,13 +311,13 @@ static void refusals(void)
 
 int main(void)
 {
-    static const int32_t RATE[] = {1, 2, 4}, FILTER[] = {0, 1, 2, 3, 7, 20, 40, 100};
+    static const int32_t RATE[] = { 1, 2, 4 }, FILTER[] = { 0, 1, 2, 3, 7, 20, 40, 100 };
     for (uint32_t wiring = 0; wiring < 16; wiring++)
         for (int i = 0; i < 8; i++) {
-            struct encoder_config c = {ENCODER_AB, RATE[(wiring + (uint32_t)i) % 3], wiring,
-                                       FILTER[i], 1 + i % 5};
+            struct encoder_config c = { ENCODER_AB, RATE[(wiring + (uint32_t)i) % 3], wiring,
+                                        FILTER[i], 1 + i % 5 };
             against_brute_force(104729u * (wiring + 1u) + (unsigned)i, &c, false);
-            if (c.filter > 2)   /* below, an edge a clock is not too fast */
+            if (c.filter > 2) /* below, an edge a clock is not too fast */
                 against_brute_force(130363u * (wiring + 1u) + (unsigned)i, &c, true);
         }
     start_rate_and_range();

@@ -6,25 +6,25 @@
 #include <string.h>
 
 enum {
-    CLOCKS_MAX = 7 << 11,               /* longest DDA time here [clocks] */
-    WIDEST = 65535,                     /* pulse [clocks] */
+    CLOCKS_MAX = 7 << 11, /* longest DDA time here [clocks] */
+    WIDEST = 65535,       /* pulse [clocks] */
 };
 
 /* One channel as hardware: all offsets are clocks since the DDA time in progress began. */
 struct literal {
     struct pulse_config c;
-    bool    pulse[CLOCKS_MAX + 1];      /* there is one; at 0: the last of the DDA time before */
-    bool    back[CLOCKS_MAX + 1];       /* its direction */
-    bool    high[CLOCKS_MAX];           /* some pulse is high */
-    bool    high_back[CLOCKS_MAX];      /* direction of that pulse */
-    bool    direction;
-    int64_t before;                     /* pulses up to and including offset 0 */
-    int64_t last;                       /* [clock] of the latest one of these */
+    bool pulse[CLOCKS_MAX + 1]; /* there is one; at 0: the last of the DDA time before */
+    bool back[CLOCKS_MAX + 1];  /* its direction */
+    bool high[CLOCKS_MAX];      /* some pulse is high */
+    bool high_back[CLOCKS_MAX]; /* direction of that pulse */
+    bool direction;
+    int64_t before; /* pulses up to and including offset 0 */
+    int64_t last;   /* [clock] of the latest one of these */
 };
 
 /* What a receiver of the lines makes of them. */
 struct receiver {
-    bool    started, a, b;
+    bool started, a, b;
     int64_t count, lost;
 };
 
@@ -43,7 +43,7 @@ static void run_literal(struct literal *m, int32_t command, int32_t ticks, int32
             m->back[o] = command < 0;
         }
     }
-    CHECK_EQ(accumulator, ticks / 2);   /* nothing is carried over the boundary */
+    CHECK_EQ(accumulator, ticks / 2); /* nothing is carried over the boundary */
     memset(m->high, 0, sizeof m->high);
     for (int32_t o = 0; o < end; o++) {
         if (!m->pulse[o])
@@ -66,7 +66,7 @@ static void cut_literal(struct literal *m, int32_t offset, int32_t end)
     m->pulse[0] = false;
     for (int32_t i = 1; i <= offset; i++)
         if (m->pulse[i])
-            return;     /* it was over before */
+            return; /* it was over before */
     for (int32_t i = offset; i < end && !m->pulse[i] && m->high[i]; i++)
         m->high[i] = false;
 }
@@ -91,7 +91,7 @@ static struct lines literal_lines(const struct literal *m, int32_t o, int64_t co
         a = !a;
     if (m->c.wiring & 2)
         b = !b;
-    return m->c.wiring & 4 ? (struct lines){b, a} : (struct lines){a, b};
+    return m->c.wiring & 4 ? (struct lines){ b, a } : (struct lines){ a, b };
 }
 
 /* The DDA time is over at `clock`: its last pulse may lie on the boundary. */
@@ -111,8 +111,9 @@ static bool literal_merges(const struct literal *m, int32_t end)
 {
     for (int32_t o = 0; o < end; o++) {
         bool both = m->pulse[o] && m->pulse[o + 1];
-        if (both && (m->c.format == PULSE_DIRECTION ||
-                     (m->c.format == PULSE_CW_CCW && m->back[o] == m->back[o + 1])))
+        if (both
+            && (m->c.format == PULSE_DIRECTION
+                || (m->c.format == PULSE_CW_CCW && m->back[o] == m->back[o + 1])))
             return true;
     }
     return false;
@@ -148,7 +149,7 @@ struct bench {
     int64_t clock;
 };
 
-static struct bench bench;  /* channel `CHANNEL` of the DDA */
+static struct bench bench; /* channel `CHANNEL` of the DDA */
 enum { CHANNEL = 4 };
 
 static struct lines lines_now(const struct bench *x)
@@ -205,9 +206,19 @@ static void one_time(struct bench *x, int32_t pause_at, int64_t pause_clocks, bo
 static int32_t some_command(uint64_t *seed, int32_t ticks)
 {
     int32_t largest = dda_largest(ticks), half = ticks / 2;
-    int32_t size[] = {0, 0, 1, 2, half - 1, half, half + 1, largest, largest - 1, half + 200,
-                      (int32_t)check_random(seed, 0, 20), (int32_t)check_random(seed, 0, largest),
-                      (int32_t)check_random(seed, 0, largest)};
+    int32_t size[] = { 0,
+                       0,
+                       1,
+                       2,
+                       half - 1,
+                       half,
+                       half + 1,
+                       largest,
+                       largest - 1,
+                       half + 200,
+                       (int32_t)check_random(seed, 0, 20),
+                       (int32_t)check_random(seed, 0, largest),
+                       (int32_t)check_random(seed, 0, largest) };
     int32_t k = size[check_random(seed, 0, (int64_t)(sizeof size / sizeof *size) - 1)];
     k = k < largest ? k : largest;
     return check_random(seed, 0, 1) ? -k : k;
@@ -215,7 +226,7 @@ static int32_t some_command(uint64_t *seed, int32_t ticks)
 
 static int32_t some_width(uint64_t *seed)
 {
-    int32_t width[] = {1, 2, 3, 40, WIDEST, (int32_t)check_random(seed, 1, 1000)};
+    int32_t width[] = { 1, 2, 3, 40, WIDEST, (int32_t)check_random(seed, 1, 1000) };
     return width[check_random(seed, 0, 5)];
 }
 
@@ -225,7 +236,7 @@ static void against_clocks(enum pulse_format format, uint32_t wiring, uint64_t s
     enum { TIMES = 12 };
     struct bench *x = &bench;
     memset(x, 0, sizeof *x);
-    x->m.c = (struct pulse_config){format, wiring, some_width(&seed)};
+    x->m.c = (struct pulse_config){ format, wiring, some_width(&seed) };
     x->m.last = -1;
     CHECK_EQ(pulse_check(&x->m.c, WIDEST), PULSE_OK);
     pulse_reset(&x->p);
@@ -240,33 +251,33 @@ static void against_clocks(enum pulse_format format, uint32_t wiring, uint64_t s
         one_time(x, at, check_random(&seed, 0, 40), merged);
         merged = merges;
         CHECK_EQ(x->clock, dda_boundary(&x->d));
-        int32_t some[] = {1024, 1024, 2048, 1000, 1001, (int32_t)check_random(&seed, 2, 2048)};
+        int32_t some[] = { 1024, 1024, 2048, 1000, 1001, (int32_t)check_random(&seed, 2, 2048) };
         int32_t ticks = some[check_random(&seed, 0, 5)];
-        int32_t dividers[] = {1, 1, 2, 3, 4, (int32_t)check_random(&seed, 1, 7)};
+        int32_t dividers[] = { 1, 1, 2, 3, 4, (int32_t)check_random(&seed, 1, 7) };
         int32_t divider = dividers[check_random(&seed, 0, 5)];
         dda_set_time(&x->d, ticks, divider, x->clock);
-        if (x->d.command[CHANNEL] != 0)     /* as the card does */
+        if (x->d.command[CHANNEL] != 0) /* as the card does */
             pulse_boundary(&x->m.c, &x->p, &x->d, CHANNEL);
-        dda_begin(&x->d, (int32_t[CHANNEL + 1]){7, [CHANNEL] = some_command(&seed, ticks)});
+        dda_begin(&x->d, (int32_t[CHANNEL + 1]){ 7, [CHANNEL] = some_command(&seed, ticks) });
     }
 }
 
 /* The figure in pulse.c, read off by hand; then the direction stands while nothing moves. */
 static void sign_change(void)
 {
-    const struct pulse_config c = {PULSE_DIRECTION, 0, 3};
+    const struct pulse_config c = { PULSE_DIRECTION, 0, 3 };
     const char a[] = "110011001100", b[] = "000000111111";
     struct dda d;
     struct pulse p;
     dda_reset(&d, 1, 1024, 4);
     pulse_reset(&p);
     CHECK_EQ(pulse_latest(&p, &d, 0, 4095), -1);
-    dda_begin(&d, &(int32_t){1023});
+    dda_begin(&d, &(int32_t){ 1023 });
     for (int i = 0; i < 12; i++) {
         int64_t clock = 8192 - 4 + i;
         if (i == 4) {
             pulse_boundary(&c, &p, &d, 0);
-            dda_begin(&d, &(int32_t){-1023});
+            dda_begin(&d, &(int32_t){ -1023 });
         }
         struct lines l = pulse_at(&c, &p, &d, 0, clock);
         CHECK_EQ(l.a, a[i] - '0');
@@ -274,11 +285,11 @@ static void sign_change(void)
         CHECK_EQ(pulse_latest(&p, &d, 0, clock), clock - i % 4);
     }
     pulse_boundary(&c, &p, &d, 0);
-    dda_begin(&d, &(int32_t){0});
+    dda_begin(&d, &(int32_t){ 0 });
     struct pulse old = p;
     pulse_boundary(&c, &p, &d, 0);
     CHECK(memcmp(&old, &p, sizeof p) == 0);
-    dda_begin(&d, &(int32_t){0});
+    dda_begin(&d, &(int32_t){ 0 });
     CHECK(pulse_at(&c, &p, &d, 0, d.start).b);
     CHECK(!pulse_at(&c, &p, &d, 0, d.start).a);
     CHECK_EQ(pulse_latest(&p, &d, 0, d.start), 3 * 4096);
@@ -288,12 +299,12 @@ static void sign_change(void)
 static void slow(void)
 {
     enum { DIVIDER = 65535 };
-    const struct pulse_config c = {PULSE_CW_CCW, 0, WIDEST};
+    const struct pulse_config c = { PULSE_CW_CCW, 0, WIDEST };
     struct dda d;
     struct pulse p;
     dda_reset(&d, 1, 1 << 15, DIVIDER);
     pulse_reset(&p);
-    dda_begin(&d, &(int32_t){-32767});
+    dda_begin(&d, &(int32_t){ -32767 });
     int64_t first = d.start + DIVIDER;
     struct lines before = pulse_at(&c, &p, &d, 0, first - 1), on = pulse_at(&c, &p, &d, 0, first);
     CHECK(!before.a && !before.b && !on.a && on.b);
@@ -302,7 +313,7 @@ static void slow(void)
     pulse_boundary(&c, &p, &d, 0);
     CHECK_EQ(p.last, dda_boundary(&d));
     CHECK_EQ(p.high, DIVIDER / 2);
-    dda_begin(&d, &(int32_t){1});
+    dda_begin(&d, &(int32_t){ 1 });
     int64_t middle = d.start + ((int64_t)DIVIDER << 14);
     CHECK(!pulse_at(&c, &p, &d, 0, middle - 1).a && pulse_at(&c, &p, &d, 0, middle).a);
     CHECK(pulse_at(&c, &p, &d, 0, middle + WIDEST - 1).a);
@@ -315,15 +326,15 @@ static void refusals(void)
         struct pulse_config c;
         enum pulse_status want;
     } row[] = {
-        {{PULSE_DIRECTION, 0, 1}, PULSE_OK},
-        {{PULSE_NONE, 7, WIDEST}, PULSE_OK},
-        {{(enum pulse_format)4, 0, 1}, PULSE_BAD_FORMAT},
-        {{(enum pulse_format)-1, 0, 1}, PULSE_BAD_FORMAT},
-        {{PULSE_AB, 8, 1}, PULSE_BAD_WIRING},
-        {{PULSE_AB, 0x80000000u, 1}, PULSE_BAD_WIRING},
-        {{PULSE_AB, 0, 0}, PULSE_BAD_WIDTH},
-        {{PULSE_AB, 0, -1}, PULSE_BAD_WIDTH},
-        {{PULSE_AB, 0, WIDEST + 1}, PULSE_BAD_WIDTH},
+        { { PULSE_DIRECTION, 0, 1 }, PULSE_OK },
+        { { PULSE_NONE, 7, WIDEST }, PULSE_OK },
+        { { (enum pulse_format)4, 0, 1 }, PULSE_BAD_FORMAT },
+        { { (enum pulse_format) - 1, 0, 1 }, PULSE_BAD_FORMAT },
+        { { PULSE_AB, 8, 1 }, PULSE_BAD_WIRING },
+        { { PULSE_AB, 0x80000000u, 1 }, PULSE_BAD_WIRING },
+        { { PULSE_AB, 0, 0 }, PULSE_BAD_WIDTH },
+        { { PULSE_AB, 0, -1 }, PULSE_BAD_WIDTH },
+        { { PULSE_AB, 0, WIDEST + 1 }, PULSE_BAD_WIDTH },
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         struct pulse_config c = row[i].c;

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-enum { UNIT = 64 };     /* phases are whole 64ths of a line period, so that all sums are exact */
+enum { UNIT = 64 }; /* phases are whole 64ths of a line period, so that all sums are exact */
 
 /* floor(4 x / (UNIT den)) */
 static int64_t quarter_of(int64_t x, int64_t den)
@@ -17,7 +17,7 @@ static int64_t quarter_of(int64_t x, int64_t den)
  * and counted up to any clock; the lines step as a Gray code. */
 static void path(uint64_t seed)
 {
-    struct quadrature q = {0};
+    struct quadrature q = { 0 };
     int64_t from = check_random(&seed, -2000, 2000), clock = 0;
     const int64_t start = quarter_of(from, 1);
     CHECK_EQ(quadrature_check(&q, (double)from / UNIT, 0), QUADRATURE_OK);
@@ -64,7 +64,7 @@ static void levels(void)
 /* What is wrong with a sample is said before it is taken. */
 static void refused(void)
 {
-    struct quadrature q = {0};
+    struct quadrature q = { 0 };
     CHECK_EQ(quadrature_check(&q, NAN, 0), QUADRATURE_BAD_PHASE);
     CHECK_EQ(quadrature_check(&q, 2e15, 0), QUADRATURE_BAD_PHASE);
     CHECK_EQ(quadrature_check(&q, 3.0, 0), QUADRATURE_OK);
@@ -73,7 +73,7 @@ static void refused(void)
     CHECK_EQ(quadrature_check(&q, 3.0 + 25.0, 100), QUADRATURE_OK);
     CHECK_EQ(quadrature_check(&q, -INFINITY, 100), QUADRATURE_BAD_PHASE);
     quadrature_sample(&q, 3.0 + 25.0, 100);
-    for (int edges = 1; edges <= 100; edges++) {    /* one a clock */
+    for (int edges = 1; edges <= 100; edges++) { /* one a clock */
         CHECK_EQ(quadrature_next(&q), edges);
         CHECK_EQ(quadrature_pass(&q), 1);
     }

@@ -12,8 +12,11 @@ static bool planned(struct robot_config *c, int n)
 {
     double joint[OPW_JOINTS], end[OPW_JOINTS];
     struct robot_refusal why;
-    struct robot_move m = { .kind = n % 4 == 1 ? ROBOT_CIRCLE : n % 4 == 2 ? ROBOT_ARC : ROBOT_LINE,
-                            .singular = n % 4 == 3 ? ROBOT_WRIST : ROBOT_SLOW, .feed = 50.0,
+    struct robot_move m = { .kind = n % 4 == 1   ? ROBOT_CIRCLE
+                                    : n % 4 == 2 ? ROBOT_ARC
+                                                 : ROBOT_LINE,
+                            .singular = n % 4 == 3 ? ROBOT_WRIST : ROBOT_SLOW,
+                            .feed = 50.0,
                             .target.branch = ROBOT_ANY_BRANCH };
 
     for (int i = 0; i < OPW_JOINTS; i++) {
@@ -31,7 +34,7 @@ static bool planned(struct robot_config *c, int n)
         m.normal[i] /= size;
     }
     const double radius = check_real(&seed, 5.0, 80.0);
-    m.centre[0] = at[0] - radius * z[1];    /* across the normal */
+    m.centre[0] = at[0] - radius * z[1]; /* across the normal */
     m.centre[1] = at[1] + radius * z[0];
     m.centre[2] = at[2];
     m.sweep = check_real(&seed, -20.0, 20.0);
@@ -93,7 +96,7 @@ int main(void)
             const double room = h / length;
             const double part = fmax(room, fmin(1.0 - room, from + size * k / PLACES));
             differences(&g, part, h, middle, slope, bend);
-            for (int i = 0; i < OPW_JOINTS; i++) {      /* 1e-9: rounding of the differences */
+            for (int i = 0; i < OPW_JOINTS; i++) { /* 1e-9: rounding of the differences */
                 CHECK(fabs(slope[i]) <= b.most.slope[i] * (1.0 + 1e-4) + 1e-9);
                 CHECK(fabs(bend[i]) <= b.most.bend[i] * (1.0 + 1e-2) + 1e-8);
             }
@@ -104,8 +107,8 @@ int main(void)
             differences(&g, at, h, middle, slope, bend);
             bool close = true;
             for (int i = 0; i < OPW_JOINTS; i++) {
-                close = close && b.most.slope[i] <= fabs(slope[i]) * 1.02 + 1e-6 &&
-                        b.most.bend[i] <= fabs(bend[i]) * 1.2 + 1e-6;
+                close = close && b.most.slope[i] <= fabs(slope[i]) * 1.02 + 1e-6
+                        && b.most.bend[i] <= fabs(bend[i]) * 1.2 + 1e-6;
             }
             near_it += close;
         }

@@ -1,7 +1,7 @@
 /* Jogging: three frames, limits, singular places and the way back out of them, increments. */
 #include "robot_rig.h"
 
-static const double HOME[OPW_JOINTS] = { 0 };      /* axes 4 and 6 in line */
+static const double HOME[OPW_JOINTS] = { 0 }; /* axes 4 and 6 in line */
 static const double BENT[OPW_JOINTS] = { 0.1, 0.2, 0.1, 0.1, 1.0, 0.3 };
 
 /* Run until the jog ends by itself: nothing but its coordinate moves. */
@@ -28,7 +28,7 @@ static void run(const struct robot_config *c, enum robot_frame frame, const doub
             off = fmax(off, way[i] == 0.0 ? fabs(robot.joint[i] - joint[i]) : 0.0);
         }
     }
-    CHECK(robot_idle(&robot) && !robot.lost && off < 1e-4);     /* [mm^2] */
+    CHECK(robot_idle(&robot) && !robot.lost && off < 1e-4); /* [mm^2] */
 }
 
 /* As far as the arm goes, and some of the way back, from a pose. */
@@ -59,7 +59,7 @@ static void there_and_back(const struct robot_config *c, const double from[OPW_J
         }
         way[n % 12 / 2] *= -1.0;
         const bool along = frame != ROBOT_IN_JOINTS && n % 12 < 6;
-        const double back = along ? 100.0 : 0.5;    /* [mm] or [rad] */
+        const double back = along ? 100.0 : 0.5; /* [mm] or [rad] */
         CHECK_EQ(robot_jog(&robot, c, frame, way, 0.5, back, &why), ROBOT_OK);
         run(c, frame, way, &w);
         rig_kept(&w);

@@ -18,7 +18,7 @@ static void anywhere(const struct robot_config *c, double q[OPW_JOINTS])
 static double duration(double way, double v, double a, double j)
 {
     if (v * j < a * a) {
-        a = sqrt(v * j);    /* the acceleration is not reached */
+        a = sqrt(v * j); /* the acceleration is not reached */
     }
     if (way >= v * (v / a + a / j)) {
         return way / v + v / a + a / j;
@@ -45,7 +45,7 @@ static void moves(const struct robot_config *c)
         for (int i = 0; i < OPW_JOINTS; i++) {
             const double d = fabs(m.target.joint[i] - from[i]);
             const double most = fmin(c->arm.joint[i].speed, 48.0 / (c->scale[i] * c->slot));
-            speed = fmin(speed, m.share * most / d);    /* of the part that is over */
+            speed = fmin(speed, m.share * most / d); /* of the part that is over */
             least = fmin(least, c->arm.joint[i].acc / d);
         }
         const double time = duration(1.0, speed, least, least / c->smooth);
@@ -95,8 +95,8 @@ static void targets(const struct robot_config *c)
         for (int i = 0; i < OPW_JOINTS; i++) {
             most = fmax(most, fabs(robot.rear_joint[i] - from[i]));
             taught_most = fmax(taught_most, fabs(to[i] - from[i]));
-            CHECK(robot.rear_joint[i] <= c->arm.joint[i].high + 1e-9 &&
-                  robot.rear_joint[i] >= c->arm.joint[i].low - 1e-9);
+            CHECK(robot.rear_joint[i] <= c->arm.joint[i].high + 1e-9
+                  && robot.rear_joint[i] >= c->arm.joint[i].low - 1e-9);
         }
         CHECK(most <= taught_most + 1e-6);
         other += most < taught_most - 1e-6;
@@ -129,7 +129,7 @@ static void beyond(const struct robot_config *c)
     struct robot_move m = { .kind = ROBOT_JOINTS, .share = 1.0, .target.by_joints = true };
     struct robot_refusal why;
     struct rig_watch w = { 0 };
-    const double out[OPW_JOINTS] = { 0, 0, 0, 0, 2.2, 0 };      /* 126 degrees of 120 */
+    const double out[OPW_JOINTS] = { 0, 0, 0, 0, 2.2, 0 }; /* 126 degrees of 120 */
     const double way[6] = { 0, 0, 0, 0, 1, 0 }, back[6] = { 0, 0, 0, 0, -1, 0 };
 
     robot_start(&robot, c, out);
@@ -218,8 +218,9 @@ static void interrupted(const struct robot_config *c)
         }
         CHECK_NEAR(robot.speed, 200.0, 1e-6);
         const double at = robot.pose.at[1];
-        kind == 0 ? robot_hold(&robot, true) : kind == 1 ? robot_override(&robot, 0.1)
-                                                         : robot_abort(&robot);
+        kind == 0   ? robot_hold(&robot, true)
+        : kind == 1 ? robot_override(&robot, 0.1)
+                    : robot_abort(&robot);
         CHECK(kind != 2 || robot_move(&robot, c, &m, &why) == ROBOT_BUSY);
         for (int n = 0; n < 3000; n++) {
             rig_cycle(c, &w);

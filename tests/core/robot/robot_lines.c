@@ -39,8 +39,8 @@ static void plain(const struct robot_config *c)
 /* A joint decides: no quicker than the fastest that any planner could be, and not much slower. */
 static void fast(const struct robot_config *c)
 {
-    const struct rig_watch w = line(c, (double[]){ 1100, -450, 350 },
-                                    (double[]){ 1100, 450, 350 }, DOWN, 2500, 0.0);
+    const struct rig_watch w =
+        line(c, (double[]){ 1100, -450, 350 }, (double[]){ 1100, 450, 350 }, DOWN, 2500, 0.0);
     CHECK(w.time > 2.0 * sqrt(900.0 / c->acc) && w.time < 1.3 * 2.0 * sqrt(900.0 / c->acc) + 0.05);
 }
 
@@ -58,8 +58,8 @@ static void wrist(struct robot_config c)
         const double b[3] = { p.at[0], 100, p.at[2] + beside[k] };
         const struct rig_watch w = line(&c, a, b, AHEAD, 100, k ? 0.0 : NOISE);
         printf("%g mm beside the wrist's singular place: %.3f s, %d pieces, path %.1e mm, joints"
-               " %.3f of their speeds, %.3f of their accelerations, slowest %.2g mm/s\n", beside[k],
-               w.time, robot.way.count, w.path, w.speed, w.acc, w.slowest);
+               " %.3f of their speeds, %.3f of their accelerations, slowest %.2g mm/s\n",
+               beside[k], w.time, robot.way.count, w.path, w.speed, w.acc, w.slowest);
         if (k == 0) {
             CHECK_EQ(robot.way.count, 1);
             CHECK_NEAR(w.slowest, 100.0, 1e-3);
@@ -84,9 +84,9 @@ static void wrist(struct robot_config c)
     CHECK(fabs(why.value) < 0.05 && fabs(why.place[1]) < 50.0);
     CHECK_NEAR(why.place[2], a[2], 1e-9);
     CHECK_NEAR(why.place[1], -100.0 + 200.0 * why.part, 1e-9);
-    CHECK(robot_idle(&robot) && memcmp(&before.rear, &robot.rear, sizeof robot.rear) == 0 &&
-          before.course.count == robot.course.count);
-    m.feed = 0.5;           /* the joints can follow that */
+    CHECK(robot_idle(&robot) && memcmp(&before.rear, &robot.rear, sizeof robot.rear) == 0
+          && before.course.count == robot.course.count);
+    m.feed = 0.5; /* the joints can follow that */
     CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
 
     /* By the wrist: the tip keeps its path and its speed, the attitude goes its own way. */
@@ -156,7 +156,7 @@ static void refusals(const struct robot_config *c)
     m = rig_line((double[]){ 1100, 0, 350 }, DOWN, 100);
     m.target.turned = true;
     m.target.turn[5] = 2;
-    CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OTHER_TURN);    /* nothing would move */
+    CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OTHER_TURN); /* nothing would move */
     m.target.pose.at[1] = 10.0;
     CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OTHER_TURN);
     CHECK_EQ(why.which, 5);

@@ -10,12 +10,33 @@ static const double DEGREE = 0.017453292519943295;
 
 /* ABB IRB 2600-12/1.65 and KUKA KR 6 R700, as opw_kinematics has them; and one with a lateral
  * offset. */
-static const struct opw IRB = { 0.150, -0.115, 0.0, 0.445, 0.700, 0.795, 0.085,
-                                { 0, 0, -1.5707963267948966 }, { 1, 1, 1, 1, 1, 1 } };
-static const struct opw KUKA = { 0.025, -0.035, 0.0, 0.400, 0.315, 0.365, 0.080,
-                                 { 0, -1.5707963267948966 }, { -1, 1, 1, -1, 1, -1 } };
-static const struct opw LATERAL = { 0.10, 0.05, 0.035, 0.30, 0.40, 0.35, 0.06,
-                                    { 0.1, 0.2, 0.3, 0.4, 0.5, 0.6 }, { 1, -1, 1, -1, 1, -1 } };
+static const struct opw IRB = { 0.150,
+                                -0.115,
+                                0.0,
+                                0.445,
+                                0.700,
+                                0.795,
+                                0.085,
+                                { 0, 0, -1.5707963267948966 },
+                                { 1, 1, 1, 1, 1, 1 } };
+static const struct opw KUKA = { 0.025,
+                                 -0.035,
+                                 0.0,
+                                 0.400,
+                                 0.315,
+                                 0.365,
+                                 0.080,
+                                 { 0, -1.5707963267948966 },
+                                 { -1, 1, 1, -1, 1, -1 } };
+static const struct opw LATERAL = { 0.10,
+                                    0.05,
+                                    0.035,
+                                    0.30,
+                                    0.40,
+                                    0.35,
+                                    0.06,
+                                    { 0.1, 0.2, 0.3, 0.4, 0.5, 0.6 },
+                                    { 1, -1, 1, -1, 1, -1 } };
 static const struct opw *const ALL[] = { &IRB, &KUKA, &LATERAL };
 static uint64_t seed = 5;
 
@@ -51,9 +72,10 @@ static void turned(int axis, double angle, double v[3])
 /* The origins and axes of the public URDF of the IRB 2600, from the flange inwards. */
 static void links(void)
 {
-    static const double origin[OPW_JOINTS][3] = { { 0, 0, 0.445 }, { 0.15, 0, 0 }, { 0, 0, 0.7 },
-                                                  { 0, 0, 0.115 }, { 0.795, 0, 0 },
-                                                  { 0.085, 0, 0 } };
+    static const double origin[OPW_JOINTS][3] = {
+        { 0, 0, 0.445 }, { 0.15, 0, 0 },  { 0, 0, 0.7 },
+        { 0, 0, 0.115 }, { 0.795, 0, 0 }, { 0.085, 0, 0 }
+    };
     static const int axis[OPW_JOINTS] = { 2, 1, 1, 0, 1, 0 };
     /* Its last frame has x along the tool, z up at zero. */
     static const double along[4][3] = { { 0, 0, 0 }, { 0, 0, -1 }, { 0, 1, 0 }, { 1, 0, 0 } };
@@ -93,8 +115,8 @@ static void circles(const struct opw *o)
         opw_forward(o, q, &pose);
         const uint32_t there = opw_inverse(o, &pose, q, all);
         opw_factors(o, q, factor);
-        const bool close = fabs(factor[0]) < 1e-3 || fabs(factor[1]) < 1e-3 ||
-                           fabs(factor[2]) < 1e-3;
+        const bool close =
+            fabs(factor[0]) < 1e-3 || fabs(factor[1]) < 1e-3 || fabs(factor[2]) < 1e-3;
         for (int k = 0; k < OPW_BRANCHES; k++) {
             if (there >> k & 1) {
                 opw_forward(o, all[k], &again);
@@ -162,7 +184,7 @@ static void factors(const struct opw *o)
             q[j] -= 2.0 * h;
             opw_forward(o, q, &down);
             q[j] += h;
-            for (int c = 0; c < 3; c++) {       /* omega = sum of axes x their rates / 2 */
+            for (int c = 0; c < 3; c++) { /* omega = sum of axes x their rates / 2 */
                 double a[3], rate[3], part[3];
                 for (int i = 0; i < 3; i++) {
                     a[i] = 0.5 * (up.turn[i][c] + down.turn[i][c]);
@@ -250,8 +272,8 @@ static void nearest(void)
             }
             least = fmin(least, most);
         }
-        const int branch = opw_nearest(there, (const double (*)[OPW_JOINTS])all, near, low, high,
-                                       got);
+        const int branch =
+            opw_nearest(there, (const double(*)[OPW_JOINTS])all, near, low, high, got);
         CHECK((branch >= 0) == isfinite(least));
         double most = 0.0;
         for (int i = 0; i < OPW_JOINTS && branch >= 0; i++) {

@@ -30,7 +30,7 @@ static void polyline(const struct robot_config *c, int k)
     memcpy(at[0], robot.pose.at, sizeof at[0]);
     quaternion_angles(robot.pose.turn, abc[0]);
     for (int n = 1; n <= LINES; n++) {
-        const int turns = k % 3 == 1 || (k % 3 == 2 && n % 2);    /* all lines, or each other one */
+        const int turns = k % 3 == 1 || (k % 3 == 2 && n % 2); /* all lines, or each other one */
         for (int i = 0; i < 3; i++) {
             at[n][i] = at[0][i] + check_real(&seed, -150, 150);
             abc[n][i] = abc[0][i] + check_real(&seed, -20, 20) * turns;
@@ -175,8 +175,9 @@ static void mixed(const struct robot_config *c)
     robot_start(&robot, c, BENT);
     const struct pose home = robot.pose;
     for (int n = 0; n < 12; n++) {
-        struct robot_move m = { .feed = 300.0, .share = 0.5, .zone = n % 2 ? 3.0 : 0.0,
-                                .line = n + 1 };
+        struct robot_move m = {
+            .feed = 300.0, .share = 0.5, .zone = n % 2 ? 3.0 : 0.0, .line = n + 1
+        };
         m.target.branch = ROBOT_ANY_BRANCH;
         m.target.pose = home;
         m.target.pose.at[n % 3] += 20.0 + 5.0 * n;
@@ -223,8 +224,7 @@ static void many(const struct robot_config *c)
         }
         full += given < 1000;
         rig_cycle(c, &w);
-        const double r = hypot(robot.pose.at[0] - home.at[0] - 50.0,
-                               robot.pose.at[1] - home.at[1]);
+        const double r = hypot(robot.pose.at[0] - home.at[0] - 50.0, robot.pose.at[1] - home.at[1]);
         CHECK(fabs(r - 50.0) < 0.051);
     }
     rig_kept(&w);
@@ -237,7 +237,7 @@ int main(void)
 {
     const struct robot_config c = rig_config();
 
-    struct robot_config weak = c;       /* its joints decide in corners */
+    struct robot_config weak = c; /* its joints decide in corners */
     for (int i = 0; i < OPW_JOINTS; i++) {
         weak.arm.joint[i].acc *= 0.2;
     }

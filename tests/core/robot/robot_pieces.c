@@ -9,8 +9,8 @@ static const double STEP = 1e-2;
 static uint64_t seed = 3;
 
 /* Whether joints bear an acceleration of the tip in a direction, by poses a step apart. */
-static bool bears(const struct robot_config *c, const double joint[OPW_JOINTS],
-                  const double way[3], double acc)
+static bool bears(const struct robot_config *c, const double joint[OPW_JOINTS], const double way[3],
+                  double acc)
 {
     struct pose p = manipulator_pose(&c->arm, joint);
     double q[OPW_JOINTS];
@@ -103,8 +103,8 @@ static void mixed(void)
             double least = plain.piece[n].acc;
             for (int i = 0; i < w.count; i++) {
                 const int first = i < n ? i : n, last = i < n ? n : i;
-                const double gap = first == last ? 0.0
-                                 : w.piece[last - 1].until - w.piece[first].until;
+                const double gap =
+                    first == last ? 0.0 : w.piece[last - 1].until - w.piece[first].until;
                 if (gap * w.path.length < 0.5 * w.piece[i].cap) {
                     least = fmin(least, plain.piece[i].acc);
                 }

@@ -80,7 +80,7 @@ static void angles(void)
         quaternion_by_angles(back, q);
         quaternion_matrix(q, x);
         CHECK(differs(x, r) < (n % 10 ? 1e-11 : 1e-7));
-        quaternion_of_matrix((const double (*)[3])r, q);
+        quaternion_of_matrix((const double(*)[3])r, q);
         quaternion_matrix(q, x);
         CHECK(differs(x, r) < 1e-14);
     }
@@ -169,8 +169,8 @@ static void tips(void)
                 }
                 quaternion_turn(flange[k].turn, tip, reach);
                 for (int i = 0; i < 3; i++) {
-                    flange[k].at[i] = point[i] - reach[i] +
-                                      (round == 1 ? check_real(&seed, -0.1, 0.1) : 0.0);
+                    flange[k].at[i] =
+                        point[i] - reach[i] + (round == 1 ? check_real(&seed, -0.1, 0.1) : 0.0);
                 }
             }
             CHECK_EQ(tip_solve(flange, 4, found, &rms), round == 2);

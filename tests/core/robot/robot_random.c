@@ -55,7 +55,7 @@ static struct robot_config random_config(void)
     struct robot_config c = rig_config();
 
     c.smooth = chance(0.3) ? 0.0 : chance(0.3) ? 0.2 : c.smooth;
-    const double weak = chance(0.3) ? 0.1 : 1.0;    /* then joints decide, not the path */
+    const double weak = chance(0.3) ? 0.1 : 1.0; /* then joints decide, not the path */
     for (int i = 0; i < OPW_JOINTS; i++) {
         c.arm.joint[i].acc *= weak;
     }
@@ -80,7 +80,9 @@ static double apart(const double a[3], const double b[3])
 static struct robot_move random_line(const struct robot_config *c, const double from[OPW_JOINTS],
                                      double size)
 {
-    struct robot_move m = { .kind = ROBOT_LINE, .share = 1.0, .feed = pow(10.0, real(1.0, 3.4)),
+    struct robot_move m = { .kind = ROBOT_LINE,
+                            .share = 1.0,
+                            .feed = pow(10.0, real(1.0, 3.4)),
                             .singular = chance(0.2) ? ROBOT_WRIST : ROBOT_SLOW,
                             .target.branch = ROBOT_ANY_BRANCH };
     const struct pose start = manipulator_pose(&c->arm, from);
@@ -99,11 +101,11 @@ static struct robot_move random_line(const struct robot_config *c, const double 
 /* A path by itself: its tip from the start along a line, or about a centre as an arc does. */
 struct drawn {
     struct pose start, to;
-    bool   arc;
+    bool arc;
     double centre[3], normal[3], sweep;
-    double first[OPW_JOINTS];       /* [rad] joints at its start, */
-    double last[OPW_JOINTS];        /* and to which those of the wrist go straight */
-    bool   by_wrist;
+    double first[OPW_JOINTS]; /* [rad] joints at its start, */
+    double last[OPW_JOINTS];  /* and to which those of the wrist go straight */
+    bool by_wrist;
 };
 
 static struct pose drawn_at(const struct drawn *d, double part)
@@ -159,8 +161,8 @@ static bool follows(const struct robot_config *c, const struct drawn *d, double 
     const bool sides = opw_branch(&c->arm.opw, end) != opw_branch(&c->arm.opw, joint);
     if ((leap || sides) && halves < FINEST) {
         const double middle = 0.5 * (from + to);
-        return follows(c, d, from, middle, halves + 1, joint) &&
-               follows(c, d, middle, to, halves + 1, joint);
+        return follows(c, d, from, middle, halves + 1, joint)
+               && follows(c, d, middle, to, halves + 1, joint);
     }
     memcpy(joint, end, sizeof end);
     return !leap && manipulator_outside(&c->arm, d->first, joint) < 0;
@@ -184,8 +186,7 @@ static bool possible(const struct robot_config *c, const struct drawn *d)
 }
 
 /* What rounding may move joints 1 to 3, 4 to 6 by at joints. [rad] */
-static void rounding(const struct robot_config *c, const double joint[OPW_JOINTS],
-                     double noise[2])
+static void rounding(const struct robot_config *c, const double joint[OPW_JOINTS], double noise[2])
 {
     double factor[3];
 
@@ -226,7 +227,7 @@ static bool kept(const struct robot_config *c)
             const double speed = fabs(robot.rate[i]) - j->speed * (1.0 + SHARE);
             const double change = fabs(robot.rate[i] - before[i]) - j->acc * (1.0 + SHARE) * CYCLE;
             if (speed > 0.0 || change > 0.0) {
-                const double noise = noise_of(c, (const double (*)[OPW_JOINTS])late, i);
+                const double noise = noise_of(c, (const double(*)[OPW_JOINTS])late, i);
                 good = good && speed <= noise && change <= 2.0 * noise;
             }
             good = good && robot.joint[i] <= j->high + RANGE && robot.joint[i] >= j->low - RANGE;
@@ -276,7 +277,7 @@ static enum outcome planned(const struct robot_config *c, const double from[OPW_
     if (robot_move(&robot, c, m, &why) == ROBOT_OK) {
         return DRIVEN;
     }
-    if (m->kind == ROBOT_JOINTS) {      /* between two joints within their limits */
+    if (m->kind == ROBOT_JOINTS) { /* between two joints within their limits */
         return WRONGLY_REFUSED;
     }
     memcpy(d->first, from, sizeof d->first);
@@ -327,8 +328,8 @@ static void chain(int32_t number)
     for (int n = 0; n < 2 * most && driven < most && robot_ready(&robot); n++) {
         robot_end(&robot, from);
         struct drawn d = { .start = manipulator_pose(&c.arm, from) };
-        struct robot_move m = chance(0.5) ? random_arc(&c, from, size, &d)
-                                          : random_line(&c, from, size);
+        struct robot_move m =
+            chance(0.5) ? random_arc(&c, from, size, &d) : random_line(&c, from, size);
         m.zone = chance(0.2) ? 0.0 : pow(10.0, real(-1.0, 1.5));
         d.to = m.target.pose;
         const enum outcome o = planned(&c, from, &m, &d);
@@ -347,7 +348,7 @@ static void chain(int32_t number)
 struct jog {
     enum robot_frame frame;
     double way[6], share, far;
-    double velocity[3], turn[3];    /* in the base frame */
+    double velocity[3], turn[3]; /* in the base frame */
 };
 
 static struct jog random_jog(enum robot_frame frame)
@@ -358,7 +359,7 @@ static struct jog random_jog(enum robot_frame frame)
         j.way[i] = chance(0.5) ? 0.0 : real(-1.0, 1.0);
     }
     j.way[0] += j.way[0] == 0.0 && j.way[3] == 0.0 ? 1.0 : 0.0;
-    if (chance(0.6)) {      /* an increment; whole turns are what samples mistake for none */
+    if (chance(0.6)) { /* an increment; whole turns are what samples mistake for none */
         const double turns = 6.283185307179586 * floor(real(1.0, 20.0));
         j.far = frame == ROBOT_IN_JOINTS ? real(0.0, 4.0) : chance(0.3) ? turns : real(0.0, 300.0);
     }

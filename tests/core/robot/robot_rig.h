@@ -19,10 +19,22 @@ static inline struct robot_config rig_config(void)
     static const double speed[] = { 175, 175, 175, 360, 360, 500 };
     static const double acc[] = { 400, 400, 400, 1500, 1500, 2000 };
     static const double ratio[] = { 100, 120, 120, 100, 100, 80 };
-    struct robot_config c = { .feed = 2500.0, .acc = 4000.0, .spin = 3.0, .smooth = 0.05,
-                              .cycle = CYCLE, .slot = 5e-6, .slot_pulses = 49.0 };
-    c.arm.opw = (struct opw){ 0.150, -0.115, 0.0, 0.445, 0.700, 0.795, 0.085,
-                              { 0, 0, -1.5707963267948966 }, { 1, 1, 1, 1, 1, 1 } };
+    struct robot_config c = { .feed = 2500.0,
+                              .acc = 4000.0,
+                              .spin = 3.0,
+                              .smooth = 0.05,
+                              .cycle = CYCLE,
+                              .slot = 5e-6,
+                              .slot_pulses = 49.0 };
+    c.arm.opw = (struct opw){ 0.150,
+                              -0.115,
+                              0.0,
+                              0.445,
+                              0.700,
+                              0.795,
+                              0.085,
+                              { 0, 0, -1.5707963267948966 },
+                              { 1, 1, 1, 1, 1, 1 } };
     for (int i = 0; i < OPW_JOINTS; i++) {
         c.arm.joint[i] = (struct manipulator_joint){ low[i] * DEGREE, high[i] * DEGREE,
                                                      speed[i] * DEGREE, acc[i] * DEGREE };
@@ -35,14 +47,14 @@ static inline struct robot_config rig_config(void)
 
 /* What has been seen since it was set to 0. */
 struct rig_watch {
-    double speed, acc;      /* highest share of a joint's limits */
-    double path;            /* [mm] farthest from the line a - b */
-    double slowest;         /* [mm/s] between the first and last tenth of it */
+    double speed, acc; /* highest share of a joint's limits */
+    double path;       /* [mm] farthest from the line a - b */
+    double slowest;    /* [mm/s] between the first and last tenth of it */
     double a[3], b[3];
-    double time;            /* [s] */
+    double time; /* [s] */
     double before[OPW_JOINTS];
-    double noise;           /* [rad] of joints 4, 6 within IN_LINE: the way meets such a place, */
-    int in_line;            /* as now, or within the last two cycles, which show in a difference */
+    double noise; /* [rad] of joints 4, 6 within IN_LINE: the way meets such a place, */
+    int in_line;  /* as now, or within the last two cycles, which show in a difference */
 };
 
 /* Within IN_LINE of a place that is singular but for rounding joints 4 and 6 are certain to NOISE,
@@ -105,8 +117,7 @@ static inline void rig_kept(const struct rig_watch *w)
 }
 
 /* At rest at a pose, without the flags of branches. */
-static inline void rig_start(const struct robot_config *c, const double xyz[3],
-                             const double abc[3])
+static inline void rig_start(const struct robot_config *c, const double xyz[3], const double abc[3])
 {
     double joint[OPW_JOINTS] = { 0.0, 0.0, 0.0, 0.0, 0.5, 0.0 };
     const struct pose p = pose_of(xyz, abc);

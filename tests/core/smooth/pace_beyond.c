@@ -4,7 +4,7 @@
 #include "check.h"
 #include "pace.h"
 
-static const double LENGTH = 100.0;     /* [mm] */
+static const double LENGTH = 100.0; /* [mm] */
 
 static struct pace pace;
 
@@ -53,8 +53,7 @@ static void keeps_its_acceleration(double v, double a)
     pace_advance(&pace, 0.0, 1e-7);
     CHECK_EQ(pace.at.step.kind, PACE_BENT);
     CHECK(pace.at.step.c == 0.0 && pace.at.twitch == 0.0 && pace.at.gain == a);
-    CHECK_NEAR(pace.at.rate * pace.at.rate, v * v + 2.0 * a * (pace.at.here - from),
-               1e-9 * v * v);
+    CHECK_NEAR(pace.at.rate * pace.at.rate, v * v + 2.0 * a * (pace.at.here - from), 1e-9 * v * v);
 }
 
 /* Braking, it comes to rest by one jerk: after 2 v / |a|, over 2 v^2 / (3 |a|). */

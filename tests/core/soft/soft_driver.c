@@ -36,14 +36,14 @@ static void late(void)
 
     rig_document();
     config.bus = 200;
-    config.layers.interrupt = (struct latency){ .least = 20, .mean = 300, .most = 40000,
-                                                .rare = 0.2 };
+    config.layers.interrupt =
+        (struct latency){ .least = 20, .mean = 300, .most = 40000, .rare = 0.2 };
     rig_power_on();
     while (soft.report.runs < INTERRUPTS) {
         panel.jog[0] = soft.report.runs % 2000 < 1000 ? 1.0 : 0.0;
         rig_instant();
-        CHECK(llabs(rig_commanded(0)) >= llabs(rig_shown().pulse_count[0]) ||
-              panel.jog[0] != 0.0 || !robot_idle(&soft.robot));
+        CHECK(llabs(rig_commanded(0)) >= llabs(rig_shown().pulse_count[0]) || panel.jog[0] != 0.0
+              || !robot_idle(&soft.robot));
     }
     panel.jog[0] = 0.0;
     rig_until(now + 200 * INTERVAL);

@@ -2,7 +2,7 @@
  * tools, outputs behind moves, waits, pauses, single step, abort and begin again, refusals. */
 #include "soft_pc.h"
 
-static const int64_t LONG = 60LL * FPGA_CLOCK_HZ;      /* [clocks] no job takes so long */
+static const int64_t LONG = 60LL * FPGA_CLOCK_HZ; /* [clocks] no job takes so long */
 
 static void begin(const char *job)
 {
@@ -24,10 +24,10 @@ static int branch(void)
 
 static void configurations(void)
 {
-    begin("MOVJ P001\nMOVJ P006\nEND\n");   /* FLIP alone: the rest is nearest */
+    begin("MOVJ P001\nMOVJ P006\nEND\n"); /* FLIP alone: the rest is nearest */
     finish();
     CHECK_EQ(branch(), OPW_FLIP);
-    begin("MOVJ P006\nMOVJ P005\nEND\n");  /* FRONT and UP: the wrist stays flipped */
+    begin("MOVJ P006\nMOVJ P005\nEND\n"); /* FRONT and UP: the wrist stays flipped */
     finish();
     CHECK_EQ(branch(), OPW_FLIP);
     begin("MOVJ P006\nMOVJ P001\nEND\n");
@@ -44,14 +44,14 @@ static void configurations(void)
     CHECK_EQ(soft.trouble.error, SOFT_OK);
     CHECK_EQ(branch(), before);
     CHECK_EQ(before, OPW_FLIP);
-    begin("MOVJ P002\nMOVL P006\nEND\n");   /* a line keeps its wrist */
+    begin("MOVJ P002\nMOVL P006\nEND\n"); /* a line keeps its wrist */
     finish();
     CHECK_EQ(soft.trouble.error, SOFT_MOVE);
     CHECK_EQ(soft.trouble.line, 2);
     CHECK_EQ(soft.trouble.status, ROBOT_OTHER_BRANCH);
     CHECK_EQ(soft.trouble.refusal.which, OPW_FLIP);
     pc_run(10000);
-    pc_at(1000.0, 100.0, 350.0, 1e-6);      /* what was given before has run to its end */
+    pc_at(1000.0, 100.0, 350.0, 1e-6); /* what was given before has run to its end */
     CHECK_EQ(soft.given, 1);
 }
 
@@ -109,7 +109,7 @@ static void outputs(void)
         }
     }
     CHECK_NEAR(on, 900.0, 1e-3);
-    CHECK(corner <= 2.001 && corner > 0.1);   /* the corner passes its point within PL=3 */
+    CHECK(corner <= 2.001 && corner > 0.1); /* the corner passes its point within PL=3 */
     CHECK_EQ(card.inputs & 1, 0);
     CHECK_NEAR(host.ao[1], 2.5, 0.0);
     CHECK_NEAR(waited, 0.15, 1e-3);
@@ -117,7 +117,7 @@ static void outputs(void)
     pc_run(3);
     CHECK(soft_done(&soft));
     card.irq_inputs = 0;
-    pc_press(&panel.start);                 /* again: the outputs are as they were left */
+    pc_press(&panel.start); /* again: the outputs are as they were left */
     CHECK(!soft_done(&soft));
 }
 
@@ -138,7 +138,7 @@ static void steps(void)
 {
     begin("MOVJ P001\nPAUSE\nMOVL P002 V=500\nEND\n");
     pc_run(50);
-    pc_press(&panel.start);                 /* while it moves: it does not pass the pause to come */
+    pc_press(&panel.start); /* while it moves: it does not pass the pause to come */
     pc_until(SOFT_PAUSED);
     pc_run(2000);
     pc_at(900.0, 0.0, 350.0, 1e-6);
@@ -156,13 +156,13 @@ static void steps(void)
         pc_run(10);
         pc_press(&panel.start);
         keys++;
-        for (int n = 0; n < 100000 && !soft_done(&soft) &&
-             soft_status(&soft, &panel) != SOFT_PAUSED; n++) {
+        for (int n = 0;
+             n < 100000 && !soft_done(&soft) && soft_status(&soft, &panel) != SOFT_PAUSED; n++) {
             pc_cycle();
         }
     }
     CHECK(soft_done(&soft));
-    CHECK_EQ(keys, 3);                      /* the pause, the second move, the third */
+    CHECK_EQ(keys, 3); /* the pause, the second move, the third */
     pc_at(1100.0, 0.0, 350.0, 1e-6);
 
     /* The key while a move runs lets the next one begin, but once the arm rests: no zone. */
@@ -188,7 +188,8 @@ static void pause_of_user(void)
     config = pc_config();
     config.user = true;
     pc_start("PAUSE\nJUMP *ON IF IN#(1)=ON\nJUMP *END\n*ON\nDOUT OT#(1) ON\n"
-             "*END\nNOP\nEND\n", NULL);
+             "*END\nNOP\nEND\n",
+             NULL);
     pc_run(3000);
     CHECK_EQ(soft_status(&soft, &panel), SOFT_PAUSED);
     card.irq_inputs = 1;
@@ -228,11 +229,11 @@ static void abort_and_hold(void)
     CHECK_EQ(soft_status(&soft, &panel), SOFT_IDLE);
     CHECK(!soft_done(&soft));
     CHECK_EQ(card.inputs, 0);
-    pc_press(&panel.abort);                 /* at rest it does nothing */
+    pc_press(&panel.abort); /* at rest it does nothing */
     panel.override = 1.0;
     pc_press(&panel.start);
     pc_run(500);
-    CHECK_EQ(card.inputs, 0);               /* the moves of before do not count */
+    CHECK_EQ(card.inputs, 0); /* the moves of before do not count */
     finish();
     pc_at(1100.0, 0.0, 350.0, 1e-6);
     CHECK_EQ(card.inputs, 1);
@@ -255,7 +256,7 @@ static void refused(void)
     CHECK(soft.trouble.fault != INFORM_OK);
     CHECK_EQ(soft.given, 0);
     pc_run(100);
-    pc_press(&panel.start);                 /* again, the same */
+    pc_press(&panel.start); /* again, the same */
     CHECK_EQ(soft.trouble.error, SOFT_PROGRAM);
 }
 

@@ -20,20 +20,15 @@ static int64_t expected(enum layer layer, int64_t e, int64_t run)
     int64_t at = 0;
 
     switch (layer) {
-    case LAYER_INTERRUPT:
-        at = seen + WAIT + c->access;
-        break;
-    case LAYER_DRIVER:
-        at = of + RUN;
-        break;
+    case LAYER_INTERRUPT: at = seen + WAIT + c->access; break;
+    case LAYER_DRIVER:    at = of + RUN; break;
     case LAYER_TIMER:
         for (int64_t tick = c->tick; at == 0; tick += c->tick) {
             const int64_t over = (tick + c->access) / config.bus * config.bus;
             at = over - config.bus >= seen ? tick + c->access : 0;
         }
         break;
-    default:
-        at = behind(behind(copied, c->poll, c->poll) - WAIT, run, INTERVAL) + RUN;
+    default: at = behind(behind(copied, c->poll, c->poll) - WAIT, run, INTERVAL) + RUN;
     }
     return behind(at, 0, SLOT);
 }
@@ -146,7 +141,7 @@ int main(void)
     each_edge(20, ACCESS, 9137, 7123);
     each_edge(100, SLOT - WAIT + 1, 12000, 8000);
     each_edge(100, ACCESS, 4100, 4000);
-    each_edge(500, ACCESS, 9137, 7123);   /* twice the grid is less than a run */
+    each_edge(500, ACCESS, 9137, 7123); /* twice the grid is less than a run */
     crowded();
     masks();
     return check_result();

@@ -10,7 +10,7 @@ static const char OUTPUTS[] = "//JOB\nMOVJ P000 VJ=50.00\nDOUT OT#(1) ON\nMOVJ P
                               "DOUT OT#(1) OFF\nTIMER T=0.06\nDOUT OT#(2) ON\nEND\n";
 enum { MOVES = 20 };
 
-static int64_t rested;          /* [clock] of the latest interrupt that began a memory of pulses */
+static int64_t rested; /* [clock] of the latest interrupt that began a memory of pulses */
 
 /* Until the program is over; the clock of its end. */
 static void drive(int64_t most)
@@ -116,8 +116,8 @@ static void starving(void)
     const double slow = (double)takes(2, poll);
     CHECK_NEAR(slow, (MOVES / 2 - 1) * (double)poll + 2.0 * move, 0.2 * move);
     /* The queue is empty from the start to the poll behind the last pair, but for the moves. */
-    CHECK_NEAR(soft.report.starved,
-               ((MOVES / 2 + 1) * (double)poll - at_once) / INTERVAL, 3.0 * MOVES);
+    CHECK_NEAR(soft.report.starved, ((MOVES / 2 + 1) * (double)poll - at_once) / INTERVAL,
+               3.0 * MOVES);
     CHECK(soft.report.told_most > INTERVAL && soft.report.told_most <= 2 * INTERVAL);
     CHECK_EQ(soft.report.line_most, INTERVAL);
 }

@@ -1,7 +1,7 @@
 /* Part programs whose A B C turn the tool: every kind of order, on its path. */
 #include "soft_pc.h"
 
-static const int64_t LONG = 60LL * FPGA_CLOCK_HZ;      /* [clocks] no program takes so long */
+static const int64_t LONG = 60LL * FPGA_CLOCK_HZ; /* [clocks] no program takes so long */
 
 /* Begin 100 mm below and beside the start, tool down. */
 static void begin(const char *program)
@@ -46,7 +46,11 @@ static void lines(void)
 /* Arcs and helices in the three planes keep their radius and their rise, at the feed. */
 static void arcs(void)
 {
-    static const struct { const char *program; int plane; double rise, length; } a[] = {
+    static const struct {
+        const char *program;
+        int plane;
+        double rise, length;
+    } a[] = {
         { "G0 X900 Y0 Z500 A180 C180\nG17 G2 X950 Y50 I50 J0 F3000\n", 2, 0.0, 0.25 },
         { "G0 X900 Y0 Z500 A180 C180\nG17 G3 X900 Y0 I50 J0 F3000\n", 2, 0.0, 1.0 },
         { "G0 X900 Y0 Z500 A180 C180\nG18 G2 X950 Z550 I50 K0 F3000\n", 1, 0.0, 0.75 },
@@ -100,8 +104,9 @@ static void winding(void)
             const double angle = atan2(-at[1], 850.0 - at[0]);
             const double turns = (at[2] - 500.0) / 30.0;
             off = fmax(off, fabs(hypot(at[0] - 850.0, at[1]) - 350.0));
-            off = fmax(off, 350.0 * fabs(remainder(angle - turns * 6.283185307179586,
-                                                   6.283185307179586)));
+            off =
+                fmax(off,
+                     350.0 * fabs(remainder(angle - turns * 6.283185307179586, 6.283185307179586)));
         }
     }
     CHECK(pieces > 4 && most > 100.0);
@@ -113,9 +118,9 @@ static void winding(void)
 static void corners(void)
 {
     for (int n = 0; n < 3; n++) {
-        begin(n == 1 ? "G0 X900 Y0 Z500 A180 C180\nG64 P2\nG1 X950 F6000\nY50\n"
+        begin(n == 1   ? "G0 X900 Y0 Z500 A180 C180\nG64 P2\nG1 X950 F6000\nY50\n"
               : n == 2 ? "G0 X900 Y0 Z500 A180 C180\nG64\nG1 X950 F6000\nY50\n"
-              : "G0 X900 Y0 Z500 A180 C180\nG61\nG1 X950 F6000\nY50\n");
+                       : "G0 X900 Y0 Z500 A180 C180\nG61\nG1 X950 F6000\nY50\n");
         double nearest = 1e9, slowest = 1e9;
         while (!soft_done(&soft) && now < LONG) {
             pc_cycle();
@@ -124,8 +129,9 @@ static void corners(void)
             nearest = fmin(nearest, off);
             slowest = off < 20.0 ? fmin(slowest, soft.robot.speed) : slowest;
         }
-        CHECK(n == 1 ? nearest > 0.5 && nearest <= 2.0001
-              : n == 2 ? nearest > 3.0 && nearest < 64.0 : nearest < 1e-4);
+        CHECK(n == 1   ? nearest > 0.5 && nearest <= 2.0001
+              : n == 2 ? nearest > 3.0 && nearest < 64.0
+                       : nearest < 1e-4);
         CHECK(n ? slowest > 10.0 : slowest < 1.0);
         pc_at(950.0, 50.0, 500.0, 1e-6);
     }
@@ -139,7 +145,7 @@ static void switches(void)
     int before = 0;
     while (soft_status(&soft, &panel) != SOFT_PAUSED && now < LONG) {
         pc_cycle();
-        for (int bit = 0; bit < 4; bit += 3) {      /* where output 0, 3 goes on, off */
+        for (int bit = 0; bit < 4; bit += 3) { /* where output 0, 3 goes on, off */
             if (((card.inputs ^ before) >> bit) & 1) {
                 at[bit / 3 * 2 + (before >> bit & 1)] = soft.robot.pose.at[0];
             }
@@ -147,13 +153,13 @@ static void switches(void)
         before = card.inputs;
         rest += soft_status(&soft, &panel) == SOFT_DELAY ? CYCLE : 0.0;
     }
-    CHECK_NEAR(at[0], 910.0, 1e-4);     /* M62 with the motion to 920, M63 with that to 930 */
+    CHECK_NEAR(at[0], 910.0, 1e-4); /* M62 with the motion to 920, M63 with that to 930 */
     CHECK_NEAR(at[1], 920.0, 1e-4);
     CHECK_NEAR(at[2], 910.0, 1e-4);
     CHECK_NEAR(at[3], 930.0, 1e-4);
     CHECK_NEAR(rest, 0.05, 1.5e-4);
     pc_run(1000);
-    pc_at(930.0, 0.0, 500.0, 1e-6);     /* M0 lasts */
+    pc_at(930.0, 0.0, 500.0, 1e-6); /* M0 lasts */
     pc_press(&panel.start);
     pc_run(5);
     CHECK_EQ(soft_status(&soft, &panel), SOFT_RUNNING);
@@ -166,7 +172,11 @@ static void switches(void)
 /* What is refused before anything moves. */
 static void refused(void)
 {
-    static const struct { const char *program; int line; enum robot_status status; } r[] = {
+    static const struct {
+        const char *program;
+        int line;
+        enum robot_status status;
+    } r[] = {
         { "G0 X900 Y0 Z500 A180 C180\nG1 X5000 F600\n", 2, ROBOT_FAR },
         { "G0 X900 Y0 Z5000 A180 C180\n", 1, ROBOT_FAR },
         { "G0 X1100 Y0 Z400 A180 C180\n\nG1 X900 Y900\nG1 X-900 F6000\nG1 Y-900\nG1 X900\nG1 Y0\n",
@@ -185,14 +195,22 @@ static void refused(void)
 /* Inputs are waited for when motion has ended, analog outputs change there; M6 stops. */
 static void asked(void)
 {
-    static const struct { const char *words; double result, least; } w[] = {
-        { "M64 P5\nM66 P5 L3 Q1", 1.0, 0.0 }, { "M66 P5 L3 Q0.2", -1.0, 0.2 },
-        { "M66 P5 L4 Q1", 0.0, 0.0 }, { "M66 P5", 0.0, 0.0 }, { "M66 E3", 2.5, 0.0 },
+    static const struct {
+        const char *words;
+        double result, least;
+    } w[] = {
+        { "M64 P5\nM66 P5 L3 Q1", 1.0, 0.0 },
+        { "M66 P5 L3 Q0.2", -1.0, 0.2 },
+        { "M66 P5 L4 Q1", 0.0, 0.0 },
+        { "M66 P5", 0.0, 0.0 },
+        { "M66 E3", 2.5, 0.0 },
     };
     for (size_t n = 0; n < sizeof w / sizeof *w; n++) {
         char program[160];
-        snprintf(program, sizeof program, "G0 X900 Y0 Z500 A180 C180\nG1 X910 F6000 M67 E1 Q1.5\n"
-                 "M68 E3 Q-2\n%s\nX920\n", w[n].words);
+        snprintf(program, sizeof program,
+                 "G0 X900 Y0 Z500 A180 C180\nG1 X910 F6000 M67 E1 Q1.5\n"
+                 "M68 E3 Q-2\n%s\nX920\n",
+                 w[n].words);
         begin(program);
         double stood = 0.0;
         while (!soft_done(&soft) && now < LONG) {

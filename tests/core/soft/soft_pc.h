@@ -9,22 +9,21 @@
 
 static const double DEGREE = 0.017453292519943295, CYCLE = 1e-4;
 
-static const char POINTS[] =
-    "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
-    "USER 2 X=900 Y=-300 Z=200 A=0 B=0 C=90\n"
-    "P000 J1=0 J2=-20 J3=10 J4=0 J5=90 J6=0\n"
-    "P001 X=900 Y=0 Z=350 A=180 B=0 C=180 FRONT UP NOFLIP TOOL=1\n"
-    "P002 X=1000 Y=100 Z=350 A=180 B=0 C=180 TOOL=1\n"
-    "P003 X=1100 Y=0 Z=350 A=180 B=0 C=180 TOOL=1\n"
-    "P004 X=300 Y=-200 Z=150 A=180 B=0 C=90 TOOL=1 USER=2\n"
-    "P005 X=900 Y=0 Z=350 A=180 B=0 C=180 FRONT UP TOOL=1\n"
-    "P006 X=900 Y=0 Z=350 A=180 B=0 C=180 FLIP TOOL=1\n"
-    "P007 X=900 Y=0 Z=350 A=180 B=0 C=180 TURN4=0 TOOL=1\n"
-    "P008 X=5000 Y=0 Z=350 A=180 B=0 C=180 TOOL=1\n"
-    "P009 X=900 Y=0 Z=350 A=180 B=0 C=170 TURN4=0 TOOL=1\n"
-    "P010 X=1180 Y=0 Z=1110 A=0 B=90 C=0 TOOL=1\n"
-    "P011 X=1180 Y=0 Z=1410 A=0 B=90 C=0 TOOL=1\n"
-    "P012 X=1180 Y=0 Z=1110 A=0 B=90 C=0 FRONT UP TOOL=1\n";
+static const char POINTS[] = "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
+                             "USER 2 X=900 Y=-300 Z=200 A=0 B=0 C=90\n"
+                             "P000 J1=0 J2=-20 J3=10 J4=0 J5=90 J6=0\n"
+                             "P001 X=900 Y=0 Z=350 A=180 B=0 C=180 FRONT UP NOFLIP TOOL=1\n"
+                             "P002 X=1000 Y=100 Z=350 A=180 B=0 C=180 TOOL=1\n"
+                             "P003 X=1100 Y=0 Z=350 A=180 B=0 C=180 TOOL=1\n"
+                             "P004 X=300 Y=-200 Z=150 A=180 B=0 C=90 TOOL=1 USER=2\n"
+                             "P005 X=900 Y=0 Z=350 A=180 B=0 C=180 FRONT UP TOOL=1\n"
+                             "P006 X=900 Y=0 Z=350 A=180 B=0 C=180 FLIP TOOL=1\n"
+                             "P007 X=900 Y=0 Z=350 A=180 B=0 C=180 TURN4=0 TOOL=1\n"
+                             "P008 X=5000 Y=0 Z=350 A=180 B=0 C=180 TOOL=1\n"
+                             "P009 X=900 Y=0 Z=350 A=180 B=0 C=170 TURN4=0 TOOL=1\n"
+                             "P010 X=1180 Y=0 Z=1110 A=0 B=90 C=0 TOOL=1\n"
+                             "P011 X=1180 Y=0 Z=1410 A=0 B=90 C=0 TOOL=1\n"
+                             "P012 X=1180 Y=0 Z=1110 A=0 B=90 C=0 FRONT UP TOOL=1\n";
 
 static struct soft soft;
 static struct soft_config config;
@@ -36,8 +35,8 @@ static struct inform_program jobs;
 static struct inform_points points;
 static struct source_text given;
 static struct source source;
-static int64_t now;             /* [clocks] */
-static double fastest[OPW_JOINTS];  /* [rad/s] joints since it was set to 0 */
+static int64_t now;                /* [clocks] */
+static double fastest[OPW_JOINTS]; /* [rad/s] joints since it was set to 0 */
 
 static inline struct soft_config pc_config(void)
 {
@@ -47,13 +46,25 @@ static inline struct soft_config pc_config(void)
     static const double acc[] = { 500, 500, 500, 1000, 1000, 1500 };
     static const double ratio[] = { 100, 120, 120, 100, 100, 80 };
     static const double zero[] = { 0, 0, 0, 0, 90, 0 };
-    struct soft_config c = { .bus = 2000, .slot = 200, .slots = 20, .pitch = 0.1, .lines = 4,
-                             .depth = 32, .seed = 1 };
+    struct soft_config c = {
+        .bus = 2000, .slot = 200, .slots = 20, .pitch = 0.1, .lines = 4, .depth = 32, .seed = 1
+    };
     c.layers = (struct layers_config){ .access = 40, .tick = 400000, .poll = 40000 };
-    c.robot = (struct robot_config){ .feed = 3000.0, .acc = 1000.0, .spin = 180.0 * DEGREE,
-                                     .cycle = CYCLE, .slot = 5e-6, .slot_pulses = 49.0 };
-    c.robot.arm.opw = (struct opw){ 0.150, -0.115, 0.0, 0.445, 0.700, 0.795, 0.085,
-                                    { 0, 0, -90.0 * DEGREE }, { 1, 1, 1, 1, 1, 1 } };
+    c.robot = (struct robot_config){ .feed = 3000.0,
+                                     .acc = 1000.0,
+                                     .spin = 180.0 * DEGREE,
+                                     .cycle = CYCLE,
+                                     .slot = 5e-6,
+                                     .slot_pulses = 49.0 };
+    c.robot.arm.opw = (struct opw){ 0.150,
+                                    -0.115,
+                                    0.0,
+                                    0.445,
+                                    0.700,
+                                    0.795,
+                                    0.085,
+                                    { 0, 0, -90.0 * DEGREE },
+                                    { 1, 1, 1, 1, 1, 1 } };
     c.robot.arm.tool = pose_none();
     for (int i = 0; i < OPW_JOINTS; i++) {
         c.robot.arm.joint[i] = (struct manipulator_joint){ low[i] * DEGREE, high[i] * DEGREE,
@@ -63,8 +74,11 @@ static inline struct soft_config pc_config(void)
     }
     c.orders = (struct orders_config){ .start = { .vj = 50.0, .v = 100.0, .vr = 90.0 },
                                        .zone = { 0.0, 0.5, 1, 2, 4, 8, 16, 32, 64 },
-                                       .rapid = 0.5, .feed = 10.0, .feed_most = 3000.0,
-                                       .block_delete = true, .lines = 1000 };
+                                       .rapid = 0.5,
+                                       .feed = 10.0,
+                                       .feed_most = 3000.0,
+                                       .block_delete = true,
+                                       .lines = 1000 };
     return c;
 }
 
@@ -119,8 +133,8 @@ static inline void pc_cycle(void)
     pc_play();
     card.memory = host.write_memory;
     for (int i = 0; i < OPW_JOINTS; i++) {
-        const double pulses = soft.robot.joint[i] * config.robot.scale[i] -
-                              config.zero[i] * config.robot.scale[i];
+        const double pulses =
+            soft.robot.joint[i] * config.robot.scale[i] - config.zero[i] * config.robot.scale[i];
         CHECK(card.stopped || fabs(pulses - card.pulse_count[i]) <= 1.0 + 1e-6);
         fastest[i] = fmax(fastest[i], fabs(soft.robot.rate[i]));
     }

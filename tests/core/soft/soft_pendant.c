@@ -47,14 +47,14 @@ static void directions(void)
             moved[i] = soft.robot.pose.at[i] - from.at[i];
             moved[3 + i] = v[i] / DEGREE;
         }
-        if (frame == ROBOT_IN_TOOL) {   /* as seen from the tool */
+        if (frame == ROBOT_IN_TOOL) { /* as seen from the tool */
             quaternion_inverse(from.turn, back);
             quaternion_turn(back, moved, moved);
             quaternion_turn(back, moved + 3, moved + 3);
         }
         for (int i = 0; i < 6; i++) {
-            motion[i] = frame == ROBOT_IN_JOINTS ? (soft.robot.joint[i] - joint[i]) / DEGREE
-                                                 : moved[i];
+            motion[i] =
+                frame == ROBOT_IN_JOINTS ? (soft.robot.joint[i] - joint[i]) / DEGREE : moved[i];
         }
         way = motion[k] * sign;
         CHECK(way > (frame == ROBOT_IN_JOINTS || k > 2 ? 1.0 : 20.0));
@@ -67,9 +67,11 @@ static void directions(void)
 /* An increment in mm, in degrees of a joint, in degrees of the tool. */
 static void increments(void)
 {
-    static const struct { enum robot_frame frame; int k; double way; } a[] = {
-        { ROBOT_IN_BASE, 1, 7.5 }, { ROBOT_IN_JOINTS, 4, 3.0 }, { ROBOT_IN_TOOL, 5, 4.0 }
-    };
+    static const struct {
+        enum robot_frame frame;
+        int k;
+        double way;
+    } a[] = { { ROBOT_IN_BASE, 1, 7.5 }, { ROBOT_IN_JOINTS, 4, 3.0 }, { ROBOT_IN_TOOL, 5, 4.0 } };
     for (int n = 0; n < 3; n++) {
         begin();
         const struct pose from = soft.robot.pose;
@@ -78,16 +80,16 @@ static void increments(void)
         panel.frame = a[n].frame;
         panel.jog_way = a[n].way;
         panel.jog[a[n].k] = 1.0;
-        pc_run(30000);                      /* the key stays down */
+        pc_run(30000); /* the key stays down */
         quaternion_inverse(from.turn, back);
         quaternion_product(soft.robot.pose.turn, back, back);
         quaternion_vector(back, v);
-        const double got = n == 0 ? soft.robot.pose.at[1] - from.at[1]
-                         : n == 1 ? (soft.robot.joint[4] - joint) / DEGREE
-                         : sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / DEGREE;
+        const double got = n == 0   ? soft.robot.pose.at[1] - from.at[1]
+                           : n == 1 ? (soft.robot.joint[4] - joint) / DEGREE
+                                    : sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / DEGREE;
         CHECK_NEAR(got, a[n].way, 1e-6);
         release();
-        panel.jog[a[n].k] = 1.0;            /* once more */
+        panel.jog[a[n].k] = 1.0; /* once more */
         pc_run(30000);
         release();
         CHECK(n != 1 || fabs((soft.robot.joint[4] - joint) / DEGREE - 6.0) < 1e-6);
@@ -108,7 +110,7 @@ static void changes(void)
     pc_run(100);
     CHECK_NEAR(soft.robot.pose.at[0], at.at[0], 1e-9);
     CHECK(soft.robot.pose.at[2] < at.at[2] - 1.0);
-    panel.hold = true;                      /* hold keeps it, and it goes on */
+    panel.hold = true; /* hold keeps it, and it goes on */
     pc_run(5000);
     CHECK_EQ(soft.robot.speed, 0.0);
     panel.hold = false;
@@ -127,7 +129,7 @@ static void limits(void)
     CHECK_NEAR(soft.robot.joint[4] / DEGREE, 120.0, 1e-6);
     CHECK_EQ(soft.robot.speed, 0.0);
     release();
-    panel.jog[4] = 1.0;                     /* no further */
+    panel.jog[4] = 1.0; /* no further */
     pc_run(1000);
     CHECK_NEAR(soft.robot.joint[4] / DEGREE, 120.0, 1e-6);
     panel.jog[4] = -1.0;
@@ -141,7 +143,7 @@ static void limits(void)
     const double edge = soft.robot.pose.at[0];
     CHECK_EQ(soft.robot.speed, 0.0);
     release();
-    panel.jog[0] = -1.0;                    /* slowly at first: the elbow is stretched */
+    panel.jog[0] = -1.0; /* slowly at first: the elbow is stretched */
     pc_run(20000);
     CHECK(soft.robot.pose.at[0] < edge - 50.0);
     release();
@@ -173,7 +175,7 @@ static void replays(void)
     }
     panel.jog_speed = 0.5;
     pc_press(&panel.replay);
-    pc_press(&panel.replay);                /* while it goes: nothing */
+    pc_press(&panel.replay); /* while it goes: nothing */
     for (int k = 0; k < 200000 && soft_status(&soft, &panel) != SOFT_IDLE; k++) {
         pc_cycle();
         for (int n = 0; n < 3; n++) {
@@ -214,7 +216,7 @@ static void stop(void)
     const int32_t before = host.reset_seq;
     pc_press(&panel.reset);
     CHECK_EQ(host.reset_seq, before + 1);
-    card.pulse_count[2] += 7;               /* what the card has counted and the PC has not */
+    card.pulse_count[2] += 7; /* what the card has counted and the PC has not */
     card.stopped = false;
     pc_run(5);
     CHECK_EQ(soft_status(&soft, &panel), SOFT_IDLE);

@@ -10,8 +10,14 @@
 enum { SLOT = 200, SLOTS = 20, INTERVAL = SLOT * SLOTS };
 
 /* [clocks] The document's: 0.5 us, 1 KB and 3 KB at 133 MB/s, 1 us a register, 36 us a point. */
-enum { WAIT = 20, COPY_IN = 308, COPY_OUT = 924, ACCESS = 40, POINT = 1440,
-       RUN = WAIT + COPY_IN + COPY_OUT };
+enum {
+    WAIT = 20,
+    COPY_IN = 308,
+    COPY_OUT = 924,
+    ACCESS = 40,
+    POINT = 1440,
+    RUN = WAIT + COPY_IN + COPY_OUT
+};
 
 static struct fpga card;
 static struct soft soft;
@@ -29,11 +35,23 @@ static int32_t write_seq, out_seq, reset_seq;
 static inline void rig_document(void)
 {
     config = (struct soft_config){
-        .bus = 100, .slot = SLOT, .slots = SLOTS, .copy_in = COPY_IN, .copy_out = COPY_OUT,
-        .point = POINT, .pitch = 0.1, .lines = 4, .depth = 32, .servo = 0x3f, .seed = 1,
+        .bus = 100,
+        .slot = SLOT,
+        .slots = SLOTS,
+        .copy_in = COPY_IN,
+        .copy_out = COPY_OUT,
+        .point = POINT,
+        .pitch = 0.1,
+        .lines = 4,
+        .depth = 32,
+        .servo = 0x3f,
+        .seed = 1,
         .robot = rig_config(),
-        .layers = { .interrupt = { .least = WAIT, .most = WAIT }, .access = ACCESS,
-                    .tick = 400000, .poll = 1440000, .quantum = 1440000 },
+        .layers = { .interrupt = { .least = WAIT, .most = WAIT },
+                    .access = ACCESS,
+                    .tick = 400000,
+                    .poll = 1440000,
+                    .quantum = 1440000 },
         .orders = { .start = { .vj = 50.0, .v = 100.0, .vr = 90.0 }, .rapid = 0.5, .lines = 1000 },
     };
     config.zero[4] = 90.0 * DEGREE;
@@ -54,8 +72,11 @@ static inline void rig_program(const char *job, const char *of_points)
 static inline void rig_power_on(void)
 {
     const struct fpga_config c = {
-        .slot_clocks = SLOT, .irq_every = INTERVAL, .alarm_stops = true,
-        .stop_servo_off = true, .input_irq_mask = 0xffff,
+        .slot_clocks = SLOT,
+        .irq_every = INTERVAL,
+        .alarm_stops = true,
+        .stop_servo_off = true,
+        .input_irq_mask = 0xffff,
     };
     fpga_reset(&card, &c);
     soft_start(&soft, &config);
@@ -67,11 +88,15 @@ static inline void rig_power_on(void)
 static inline struct fpga_shown rig_shown(void)
 {
     struct fpga_shown s = {
-        .irq_seq = (int32_t)card.irq.seq, .irq_clock = (double)card.irq.clock,
-        .irq_inputs = (int32_t)card.irq.inputs, .input_irq_seq = (int32_t)card.input_irq.seq,
+        .irq_seq = (int32_t)card.irq.seq,
+        .irq_clock = (double)card.irq.clock,
+        .irq_inputs = (int32_t)card.irq.inputs,
+        .input_irq_seq = (int32_t)card.input_irq.seq,
         .input_irq_clock = (double)card.input_irq.clock,
-        .input_irq_image = (int32_t)card.input_irq.inputs, .inputs = (int32_t)card.inputs.image,
-        .memory = card.playing, .stopped = card.stopped,
+        .input_irq_image = (int32_t)card.input_irq.inputs,
+        .inputs = (int32_t)card.inputs.image,
+        .memory = card.playing,
+        .stopped = card.stopped,
     };
     int64_t pulses[FPGA_AXES];
 
@@ -85,8 +110,10 @@ static inline struct fpga_shown rig_shown(void)
 static inline void rig_read_host(void)
 {
     if (link_new(&write_seq, host.write_seq)) {
-        struct fpga_write w = { .seq = host.write_seq, .clock = (int64_t)host.write_clock,
-                                .memory = host.write_memory, .slots = host.write_slots };
+        struct fpga_write w = { .seq = host.write_seq,
+                                .clock = (int64_t)host.write_clock,
+                                .memory = host.write_memory,
+                                .slots = host.write_slots };
         memcpy(w.words, host.write_words, sizeof w.words);
         fpga_post_write(&card, &w);
     }
@@ -124,8 +151,8 @@ static inline void rig_until(int64_t clock)
 /* Pulses that the joints commanded so far are from where they began. */
 static inline int64_t rig_commanded(int i)
 {
-    return llround(soft.joint[i] * config.robot.scale[i]) -
-           llround(config.zero[i] * config.robot.scale[i]);
+    return llround(soft.joint[i] * config.robot.scale[i])
+           - llround(config.zero[i] * config.robot.scale[i]);
 }
 
 #endif

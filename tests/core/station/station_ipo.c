@@ -2,7 +2,7 @@
 #include "mcc_check.h"
 #include "station.h"
 
-static struct station s;        /* 170 kB: not on the stack */
+static struct station s; /* 170 kB: not on the stack */
 
 static struct station_reading reading(void)
 {
@@ -43,7 +43,7 @@ static void motion(bool event)
 {
     struct station_config c = slow(event);
     int dry = 0;
-    c.pc.unit[PC_IPO] = 2000;       /* 50 us a point */
+    c.pc.unit[PC_IPO] = 2000; /* 50 us a point */
     CHECK_EQ(station_start(&s, &c), STATION_OK);
     CHECK_EQ(MCC_line_x(&s.pc.mcc, 12.5), 1);
     while (!reading().stopped && s.clock < 10 * (int64_t)STATION_HZ) {
@@ -56,9 +56,9 @@ static void motion(bool event)
     CHECK_EQ(r.missed, 0);
     if (event) {
         CHECK(seconds > 1.35 && seconds < 1.35 + 0.03);
-        CHECK(dry < 10 && r.starved == 0);      /* before the first point */
+        CHECK(dry < 10 && r.starved == 0); /* before the first point */
     } else {
-        CHECK_NEAR(seconds, frames / 8.0 * 20e-3, 0.1);     /* 8 points a cycle */
+        CHECK_NEAR(seconds, frames / 8.0 * 20e-3, 0.1); /* 8 points a cycle */
         CHECK(dry > 1000 && r.starved > 500);
     }
 }
@@ -80,10 +80,13 @@ static void late(void)
 static void rule(void)
 {
     const int64_t dda = 40960, run = 3000 + 500 + 200 + 100;
-    const struct { int64_t ipo, interpreter, process; enum pc_cycle want; } cases[] = {
-        { dda, 0, 0, PC_CYCLE_KEPT }, { dda + 1, 0, 0, PC_CYCLE_LONG },
-        { run, 0, 0, PC_CYCLE_KEPT }, { run - 1, 0, 0, PC_CYCLE_SHORT },
-        { run - 1, 40000, 0, PC_CYCLE_KEPT }, { run - 1, 0, 40000, PC_CYCLE_KEPT },
+    const struct {
+        int64_t ipo, interpreter, process;
+        enum pc_cycle want;
+    } cases[] = {
+        { dda, 0, 0, PC_CYCLE_KEPT },          { dda + 1, 0, 0, PC_CYCLE_LONG },
+        { run, 0, 0, PC_CYCLE_KEPT },          { run - 1, 0, 0, PC_CYCLE_SHORT },
+        { run - 1, 40000, 0, PC_CYCLE_KEPT },  { run - 1, 0, 40000, PC_CYCLE_KEPT },
         { 3500, 40000, 40000, PC_CYCLE_KEPT }, { 3499, 40000, 40000, PC_CYCLE_SHORT },
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

@@ -5,7 +5,7 @@
 #include "registers.h"
 #include "station.h"
 
-static struct station s, other, before;     /* 170 kB each: not on the stack */
+static struct station s, other, before; /* 170 kB each: not on the stack */
 
 static struct station_reading reading(const struct station *of)
 {
@@ -126,7 +126,7 @@ static void between_instants(void)
         CHECK_EQ(station_run(&s, s.clock + c.pc.bus / 2, NULL), STATION_OK);
         const double way = reading(&s).motor[0] - at;
         CHECK_NEAR(half - at, 0.5 * way, 1e-6);
-        CHECK(k < 20 || way > 5.0);     /* [counts], so that a period more or less would be seen */
+        CHECK(k < 20 || way > 5.0); /* [counts], so that a period more or less would be seen */
     }
 }
 
@@ -141,7 +141,7 @@ static void lag(void)
     CHECK(MCC_line_x(&s.pc.mcc, 20.0) > 0);
     CHECK_EQ(station_run(&s, 15 * (STATION_HZ / 10), NULL), STATION_OK);
     CHECK_NEAR(reading(&s).errors[0], 10000.0 / kv, 10000.0 * 3e-4);
-    int32_t told[AXES];     /* the library's: as of an instant, one bus period old */
+    int32_t told[AXES]; /* the library's: as of an instant, one bus period old */
     CHECK_EQ(MCC_get_errcnt(&s.pc.mcc, told), MCC_NO_ERR);
     CHECK_NEAR(told[0], reading(&s).errors[0], 2.0);
     CHECK(told[0] > 600 && told[1] == 0);
@@ -170,8 +170,8 @@ static void program(void)
     CHECK_EQ(r.pulses[0], 5000);
     CHECK_EQ(r.digital_out, 4);
     CHECK_EQ(r.line, 3);
-    CHECK(s.pc.mcc.signals.home == 1 && s.pc.mcc.signals.upper == 2 &&
-          s.pc.mcc.signals.lower == 4 && !s.pc.mcc.signals.stop);
+    CHECK(s.pc.mcc.signals.home == 1 && s.pc.mcc.signals.upper == 2 && s.pc.mcc.signals.lower == 4
+          && !s.pc.mcc.signals.stop);
     s.lines.local.stop = true;
     CHECK_EQ(station_run(&s, s.clock + STATION_HZ / 10, NULL), STATION_OK);
     CHECK(s.pc.mcc.signals.stop && epcio_off(&s.card));
@@ -204,20 +204,35 @@ static void refusals(void)
         struct station_config c = station_defaults();
         enum station_status want = STATION_BAD_PC;
         switch (i) {
-        case 0: c.machine.feed = NAN; want = STATION_BAD_MACHINE; break;
-        case 1: c.machine.queue_depth = QUEUE_SIZE + 1; want = STATION_BAD_MACHINE; break;
+        case 0:
+            c.machine.feed = NAN;
+            want = STATION_BAD_MACHINE;
+            break;
+        case 1:
+            c.machine.queue_depth = QUEUE_SIZE + 1;
+            want = STATION_BAD_MACHINE;
+            break;
         case 2: c.pc.bus = 0; break;
         case 3: c.pc.ipo = 0; break;
         case 4: c.pc.min_stock = 60; break;
         case 5: c.pc.latency = NAN; break;
         case 6: c.pc.batch = 17; break;
-        case 7: c.pc.output_mode[5] = 3; want = STATION_BAD_MODE; break;
-        case 8: c.pc.home_settle = -1.0; break;
+        case 7:
+            c.pc.output_mode[5] = 3;
+            want = STATION_BAD_MODE;
+            break;
+        case 8:  c.pc.home_settle = -1.0; break;
         case 10: c.pc.offset[PC_PCL] = 1; break;
         case 11: c.pc.unit[PC_IPO] = -1; break;
-        case 9: c.pc.home_order[0] = 1; c.pc.home[0].low_speed = 501.0; want = STATION_BAD_HOME;
+        case 9:
+            c.pc.home_order[0] = 1;
+            c.pc.home[0].low_speed = 501.0;
+            want = STATION_BAD_HOME;
             break;
-        default: c.software_gain[2] = INFINITY; want = STATION_BAD_MODE; break;
+        default:
+            c.software_gain[2] = INFINITY;
+            want = STATION_BAD_MODE;
+            break;
         }
         memcpy(&before, &s, sizeof s);
         CHECK_EQ(station_start(&s, &c), want);
@@ -230,7 +245,7 @@ static void refusals(void)
 static void slow_pc(void)
 {
     struct station_config c = station_defaults();
-    c.pc.time[PC_IPO] = 70000;      /* of a cycle of 40,000 clocks */
+    c.pc.time[PC_IPO] = 70000; /* of a cycle of 40,000 clocks */
     c.machine.queue_depth = 1;
     CHECK_EQ(station_start(&s, &c), STATION_OK);
     CHECK_EQ(MCC_line(&s.pc.mcc, target), 1);
@@ -300,7 +315,7 @@ static void dda_time_by_call(void)
 {
     struct station_config c = station_defaults();
     int32_t missed[2], error[2];
-    c.pc.latency = 3e-3 * STATION_HZ;       /* 4 T are 4.096 ms, then 2.048 ms */
+    c.pc.latency = 3e-3 * STATION_HZ; /* 4 T are 4.096 ms, then 2.048 ms */
     both_ways(c, missed, error);
     /* A write each 3 ms + the rest of a DDA time + one on its way, all too late. */
     CHECK(missed[1] > 120 && missed[1] < 167);
@@ -320,8 +335,8 @@ static void parameters_by_call(void)
     struct station_config c = station_defaults();
     for (int i = 0; i < 3; i++) {
         c.pc.output_mode[i] = STATION_SOFTWARE;
-        c.pc.law.axis[i] = (struct law_axis){ .gain = 0.005, .volts = 2e-5, .feed_forward = 0.9,
-                                              .lag = 2e-3 };
+        c.pc.law.axis[i] =
+            (struct law_axis){ .gain = 0.005, .volts = 2e-5, .feed_forward = 0.9, .lag = 2e-3 };
     }
     c.pc.law.cross_p = 60.0;
     c.pc.law.cross_i = 200.0;
@@ -348,7 +363,7 @@ static void parameters_by_call(void)
         CHECK(!memcmp(s.volts, other.volts, sizeof s.volts));
         most = fmax(most, s.motor[0]);
     }
-    CHECK(most > 7000.0);       /* 3 mm at 2500 a mm */
+    CHECK(most > 7000.0); /* 3 mm at 2500 a mm */
 }
 
 int main(void)

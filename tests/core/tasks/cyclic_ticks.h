@@ -14,13 +14,22 @@ struct set {
     struct cyclic_config c;
     int64_t time[N];
     int wakes;
-    int woken;              /* task that is woken: 0, or 1, which has a timer too, */
-    int64_t wake[WAKES];    /* and may begin at these clocks, rising */
+    int woken;           /* task that is woken: 0, or 1, which has a timer too, */
+    int64_t wake[WAKES]; /* and may begin at these clocks, rising */
 };
 
 /* What happens: a run begins or ends. */
-struct entry { int64_t clock; int task; enum cyclic_what what; };
-struct log { int n; struct entry e[LOG]; int missed[N]; int64_t busy[N], response[N]; };
+struct entry {
+    int64_t clock;
+    int task;
+    enum cyclic_what what;
+};
+struct log {
+    int n;
+    struct entry e[LOG];
+    int missed[N];
+    int64_t busy[N], response[N];
+};
 
 static void note(struct log *l, int64_t clock, int task, enum cyclic_what what)
 {
@@ -30,7 +39,10 @@ static void note(struct log *l, int64_t clock, int task, enum cyclic_what what)
 }
 
 /* --- A processor that looks at everything at every clock. ----------------------------------- */
-struct tick { bool waits, begun, event, run_event; int64_t since, from, left; };
+struct tick {
+    bool waits, begun, event, run_event;
+    int64_t since, from, left;
+};
 
 /* The one of the tasks allowed that goes first, or -1. */
 static int choose(const struct set *q, const struct tick t[N], int64_t clock, bool interrupts)
@@ -64,8 +76,8 @@ static void finish(struct log *l, struct tick t[N], int64_t clock)
         if (t[i].begun && t[i].left == 0) {
             t[i].begun = false;
             note(l, clock, i, CYCLIC_END);
-            l->response[i] = clock - t[i].from > l->response[i] ? clock - t[i].from
-                                                                : l->response[i];
+            l->response[i] =
+                clock - t[i].from > l->response[i] ? clock - t[i].from : l->response[i];
         }
     }
 }
@@ -95,8 +107,9 @@ static inline void brute(const struct set *q, int64_t clocks, struct log *l)
         for (int interrupts = 0; interrupts < 2; interrupts++) {
             int i;
             while ((i = choose(q, t, clock, interrupts)) >= 0 && !t[i].begun) {
-                t[i] = (struct tick){ .begun = true, .run_event = t[i].event,
-                                      .from = t[i].since, .left = q->time[i] };
+                t[i] = (struct tick){
+                    .begun = true, .run_event = t[i].event, .from = t[i].since, .left = q->time[i]
+                };
                 note(l, clock, i, CYCLIC_BEGIN);
                 finish(l, t, clock);
                 interrupts = 0;

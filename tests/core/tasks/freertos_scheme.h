@@ -2,7 +2,9 @@
 #ifndef FREERTOS_SCHEME_H
 #define FREERTOS_SCHEME_H
 
-static const struct { const char *scenario, *tokens; } RECORDED[] = {
+static const struct {
+    const char *scenario, *tokens;
+} RECORDED[] = {
     { "home_during_run",
       ">parse >home >stop >pause >run !run >parse >run r1 r2 r3 !home >parse >home 5>2 h4 h"
       "5 h6 h7 h8 h9 2>5 >run r10 r11 r12 r13 r14 r15 r16 r17 r18 r19 r20 r21 r22 r23 r24 r"

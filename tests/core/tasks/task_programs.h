@@ -15,8 +15,18 @@
 #include "check.h"
 
 enum what {
-    COMPUTE, GIVE, TAKE, SEND, RECEIVE, DELAY, DELAY_UNTIL, PRIORITY, NOTIFY, NOTIFY_TAKE,
-    NOTIFY_WAIT, END
+    COMPUTE,
+    GIVE,
+    TAKE,
+    SEND,
+    RECEIVE,
+    DELAY,
+    DELAY_UNTIL,
+    PRIORITY,
+    NOTIFY,
+    NOTIFY_TAKE,
+    NOTIFY_WAIT,
+    END
 };
 enum { PROGRAMS = 5000, TASKS = 6, INTERRUPTS = 3, ACTIONS = 8, PENDS = 40 };
 
@@ -28,21 +38,34 @@ enum { BINARY = 0, COUNTING = 3, MUTEX = 4, QUEUE = 6, QUEUES = 8, COUNTS_TO = 3
 #define FOR_EVER (-1)
 
 /* on: semaphore, queue or task. value: time, priority, value sent, bits, ticks of a delay. */
-struct action { enum what what; int on, value, ticks, other; };
+struct action {
+    enum what what;
+    int on, value, ticks, other;
+};
 
 struct program {
     int tasks, priority[TASKS];
     struct action action[TASKS + INTERRUPTS][ACTIONS];
     int actions[TASKS + INTERRUPTS];
-    struct pend { int64_t clock; int interrupt; } pend[PENDS];      /* rising clocks */
+    struct pend {
+        int64_t clock;
+        int interrupt;
+    } pend[PENDS]; /* rising clocks */
     int pends;
     int64_t tick, tick_time, switch_time, entry_time, end;
 };
 
 /* What a program may do. */
 enum {
-    EQUALS = 1, FORGETS = 2, CROWDS = 4, MUTEXES = 8, QUEUED = 16, TIMEOUTS = 32, NOTIFIES = 64,
-    PRIORITIES = 128, COSTS = 256
+    EQUALS = 1,
+    FORGETS = 2,
+    CROWDS = 4,
+    MUTEXES = 8,
+    QUEUED = 16,
+    TIMEOUTS = 32,
+    NOTIFIES = 64,
+    PRIORITIES = 128,
+    COSTS = 256
 };
 
 static inline int draw(uint64_t *seed, int low, int high)
@@ -72,9 +95,9 @@ static inline struct action some_action(uint64_t *seed, int features, bool inter
         }
         if (a.what == GIVE || (a.what == TAKE && !interrupt)) {
             const int kind = draw(seed, 0, 3);
-            a.on = kind == 0 && queued ? COUNTING
-                 : kind == 1 && features & MUTEXES && !interrupt ? draw(seed, MUTEX, QUEUE - 1)
-                 : a.on;
+            a.on = kind == 0 && queued                             ? COUNTING
+                   : kind == 1 && features & MUTEXES && !interrupt ? draw(seed, MUTEX, QUEUE - 1)
+                                                                   : a.on;
             return a;
         }
         if ((a.what == SEND || a.what == RECEIVE) && queued) {
@@ -127,7 +150,7 @@ static inline void hold(uint64_t *seed, struct program *p, int task, int feature
 
 static inline void distinct(uint64_t *seed, struct program *p)
 {
-    for (int i = 0; i < p->tasks; i++) {        /* 1 .. tasks in some order */
+    for (int i = 0; i < p->tasks; i++) { /* 1 .. tasks in some order */
         const int other = draw(seed, 0, i);
         p->priority[i] = p->priority[other];
         p->priority[other] = i + 1;
@@ -136,13 +159,17 @@ static inline void distinct(uint64_t *seed, struct program *p)
 
 static inline struct program task_program(int number)
 {
-    static const int FEATURES[10] = {
-        0, EQUALS | PRIORITIES, FORGETS, EQUALS | CROWDS | FORGETS | TIMEOUTS,
-        EQUALS | MUTEXES | TIMEOUTS, EQUALS | MUTEXES | TIMEOUTS | PRIORITIES | CROWDS,
-        EQUALS | QUEUED | TIMEOUTS | FORGETS, EQUALS | QUEUED | CROWDS | TIMEOUTS | FORGETS | COSTS,
-        EQUALS | NOTIFIES | TIMEOUTS | FORGETS | PRIORITIES,
-        EQUALS | FORGETS | CROWDS | MUTEXES | QUEUED | TIMEOUTS | NOTIFIES | PRIORITIES | COSTS
-    };
+    static const int FEATURES[10] = { 0,
+                                      EQUALS | PRIORITIES,
+                                      FORGETS,
+                                      EQUALS | CROWDS | FORGETS | TIMEOUTS,
+                                      EQUALS | MUTEXES | TIMEOUTS,
+                                      EQUALS | MUTEXES | TIMEOUTS | PRIORITIES | CROWDS,
+                                      EQUALS | QUEUED | TIMEOUTS | FORGETS,
+                                      EQUALS | QUEUED | CROWDS | TIMEOUTS | FORGETS | COSTS,
+                                      EQUALS | NOTIFIES | TIMEOUTS | FORGETS | PRIORITIES,
+                                      EQUALS | FORGETS | CROWDS | MUTEXES | QUEUED | TIMEOUTS
+                                          | NOTIFIES | PRIORITIES | COSTS };
     const int features = FEATURES[number % 10];
     uint64_t seed = (uint64_t)(number + 1) * 0x9e3779b97f4a7c15u;
     struct program p;
@@ -173,8 +200,8 @@ static inline struct program task_program(int number)
         }
         p.action[i][n - 1] = (struct action){ COMPUTE, 0, draw(&seed, 1, 9), 0, 0 };
         if (interrupt) {
-            p.action[i][n - 1] = (struct action){ END, 0, features & FORGETS ? draw(&seed, 0, 1)
-                                                                             : 1, 0, 0 };
+            p.action[i][n - 1] =
+                (struct action){ END, 0, features & FORGETS ? draw(&seed, 0, 1) : 1, 0, 0 };
         }
     }
     p.pends = draw(&seed, 0, PENDS);
@@ -189,12 +216,18 @@ static inline struct program task_program(int number)
 /* --- Tokens. --- */
 
 enum { TEXT = 40000 };
-static struct { char text[TEXT]; int length; uint32_t hash; int64_t clock; int tokens; } said;
+static struct {
+    char text[TEXT];
+    int length;
+    uint32_t hash;
+    int64_t clock;
+    int tokens;
+} said;
 
 static inline void say_anew(void)
 {
     memset(&said, 0, sizeof said);
-    said.hash = 2166136261u;        /* FNV-1a */
+    said.hash = 2166136261u; /* FNV-1a */
     said.clock = -1;
 }
 

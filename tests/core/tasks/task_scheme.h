@@ -24,36 +24,99 @@ static const int PRIORITY[] = { 6, 5, 4, 3, 1 };
 /* A packet is at rising clocks, the first at 10. */
 struct scenario {
     const char *name;
-    struct { int64_t clock; enum task task; } packet[PACKETS];
+    struct {
+        int64_t clock;
+        enum task task;
+    } packet[PACKETS];
     int packets, home_units, home_priority, job_units;
     int64_t released, tick;
 };
 
 static const struct scenario SCENARIO[] = {
     { "home_during_run", { { 10, RUN }, { 3500, HOME } }, 2, 6, 2, UNITS, 0, 0 },
-    { "home_during_pause", { { 10, RUN }, { 3500, PAUSE }, { 5800, HOME } }, 3, 6, 2, UNITS, 46000,
+    { "home_during_pause",
+      { { 10, RUN }, { 3500, PAUSE }, { 5800, HOME } },
+      3,
+      6,
+      2,
+      UNITS,
+      46000,
       0 },
-    { "start_twice_then_stop", { { 10, RUN }, { 3500, RUN }, { 6500, STOP } }, 3, 6, 2, UNITS, 0,
+    { "start_twice_then_stop",
+      { { 10, RUN }, { 3500, RUN }, { 6500, STOP } },
+      3,
+      6,
+      2,
+      UNITS,
+      0,
       0 },
     { "pause_while_idle", { { 10, STOP }, { 2500, PAUSE } }, 2, 6, 2, UNITS, 6000, 0 },
     { "two_starts_while_homing", { { 10, HOME }, { 2500, RUN }, { 4500, RUN } }, 3, 8, 2, 5, 0, 0 },
-    { "two_starts_during_the_job", { { 10, RUN }, { 2500, RUN }, { 3500, RUN } }, 3, 8, 2, 5, 0,
+    { "two_starts_during_the_job",
+      { { 10, RUN }, { 2500, RUN }, { 3500, RUN } },
+      3,
+      8,
+      2,
+      5,
+      0,
       0 },
     { "three_homes", { { 10, HOME }, { 2500, HOME }, { 4500, HOME } }, 3, 6, 2, 5, 0, 0 },
-    { "two_homes_while_paused", { { 10, PAUSE }, { 2500, STOP }, { 4500, HOME }, { 5500, HOME } },
-      4, 3, 2, 5, 9000, 0 },
-    { "two_pauses_while_stopping", { { 10, STOP }, { 300, PAUSE }, { 500, PAUSE } }, 3, 6, 2, 5,
-      3000, 0 },
-    { "start_and_stop_while_homing", { { 10, HOME }, { 2500, RUN }, { 4500, STOP }, { 6500, RUN } },
-      4, 8, 2, 5, 0, 0 },
+    { "two_homes_while_paused",
+      { { 10, PAUSE }, { 2500, STOP }, { 4500, HOME }, { 5500, HOME } },
+      4,
+      3,
+      2,
+      5,
+      9000,
+      0 },
+    { "two_pauses_while_stopping",
+      { { 10, STOP }, { 300, PAUSE }, { 500, PAUSE } },
+      3,
+      6,
+      2,
+      5,
+      3000,
+      0 },
+    { "start_and_stop_while_homing",
+      { { 10, HOME }, { 2500, RUN }, { 4500, STOP }, { 6500, RUN } },
+      4,
+      8,
+      2,
+      5,
+      0,
+      0 },
     { "stop_during_home", { { 10, RUN }, { 3500, HOME }, { 5500, STOP } }, 3, 6, 2, UNITS, 0, 0 },
-    { "pause_during_home", { { 10, RUN }, { 3500, HOME }, { 5500, PAUSE } }, 3, 6, 2, UNITS, 8000,
+    { "pause_during_home",
+      { { 10, RUN }, { 3500, HOME }, { 5500, PAUSE } },
+      3,
+      6,
+      2,
+      UNITS,
+      8000,
       0 },
-    { "pause_and_stop_at_once", { { 10, RUN }, { 3500, PAUSE }, { 3500, STOP } }, 3, 6, 2, UNITS, 0,
+    { "pause_and_stop_at_once",
+      { { 10, RUN }, { 3500, PAUSE }, { 3500, STOP } },
+      3,
+      6,
+      2,
+      UNITS,
+      0,
       0 },
-    { "stop_and_home_at_once", { { 10, RUN }, { 3500, STOP }, { 3500, HOME } }, 3, 6, 2, UNITS, 0,
+    { "stop_and_home_at_once",
+      { { 10, RUN }, { 3500, STOP }, { 3500, HOME } },
+      3,
+      6,
+      2,
+      UNITS,
+      0,
       0 },
-    { "four_starts", { { 10, RUN }, { 1500, RUN }, { 2500, RUN }, { 3500, RUN } }, 4, 6, 2, 5, 0,
+    { "four_starts",
+      { { 10, RUN }, { 1500, RUN }, { 2500, RUN }, { 3500, RUN } },
+      4,
+      6,
+      2,
+      5,
+      0,
       0 },
     { "two_pauses", { { 10, RUN }, { 3500, PAUSE }, { 5500, PAUSE } }, 3, 6, 2, UNITS, 8000, 0 },
     { "home_as_urgent_as_run", { { 10, RUN }, { 3500, HOME } }, 2, 6, 1, UNITS, 0, 5200 }
@@ -62,7 +125,7 @@ enum { SCENARIOS = sizeof SCENARIO / sizeof *SCENARIO };
 
 static struct {
     char text[2048];
-    int units, arrived, taken;      /* units done; packets that came, that the parser has taken */
+    int units, arrived, taken; /* units done; packets that came, that the parser has taken */
 } scheme;
 
 static inline void say(const char *format, ...)

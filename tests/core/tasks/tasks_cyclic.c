@@ -77,7 +77,7 @@ static void against_theory(void)
             if (r < 0) {
                 CHECK(one.missed[k] > 0);
                 broken++;
-                break;          /* a lower one may be helped by a run that was lost */
+                break; /* a lower one may be helped by a run that was lost */
             }
             CHECK_EQ(one.missed[k], 0);
             CHECK_EQ(one.response[k], r);
@@ -95,7 +95,9 @@ static void the_last_clock(void)
     uint64_t seed = 5;
     CHECK_EQ(analysis(&(struct set){ .c = { .priority = { 0, 1, 2, 3, 4 },
                                             .cycle = { 1000, 100, 200, 1000, 1000 } },
-                                     .time = { 0, 30, 140, 0 } }, 2), 200);
+                                     .time = { 0, 30, 140, 0 } },
+                      2),
+             200);
     scheduled(&q, 4000, &seed, &one);
     CHECK(one.missed[2] == 0 && one.response[2] == 200);
     q.time[2]++;
@@ -107,7 +109,8 @@ static void the_last_clock(void)
 static void no_time(void)
 {
     const struct set q = { .c = { .priority = { 4, 3, 2, 1, 5 }, .cycle = { 0, 10, 10, 10 } },
-                           .wakes = 1, .wake = { 20 } };
+                           .wakes = 1,
+                           .wake = { 20 } };
     uint64_t seed = 6;
     scheduled(&q, 21, &seed, &one);
     CHECK_EQ(one.n, 2 * (3 * 3 + 1));

@@ -11,11 +11,11 @@
 static struct kernel k;
 static struct program p;
 static struct {
-    int at[TASKS + INTERRUPTS];         /* action of each context, */
-    bool acts[TASKS + INTERRUPTS];      /* under way, */
-    int result[TASKS + INTERRUPTS];     /* and what it said at once */
-    int64_t previous[TASKS];            /* tick of delay_until */
-    int64_t seen;                       /* events of the log that are told */
+    int at[TASKS + INTERRUPTS];     /* action of each context, */
+    bool acts[TASKS + INTERRUPTS];  /* under way, */
+    int result[TASKS + INTERRUPTS]; /* and what it said at once */
+    int64_t previous[TASKS];        /* tick of delay_until */
+    int64_t seen;                   /* events of the log that are told */
 } s;
 
 static void read_log(void)
@@ -43,34 +43,23 @@ static bool own_mutex(int context, const struct action *a)
 
 static enum kernel_status act(int context, const struct action *a)
 {
-    static const enum kernel_notify WHAT[] = {
-        KERNEL_WAKES, KERNEL_SETS_BITS, KERNEL_ADDS_ONE, KERNEL_WRITES, KERNEL_WRITES_FIRST
-    };
+    static const enum kernel_notify WHAT[] = { KERNEL_WAKES, KERNEL_SETS_BITS, KERNEL_ADDS_ONE,
+                                               KERNEL_WRITES, KERNEL_WRITES_FIRST };
     switch (a->what) {
-    case COMPUTE:
-        return kernel_compute(&k, a->value);
-    case GIVE:
-        return kernel_give(&k, a->on);
+    case COMPUTE: return kernel_compute(&k, a->value);
+    case GIVE:    return kernel_give(&k, a->on);
     case TAKE:
         return own_mutex(context, a) ? KERNEL_NOT_ALLOWED : kernel_take_within(&k, a->on, ticks(a));
-    case SEND:
-        return kernel_send(&k, a->on, a->value, ticks(a));
-    case RECEIVE:
-        return kernel_receive(&k, a->on, ticks(a));
-    case DELAY:
-        return kernel_delay(&k, a->value);
-    case DELAY_UNTIL:
-        return kernel_delay_until(&k, &s.previous[context], a->value);
-    case PRIORITY:
-        return kernel_set_priority(&k, a->on, a->value);
-    case NOTIFY:
-        return kernel_notify(&k, a->on, WHAT[a->other], (uint32_t)a->value);
-    case NOTIFY_TAKE:
-        return kernel_notify_take(&k, a->other & 1, ticks(a));
+    case SEND:        return kernel_send(&k, a->on, a->value, ticks(a));
+    case RECEIVE:     return kernel_receive(&k, a->on, ticks(a));
+    case DELAY:       return kernel_delay(&k, a->value);
+    case DELAY_UNTIL: return kernel_delay_until(&k, &s.previous[context], a->value);
+    case PRIORITY:    return kernel_set_priority(&k, a->on, a->value);
+    case NOTIFY:      return kernel_notify(&k, a->on, WHAT[a->other], (uint32_t)a->value);
+    case NOTIFY_TAKE: return kernel_notify_take(&k, a->other & 1, ticks(a));
     case NOTIFY_WAIT:
         return kernel_notify_wait(&k, (uint32_t)a->other, (uint32_t)a->value, ticks(a));
-    default:
-        return kernel_end_interrupt(&k, a->value);
+    default: return kernel_end_interrupt(&k, a->value);
     }
 }
 
@@ -81,10 +70,10 @@ static void answer(int context)
     const struct action *a = &p.action[i][s.at[i]];
 
     if (s.acts[i]) {
-        const bool waits = a->what == TAKE || a->what == SEND || a->what == RECEIVE ||
-                           a->what == NOTIFY_TAKE || a->what == NOTIFY_WAIT;
-        const int result = waits && i < TASKS && s.result[i] == KERNEL_OK ? kernel_result(&k)
-                                                                           : s.result[i];
+        const bool waits = a->what == TAKE || a->what == SEND || a->what == RECEIVE
+                           || a->what == NOTIFY_TAKE || a->what == NOTIFY_WAIT;
+        const int result =
+            waits && i < TASKS && s.result[i] == KERNEL_OK ? kernel_result(&k) : s.result[i];
         const int64_t value = (uint32_t)kernel_value(&k);
         const bool shown = a->what >= NOTIFY_TAKE || (a->what == RECEIVE && result == KERNEL_OK);
         say_end(k.processor.clock, i, s.at[i], result, shown ? &value : NULL);
@@ -98,8 +87,11 @@ static void answer(int context)
 
 static void start(void)
 {
-    struct kernel_config c = { .tasks = p.tasks, .tick = p.tick, .tick_time = p.tick_time,
-                               .switch_time = p.switch_time, .entry_time = p.entry_time };
+    struct kernel_config c = { .tasks = p.tasks,
+                               .tick = p.tick,
+                               .tick_time = p.tick_time,
+                               .switch_time = p.switch_time,
+                               .entry_time = p.entry_time };
     for (int i = 0; i < p.tasks; i++) {
         c.priority[i] = p.priority[i];
     }

@@ -79,7 +79,7 @@ static void given_not_handed_over(void)
     CHECK_EQ(next(200), KERNEL_TASKS);
     CHECK_EQ(kernel_give(&k, 0), KERNEL_OK);
     CHECK_EQ(next(200), KERNEL_TASKS);
-    CHECK_EQ(kernel_give(&k, 0), KERNEL_WAS_FULL);      /* the woken task has not run */
+    CHECK_EQ(kernel_give(&k, 0), KERNEL_WAS_FULL); /* the woken task has not run */
     CHECK_EQ(kernel_end_interrupt(&k, true), KERNEL_OK);
     CHECK_EQ(next(200), 1);
     CHECK_EQ(kernel_result(&k), KERNEL_OK);
@@ -91,25 +91,27 @@ static void given_not_handed_over(void)
 static void last_look(void)
 {
     for (int sends = 0; sends < 2; sends++) {
-        struct kernel_config c = { .tasks = 2, .priority = { 2, 5 }, .tick = 100,
+        struct kernel_config c = { .tasks = 2,
+                                   .priority = { 2, 5 },
+                                   .tick = 100,
                                    .switch_time = 20,
                                    .queue[0] = { KERNEL_QUEUE, 1, 0 } };
         kernel_start(&k, &c);
         CHECK_EQ(next(50), 1);
-        kernel_take(&k, 1);                     /* woken without a yield, below */
+        kernel_take(&k, 1); /* woken without a yield, below */
         CHECK_EQ(next(50), 0);
         if (sends) {
             CHECK_EQ(kernel_send(&k, 0, 7, 0), KERNEL_OK);
             CHECK_EQ(next(50), 0);
         }
         CHECK_EQ(sends ? kernel_send(&k, 0, 8, 1) : kernel_receive(&k, 0, 1), KERNEL_OK);
-        kernel_pend(&k, 0, 110);                /* in the switch to the task: its time is over */
+        kernel_pend(&k, 0, 110); /* in the switch to the task: its time is over */
         CHECK_EQ(next(200), KERNEL_TASKS);
         CHECK_EQ(k.processor.clock, 120);
         CHECK_EQ(kernel_give(&k, 1), KERNEL_OK);
         CHECK_EQ(next(200), KERNEL_TASKS);
         CHECK_EQ(kernel_end_interrupt(&k, false), KERNEL_OK);
-        CHECK_EQ(next(200), 1);                 /* what is owed comes before the last look */
+        CHECK_EQ(next(200), 1); /* what is owed comes before the last look */
         CHECK_EQ(sends ? kernel_receive(&k, 0, 0) : kernel_send(&k, 0, 9, 0), KERNEL_OK);
         CHECK_EQ(next(200), 1);
         CHECK_EQ(kernel_value(&k), sends ? 7 : 9);
@@ -122,12 +124,17 @@ static void last_look(void)
 /* Entry, switch and tick take their time, and all time is somebody's. */
 static void overhead(void)
 {
-    const struct kernel_config c = { .tasks = 2, .priority = { 5, 1 }, .tick = 1000000,
-                                     .tick_time = 1000, .switch_time = 2500, .entry_time = 100,
-                                     .kernel_level = 5, .level = { 5, 4 } };
+    const struct kernel_config c = { .tasks = 2,
+                                     .priority = { 5, 1 },
+                                     .tick = 1000000,
+                                     .tick_time = 1000,
+                                     .switch_time = 2500,
+                                     .entry_time = 100,
+                                     .kernel_level = 5,
+                                     .level = { 5, 4 } };
     int64_t sum = 0;
     kernel_start(&k, &c);
-    CHECK_EQ(next(1), -1);                      /* the switch to the first task */
+    CHECK_EQ(next(1), -1); /* the switch to the first task */
     CHECK_EQ(next(10000), 0);
     CHECK_EQ(k.processor.clock, 2500);
     kernel_take(&k, 3);
@@ -141,11 +148,11 @@ static void overhead(void)
     CHECK_EQ(next(30000), KERNEL_TASKS);
     CHECK_EQ(kernel_end_interrupt(&k, true), KERNEL_OK);
     CHECK_EQ(next(30000), 0);
-    CHECK_EQ(k.processor.clock, 22600);         /* from the pin to the task: 2.6 us */
+    CHECK_EQ(k.processor.clock, 22600); /* from the pin to the task: 2.6 us */
     kernel_take(&k, 3);
     kernel_pend(&k, 1, 50000);
     CHECK_EQ(next(60000), KERNEL_TASKS + 1);
-    CHECK_EQ(kernel_give(&k, 3), KERNEL_NOT_ALLOWED);   /* more urgent than the kernel's level */
+    CHECK_EQ(kernel_give(&k, 3), KERNEL_NOT_ALLOWED); /* more urgent than the kernel's level */
     CHECK_EQ(kernel_take(&k, 3), KERNEL_NOT_ALLOWED);
     CHECK_EQ(kernel_delay(&k, 1), KERNEL_NOT_ALLOWED);
     CHECK_EQ(kernel_set_priority(&k, 0, 1), KERNEL_NOT_ALLOWED);
@@ -183,7 +190,8 @@ static void pending_once(void)
 static void refused(void)
 {
     const struct kernel_config good = {
-        .tasks = 2, .priority = { 5, 1 },
+        .tasks = 2,
+        .priority = { 5, 1 },
         .queue = { [1] = { KERNEL_MUTEX, 0, 0 }, [2] = { KERNEL_QUEUE, KERNEL_ITEMS, 0 } }
     };
     struct kernel_config bad[10];
@@ -203,7 +211,7 @@ static void refused(void)
     bad[8].queue[2].length = KERNEL_ITEMS + 1;
     bad[9].queue[15].kind = KERNEL_KINDS;
     CHECK_EQ(kernel_start(&k, &good), KERNEL_OK);
-    CHECK_EQ(kernel_compute(&k, 5), KERNEL_NOT_ALLOWED);        /* nobody is asked */
+    CHECK_EQ(kernel_compute(&k, 5), KERNEL_NOT_ALLOWED); /* nobody is asked */
     CHECK_EQ(kernel_send(&k, 2, 5, 0), KERNEL_NOT_ALLOWED);
     CHECK_EQ(kernel_notify(&k, 0, KERNEL_WAKES, 0), KERNEL_NOT_ALLOWED);
     CHECK_EQ(next(10), 0);
@@ -213,9 +221,9 @@ static void refused(void)
     }
     CHECK_EQ(kernel_compute(&k, -1), KERNEL_RANGE);
     CHECK_EQ(kernel_give(&k, KERNEL_QUEUES), KERNEL_RANGE);
-    CHECK_EQ(kernel_give(&k, 2), KERNEL_RANGE);                 /* a queue is no semaphore, */
+    CHECK_EQ(kernel_give(&k, 2), KERNEL_RANGE); /* a queue is no semaphore, */
     CHECK_EQ(kernel_take(&k, 2), KERNEL_RANGE);
-    CHECK_EQ(kernel_send(&k, 0, 1, 0), KERNEL_RANGE);           /* nor the other way round */
+    CHECK_EQ(kernel_send(&k, 0, 1, 0), KERNEL_RANGE); /* nor the other way round */
     CHECK_EQ(kernel_receive(&k, 1, 0), KERNEL_RANGE);
     CHECK_EQ(kernel_take(&k, -1), KERNEL_RANGE);
     CHECK_EQ(kernel_take_within(&k, 0, -1), KERNEL_RANGE);
@@ -237,8 +245,9 @@ static void refused(void)
 /* An interrupt does not wait, has no mutex and no delay. */
 static void of_an_interrupt(void)
 {
-    const struct kernel_config c = { .queue = { [1] = { KERNEL_MUTEX, 0, 0 },
-                                                [2] = { KERNEL_QUEUE, 1, 0 } } };
+    const struct kernel_config c = {
+        .queue = { [1] = { KERNEL_MUTEX, 0, 0 }, [2] = { KERNEL_QUEUE, 1, 0 } }
+    };
     int64_t previous = 0;
     kernel_start(&k, &c);
     kernel_pend(&k, 0, 0);
@@ -262,8 +271,9 @@ static void of_an_interrupt(void)
 /* The mutex of another task is not given. */
 static void mutex_of_another(void)
 {
-    const struct kernel_config c = { .tasks = 2, .priority = { 1, 2 },
-                                     .queue[0] = { KERNEL_MUTEX, 0, 0 }, .tick = 10 };
+    const struct kernel_config c = {
+        .tasks = 2, .priority = { 1, 2 }, .queue[0] = { KERNEL_MUTEX, 0, 0 }, .tick = 10
+    };
     kernel_start(&k, &c);
     CHECK_EQ(next(5), 1);
     CHECK_EQ(kernel_take(&k, 0), KERNEL_OK);

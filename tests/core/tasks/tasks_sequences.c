@@ -7,10 +7,10 @@
 
 static struct kernel k;
 static struct {
-    int64_t seen;                   /* events of the log that are in the text */
-    bool working[TASKS];            /* it has taken its semaphore, */
-    bool busy[TASKS];               /* and a unit is under way */
-    int left[TASKS];                /* units still to do */
+    int64_t seen;        /* events of the log that are in the text */
+    bool working[TASKS]; /* it has taken its semaphore, */
+    bool busy[TASKS];    /* and a unit is under way */
+    int left[TASKS];     /* units still to do */
 } s;
 
 static void read_log(const struct scenario *c)

@@ -9,9 +9,9 @@ enum { BOUNCES = 3, PHASE = 88 };
 enum phase { FALLING = 1, RISING, RESTING };
 
 struct ball {
-    double h, v;    /* [m], [m/s] */
-    double g, e;    /* gravity [m/s2]; share of the speed that a bounce leaves */
-    double lift;    /* [m/s2] an acceleration from outside, held over the step */
+    double h, v; /* [m], [m/s] */
+    double g, e; /* gravity [m/s2]; share of the speed that a bounce leaves */
+    double lift; /* [m/s2] an acceleration from outside, held over the step */
     int bounces, resting;
 };
 
@@ -29,12 +29,12 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
 static double *real(struct ball *b, fmi2ValueReference which)
 {
     switch (which) {
-    case HEIGHT: return &b->h;
-    case SPEED: return &b->v;
-    case GRAVITY: return &b->g;
+    case HEIGHT:      return &b->h;
+    case SPEED:       return &b->v;
+    case GRAVITY:     return &b->g;
     case RESTITUTION: return &b->e;
-    case LIFT: return &b->lift;
-    default: return NULL;
+    case LIFT:        return &b->lift;
+    default:          return NULL;
     }
 }
 

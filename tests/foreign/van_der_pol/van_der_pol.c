@@ -4,17 +4,19 @@
 #include "fmi3_rest.h"
 
 enum { TIME, X0 = 12, X1 = 4, MU = 77, X0_SHORT = 8 };
-static const double LONGEST = 1e-4;     /* [s] of a Runge-Kutta step */
+static const double LONGEST = 1e-4; /* [s] of a Runge-Kutta step */
 
 struct oscillator {
     double t, x[2], mu;
 };
 
-fmi3Instance fmi3InstantiateCoSimulation(
-    fmi3String name, fmi3String token, fmi3String place, fmi3Boolean visible, fmi3Boolean logging,
-    fmi3Boolean events, fmi3Boolean early, const fmi3ValueReference needed[], size_t n,
-    fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
-    fmi3IntermediateUpdateCallback update)
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String place,
+                                         fmi3Boolean visible, fmi3Boolean logging,
+                                         fmi3Boolean events, fmi3Boolean early,
+                                         const fmi3ValueReference needed[], size_t n,
+                                         fmi3InstanceEnvironment environment,
+                                         fmi3LogMessageCallback log,
+                                         fmi3IntermediateUpdateCallback update)
 {
     struct oscillator *o = calloc(1, sizeof *o);
     (void)name, (void)token, (void)place, (void)visible, (void)logging, (void)events, (void)early;
@@ -37,10 +39,10 @@ static double *at(struct oscillator *o, fmi3ValueReference which)
 {
     switch (which) {
     case TIME: return &o->t;
-    case X0: return &o->x[0];
-    case X1: return &o->x[1];
-    case MU: return &o->mu;
-    default: return NULL;
+    case X0:   return &o->x[0];
+    case X1:   return &o->x[1];
+    case MU:   return &o->mu;
+    default:   return NULL;
     }
 }
 

@@ -16,13 +16,17 @@
 void *fence_malloc(size_t size);
 void *fence_calloc(size_t n, size_t size);
 void *fence_realloc(void *old, size_t size);
-void  fence_free(void *block);
+void fence_free(void *block);
 
 enum { LARGE = 1 << 18, FEW = 1 << 15 /* [byte] */, PAGE = 4096, BLOCKS = 64, KNOWN = 64 };
 enum { ALIGN = 16 };
 
 /* Pages with one behind them that nobody may touch; a block ends where that begins. */
-static struct block { char *pages, *start; size_t size; bool used, written; } blocks[BLOCKS];
+static struct block {
+    char *pages, *start;
+    size_t size;
+    bool used, written;
+} blocks[BLOCKS];
 
 /* A leak checker looks for addresses in them, too. */
 __attribute__((weak)) void __lsan_register_root_region(const void *begin, size_t size);
@@ -95,18 +99,18 @@ static char *clear_pages(char *to, size_t n, char **end)
 /* What gcc and clang call for memset is wrapped by the linker (--wrap): a model that clears all of
  * its memory uses little of it. */
 #define WRAP(name) \
-void *__real_##name(void *to, int byte, size_t n); \
-void *__wrap_##name(void *to, int byte, size_t n); \
-void *__wrap_##name(void *to, int byte, size_t n) \
-{ \
-    char *end, *first = byte == 0 ? clear_pages(to, n, &end) : NULL; \
-    if (!first) { \
-        return __real_##name(to, byte, n); \
-    } \
-    __real_##name(to, 0, (size_t)(first - (char *)to)); \
-    __real_##name(end, 0, (size_t)((char *)to + n - end)); \
-    return to; \
-}
+    void *__real_##name(void *to, int byte, size_t n); \
+    void *__wrap_##name(void *to, int byte, size_t n); \
+    void *__wrap_##name(void *to, int byte, size_t n) \
+    { \
+        char *end, *first = byte == 0 ? clear_pages(to, n, &end) : NULL; \
+        if (!first) { \
+            return __real_##name(to, byte, n); \
+        } \
+        __real_##name(to, 0, (size_t)(first - (char *)to)); \
+        __real_##name(end, 0, (size_t)((char *)to + n - end)); \
+        return to; \
+    }
 WRAP(memset)
 WRAP(__asan_memset)
 
@@ -153,7 +157,9 @@ void *fence_realloc(void *old, size_t size)
 double fence_known(double (*f)(const double *, const double *, const double *), const double *x,
                    int nx, const double *u, int nu, const double *p, int np)
 {
-    static struct { double *argument, value; } known[KNOWN];
+    static struct {
+        double *argument, value;
+    } known[KNOWN];
     static unsigned latest;
     const size_t n = (size_t)(nx + nu + np);
     double *argument = malloc(n * sizeof *argument);

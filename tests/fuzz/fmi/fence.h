@@ -26,7 +26,8 @@ __attribute__((no_sanitize("coverage")))
 #else
 __attribute__((no_sanitize_coverage))
 #endif
-static __UINT64_TYPE__ fmi_hash(const struct fmi_snapshot *p);
+static __UINT64_TYPE__
+fmi_hash(const struct fmi_snapshot *p);
 
 #define PLANT_STIFFNESS(x, u, p) \
     fence_known(plant_stiffness, x, PLANT_STATES, u, PLANT_INPUTS, p, PLANT_PARAMETERS)

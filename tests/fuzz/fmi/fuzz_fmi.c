@@ -21,12 +21,12 @@ static const int64_t BUDGET = 60000000, BUDGET_OTHER = 5000000, BUDGET_ORDER = 1
 
 static struct pair pairs[PAIRS];
 static struct slot slots[SLOTS];
-static char  *bytes[VERSIONS], *other;  /* serialized states */
-static bool   in_bytes;                 /* there is one in bytes[] */
+static char *bytes[VERSIONS], *other; /* serialized states */
+static bool in_bytes;                 /* there is one in bytes[] */
 static enum stand bytes_stand;
 static double bytes_point;
-static int64_t budget;                  /* [ns] left */
-static bool   wrote;
+static int64_t budget; /* [ns] left */
+static bool wrote;
 
 static void shorten(const struct inside_variable *v, union side_value x, union side_value start)
 {
@@ -57,8 +57,9 @@ static void set(struct pair *p, struct bytes *b)
     const size_t i = pick_variable(b);
     const struct inside_variable v = inside_variable(i);
     const bool all = take(b, 1) & 1;
-    bool good = v.settable && (p->stand == NEW || p->stand == INITIALIZING
-                               || (p->stand == RUNNING && v.running));
+    bool good =
+        v.settable
+        && (p->stand == NEW || p->stand == INITIALIZING || (p->stand == RUNNING && v.running));
     HOLDS(v.count <= SIDE_ELEMENTS);
     const bool allowed = good;
     for (size_t k = 0; k < v.count; k++) {
@@ -122,8 +123,9 @@ static void step(struct pair *p, struct bytes *b)
     static const double wrong[] = { 0.0, -1e-3, NAN, INFINITY, 1e300, 1e-11, -INFINITY, 1e-320 };
     const uint32_t n = take(b, 1), kind = n & 7;
     const double tick = inside_tick() * 1e-9;
-    const int64_t ns = kind == 0 ? (int64_t)inside_tick() * (1 + (n >> 3))
-                       : kind < 4 ? INT64_C(100000) * (1 + (n >> 3)) : 1000000 * (1 + (n >> 5));
+    const int64_t ns = kind == 0  ? (int64_t)inside_tick() * (1 + (n >> 3))
+                       : kind < 4 ? INT64_C(100000) * (1 + (n >> 3))
+                                  : 1000000 * (1 + (n >> 5));
     double t = p->point, h = (double)ns * 1e-9;
     bool good = p->stand == RUNNING;
     if (kind == 6) {
@@ -207,8 +209,8 @@ static void to_bytes(struct pair *p, struct slot *s)
 static void from_bytes(struct pair *p, struct slot *s)
 {
     if (in_bytes) {
-        HOLDS(BOTH(deserialize(p->c[v_], bytes[1 - v_], inside_size(bytes[1 - v_]),
-                               &s->state[v_])) == 0);
+        HOLDS(BOTH(deserialize(p->c[v_], bytes[1 - v_], inside_size(bytes[1 - v_]), &s->state[v_]))
+              == 0);
         s->stand = bytes_stand;
         s->point = bytes_point;
     }
@@ -286,20 +288,42 @@ static void call(struct bytes *b)
     switch (n & 31) {
     case 0:  enter(p, b); break;
     case 1:  leave(p); break;
-    case 2:  case 3:  case 4:  case 5:  case 6: step(p, b); break;
-    case 7:  case 8:  case 9:  case 10: case 11: case 12: set(p, b); break;
-    case 13: case 14: case 15: case 16: get(p, b); break;
+    case 2:
+    case 3:
+    case 4:
+    case 5:
+    case 6:  step(p, b); break;
+    case 7:
+    case 8:
+    case 9:
+    case 10:
+    case 11:
+    case 12: set(p, b); break;
+    case 13:
+    case 14:
+    case 15:
+    case 16: get(p, b); break;
     case 17: terminate(p); break;
     case 18: reset(p); break;
-    case 19: case 20: keep(p, s); break;
-    case 21: case 22: restore(p, s); break;
+    case 19:
+    case 20: keep(p, s); break;
+    case 21:
+    case 22: restore(p, s); break;
     case 23: to_bytes(p, s); break;
     case 24: from_bytes(p, s); break;
-    case 25: case 26: from_damaged(p, b); break;
+    case 25:
+    case 26: from_damaged(p, b); break;
     case 27: HOLDS(BOTH(free_state(p->c[v_], &s->state[v_])) == 0 && !s->state[0]); break;
-    case 28: { const uint32_t which = take(b, 1); REFUSED(p, odd(p->c[v_], which)); break; }
+    case 28: {
+        const uint32_t which = take(b, 1);
+        REFUSED(p, odd(p->c[v_], which));
+        break;
+    }
     case 29: log_switch(p, b); break;
-    case 30: renew_wrongly(); renew(p); break;
+    case 30:
+        renew_wrongly();
+        renew(p);
+        break;
     default: /* in order, as most importers go */
         if (p->stand == NEW) {
             enter(p, &(struct bytes){ NULL, NULL });

@@ -12,10 +12,11 @@ enum { SLOW = PLANT_BRANCHES > 8 };
 enum { SLOW = 0 };
 #endif
 const int fuzz_count = sizeof(struct fmi_snapshot) < 1 << 15 && !SLOW ? 1000
-                       : sizeof(struct fmi_snapshot) < 1 << 20 ? 150 : 25;
+                       : sizeof(struct fmi_snapshot) < 1 << 20        ? 150
+                                                                      : 25;
 
 _Static_assert((int)SIDE_REAL == (int)VAR_F64 && (int)SIDE_INTEGER == (int)VAR_I32
-               && (int)SIDE_BOOLEAN == (int)VAR_BOOL && (int)SIDE_STRING == (int)VAR_STRING,
+                   && (int)SIDE_BOOLEAN == (int)VAR_BOOL && (int)SIDE_STRING == (int)VAR_STRING,
                "one numbering of types");
 
 size_t inside_count(void)
@@ -28,10 +29,13 @@ struct inside_variable inside_variable(size_t i)
     const struct var_info *v = &var_table[i];
     const bool input = v->causality == CAUSE_INPUT;
     const bool parameter = v->causality == CAUSE_PARAMETER;
-    return (struct inside_variable){
-        v->ref, v->count, v->type, input || parameter,
-        input || (parameter && v->variability == VARY_TUNABLE), v->min, v->max
-    };
+    return (struct inside_variable){ v->ref,
+                                     v->count,
+                                     v->type,
+                                     input || parameter,
+                                     input || (parameter && v->variability == VARY_TUNABLE),
+                                     v->min,
+                                     v->max };
 }
 
 union side_value inside_start(size_t i, size_t k)

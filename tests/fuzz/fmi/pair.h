@@ -13,7 +13,7 @@ enum stand { NEW, INITIALIZING, RUNNING, ENDED, FAILED };
 struct pair {
     void *c[VERSIONS];
     enum stand stand;
-    double point, stop;     /* [s] */
+    double point, stop; /* [s] */
 };
 
 /* A saved state of both. */
@@ -26,19 +26,21 @@ struct slot {
 extern const struct side *const side[VERSIONS];
 
 /* Make a call of both versions, which must answer alike and tell the same errors. */
-#define BOTH(call) __extension__ ({ \
-    int status_[VERSIONS]; \
-    pair_settle(); \
-    EACH_OF_BOTH(call); \
-    status_[0]; \
-})
-#define EACH_OF_BOTH(call) do { \
-    for (int v_ = 0; v_ < VERSIONS; v_++) { \
-        side_told[v_].errors = 0; \
-        status_[v_] = side[v_]->call; \
-    } \
-    pair_alike(status_); \
-} while (0)
+#define BOTH(call) \
+    __extension__({ \
+        int status_[VERSIONS]; \
+        pair_settle(); \
+        EACH_OF_BOTH(call); \
+        status_[0]; \
+    })
+#define EACH_OF_BOTH(call) \
+    do { \
+        for (int v_ = 0; v_ < VERSIONS; v_++) { \
+            side_told[v_].errors = 0; \
+            status_[v_] = side[v_]->call; \
+        } \
+        pair_alike(status_); \
+    } while (0)
 
 /* Were calls of both versions answered alike? An error is told once; of a part program, as often as
  * it has lines that are wrong. */
@@ -60,14 +62,15 @@ extern struct pair *pair_refused;
 void pair_settle(void);
 
 /* A call that must be refused and change nothing. */
-#define REFUSED(p, call) do { \
-    int status_[VERSIONS]; \
-    if (pair_refused != (p)) { \
-        pair_look(p); \
-    } \
-    EACH_OF_BOTH(call); \
-    HOLDS(status_[0] == ERROR && side_told[0].errors == 1); \
-    pair_refused = (p); \
-} while (0)
+#define REFUSED(p, call) \
+    do { \
+        int status_[VERSIONS]; \
+        if (pair_refused != (p)) { \
+            pair_look(p); \
+        } \
+        EACH_OF_BOTH(call); \
+        HOLDS(status_[0] == ERROR && side_told[0].errors == 1); \
+        pair_refused = (p); \
+    } while (0)
 
 #endif

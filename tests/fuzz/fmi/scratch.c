@@ -12,11 +12,15 @@ static char in_memory[] = "/dev/shm/fuzz_fmi_XXXXXX", on_disk[] = "/tmp/fuzz_fmi
 static char *folder;
 
 const char *const scratch_names[SCRATCH_NAMES] = {
-    "good.ngc", "table.csv", "out", "", "good.ngc", "bad.ngc", "link", "hard", "pipe", "sub",
-    "sub/out", "missing/out", "zero", "gone", "./good.ngc", "out.real.npy", "table.csv"
+    "good.ngc",   "table.csv",    "out",      "",        "good.ngc",    "bad.ngc", "link",
+    "hard",       "pipe",         "sub",      "sub/out", "missing/out", "zero",    "gone",
+    "./good.ngc", "out.real.npy", "table.csv"
 };
 
-static const struct { const char *name, *text; size_t size; } files[] = {
+static const struct {
+    const char *name, *text;
+    size_t size;
+} files[] = {
 #define TEXT(s) s, sizeof s - 1
     { "good.ngc", TEXT("G90 G0 X0 Y0\nG64 P0.1\nG1 X0.2 F3000\nG2 X0.3 Y0.1 I0.1 J0\n"
                        "M62 P1\nG1 Y1 Z0.1\nX0 M3 S500\nG4 P0.01\nM2\n") },

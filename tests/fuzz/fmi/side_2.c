@@ -27,13 +27,34 @@ static int enter(void *c, double start, bool stops, double stop, bool hasty)
     return status ? status : (int)fmi2EnterInitializationMode(c);
 }
 
-static int leave(void *c) { return fmi2ExitInitializationMode(c); }
-static int step(void *c, double point, double size) { return fmi2DoStep(c, point, size, 1); }
-static int terminate(void *c) { return fmi2Terminate(c); }
-static int reset(void *c) { return fmi2Reset(c); }
-static int get_state(void *c, void **s) { return fmi2GetFMUstate(c, s); }
-static int set_state(void *c, void *s) { return fmi2SetFMUstate(c, s); }
-static int free_state(void *c, void **s) { return fmi2FreeFMUstate(c, s); }
+static int leave(void *c)
+{
+    return fmi2ExitInitializationMode(c);
+}
+static int step(void *c, double point, double size)
+{
+    return fmi2DoStep(c, point, size, 1);
+}
+static int terminate(void *c)
+{
+    return fmi2Terminate(c);
+}
+static int reset(void *c)
+{
+    return fmi2Reset(c);
+}
+static int get_state(void *c, void **s)
+{
+    return fmi2GetFMUstate(c, s);
+}
+static int set_state(void *c, void *s)
+{
+    return fmi2SetFMUstate(c, s);
+}
+static int free_state(void *c, void **s)
+{
+    return fmi2FreeFMUstate(c, s);
+}
 
 static int size_of(void *c, void *s, size_t *size)
 {
@@ -61,13 +82,14 @@ static int switch_log(void *c, bool on, size_t n, const char *const *names)
         member[i] = x[i].member; \
     } \
     return Get(c, refs, n, member)
-#define EVERY(Get, member) do { \
-    const int status = Get(c, refs, n, member); \
-    for (size_t i = 0; i < n && status == 0; i++) { \
-        x[i].member = member[i]; \
-    } \
-    return status; \
-} while (0)
+#define EVERY(Get, member) \
+    do { \
+        const int status = Get(c, refs, n, member); \
+        for (size_t i = 0; i < n && status == 0; i++) { \
+            x[i].member = member[i]; \
+        } \
+        return status; \
+    } while (0)
 
 static int set(void *c, int type, uint32_t ref, size_t n, const union side_value *x)
 {
@@ -119,9 +141,11 @@ static int odd(void *c, unsigned which)
     }
 }
 
-static void release(void *c) { fmi2FreeInstance(c); }
+static void release(void *c)
+{
+    fmi2FreeInstance(c);
+}
 
-const struct side side_2 = {
-    instantiate, release, enter, leave, step, terminate, reset, set, get, get_state, set_state,
-    free_state, size_of, serialize, deserialize, switch_log, odd
-};
+const struct side side_2 = { instantiate, release,   enter,       leave,      step,      terminate,
+                             reset,       set,       get,         get_state,  set_state, free_state,
+                             size_of,     serialize, deserialize, switch_log, odd };

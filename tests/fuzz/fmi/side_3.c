@@ -29,12 +29,30 @@ static int step(void *c, double point, double size)
     return status;
 }
 
-static int leave(void *c) { return fmi3ExitInitializationMode(c); }
-static int terminate(void *c) { return fmi3Terminate(c); }
-static int reset(void *c) { return fmi3Reset(c); }
-static int get_state(void *c, void **s) { return fmi3GetFMUState(c, s); }
-static int set_state(void *c, void *s) { return fmi3SetFMUState(c, s); }
-static int free_state(void *c, void **s) { return fmi3FreeFMUState(c, s); }
+static int leave(void *c)
+{
+    return fmi3ExitInitializationMode(c);
+}
+static int terminate(void *c)
+{
+    return fmi3Terminate(c);
+}
+static int reset(void *c)
+{
+    return fmi3Reset(c);
+}
+static int get_state(void *c, void **s)
+{
+    return fmi3GetFMUState(c, s);
+}
+static int set_state(void *c, void *s)
+{
+    return fmi3SetFMUState(c, s);
+}
+static int free_state(void *c, void **s)
+{
+    return fmi3FreeFMUState(c, s);
+}
 
 static int size_of(void *c, void *s, size_t *size)
 {
@@ -62,13 +80,14 @@ static int switch_log(void *c, bool on, size_t n, const char *const *names)
         member[i] = x[i].member; \
     } \
     return Set(c, &ref, 1, member, n)
-#define EVERY(Get, member) do { \
-    const int status = Get(c, &ref, 1, member, n); \
-    for (size_t i = 0; i < n && status == 0; i++) { \
-        x[i].member = member[i]; \
-    } \
-    return status; \
-} while (0)
+#define EVERY(Get, member) \
+    do { \
+        const int status = Get(c, &ref, 1, member, n); \
+        for (size_t i = 0; i < n && status == 0; i++) { \
+            x[i].member = member[i]; \
+        } \
+        return status; \
+    } while (0)
 
 static int set(void *c, int type, uint32_t ref, size_t n, const union side_value *x)
 {
@@ -114,9 +133,11 @@ static int odd(void *c, unsigned which)
     }
 }
 
-static void release(void *c) { fmi3FreeInstance(c); }
+static void release(void *c)
+{
+    fmi3FreeInstance(c);
+}
 
-const struct side side_3 = {
-    instantiate, release, enter, leave, step, terminate, reset, set, get, get_state, set_state,
-    free_state, size_of, serialize, deserialize, switch_log, odd
-};
+const struct side side_3 = { instantiate, release,   enter,       leave,      step,      terminate,
+                             reset,       set,       get,         get_state,  set_state, free_state,
+                             size_of,     serialize, deserialize, switch_log, odd };

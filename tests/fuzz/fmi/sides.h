@@ -9,11 +9,19 @@
 enum { SIDE_REAL, SIDE_INTEGER, SIDE_BOOLEAN, SIDE_STRING };
 
 /* Values of a variable: as many elements as it has, of its type. */
-union side_value { double real; int32_t integer; int32_t boolean; const char *string; };
+union side_value {
+    double real;
+    int32_t integer;
+    int32_t boolean;
+    const char *string;
+};
 
 /* What a call told of errors: how many, and the beginning of each text. */
 enum { SIDE_ERRORS = 32, SIDE_TEXT = 256 };
-struct side_told { int errors; char text[SIDE_ERRORS][SIDE_TEXT]; };
+struct side_told {
+    int errors;
+    char text[SIDE_ERRORS][SIDE_TEXT];
+};
 
 struct side {
     void *(*instantiate)(const char *token, const char *resources);

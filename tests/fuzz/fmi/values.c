@@ -16,10 +16,8 @@ uint32_t take(struct bytes *b, int n)
 
 static double number(struct bytes *b, const struct inside_variable *v, double start)
 {
-    static const double odd[] = {
-        0.0, -0.0, 1.0, -1.0, 1e-9, 25e-9, 1e-3, 1e3, 1e308, -1e308, 5e-324, NAN, INFINITY,
-        -INFINITY, 0.1, 1e18
-    };
+    static const double odd[] = { 0.0,   -0.0,   1.0,    -1.0, 1e-9,     25e-9,     1e-3, 1e3,
+                                  1e308, -1e308, 5e-324, NAN,  INFINITY, -INFINITY, 0.1,  1e18 };
     const uint32_t kind = take(b, 1);
     const double share = (double)take(b, 2) / 65535.0;
     const double low = fmax(v->min, -1e3), high = fmin(v->max, 1e3);
@@ -34,23 +32,18 @@ static double number(struct bytes *b, const struct inside_variable *v, double st
     }
 }
 
-union side_value value(struct bytes *b, const struct inside_variable *v,
-                              union side_value start)
+union side_value value(struct bytes *b, const struct inside_variable *v, union side_value start)
 {
     static char large[4096];
     union side_value x = { .real = 0.0 };
     double n;
     switch (v->type) {
-    case SIDE_REAL:
-        x.real = number(b, v, start.real);
-        break;
+    case SIDE_REAL: x.real = number(b, v, start.real); break;
     case SIDE_INTEGER:
         n = number(b, v, start.integer);
         x.integer = n >= INT32_MIN && n <= INT32_MAX ? (int32_t)n : (int32_t)take(b, 4);
         break;
-    case SIDE_BOOLEAN:
-        x.boolean = take(b, 1) & 1;
-        break;
+    case SIDE_BOOLEAN: x.boolean = take(b, 1) & 1; break;
     default:
         memset(large, 'a', (size_t)inside_string_max());
         n = take(b, 1);

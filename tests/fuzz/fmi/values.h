@@ -4,7 +4,9 @@
 
 #include "inside.h"
 
-struct bytes { const uint8_t *at, *end; };
+struct bytes {
+    const uint8_t *at, *end;
+};
 
 /* The next n bytes as a number, 0 behind the end. */
 uint32_t take(struct bytes *b, int n);

@@ -4,9 +4,9 @@
 #include "vars.h"
 
 struct model {
-    int64_t period;         /* [ns] */
-    int64_t instant;        /* [ns] next sample, since startTime */
-    double  share;          /* of the way from y to u that a period makes */
+    int64_t period;  /* [ns] */
+    int64_t instant; /* [ns] next sample, since startTime */
+    double share;    /* of the way from y to u that a period makes */
 };
 
 #include "fmi_model.h"
