@@ -45,6 +45,7 @@ test-long: build                ## what takes an hour and `make test` shows of a
 	$(BIN)/python -m pytest -m long -n 2 --dist loadgroup --durations=25 --durations-min=60
 
 check: needs .venv/installed          ## formatting, lint, types
+	git ls-files '*.c' '*.h' '*.inc' | xargs $(BIN)/clang-format --dry-run --Werror
 	$(BIN)/ruff format --check src tests scenarios docs
 	$(BIN)/ruff check src tests scenarios docs
 	$(BIN)/mypy
