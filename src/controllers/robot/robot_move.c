@@ -285,8 +285,8 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         return check_end(&arm, &move->target, r->rear_joint, why);
     }
     l.feed = feed_of(r, c, move, by);
-    l.corner[0] = chained;
-    l.corner[1] = move->zone > 0.0;
+    l.zone[0] = chained ? r->rear_zone : 0.0;
+    l.zone[1] = move->singular != ROBOT_WRIST ? move->zone : 0.0; /* which none joins */
     for (int i = 0; i < OPW_JOINTS; i++) {
         l.speed[i] = robot_joint_speed(c, i);
         l.turn[i] = c->arm.joint[i].acc;
@@ -312,11 +312,11 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     r->command.blend = true;
     r->command.tolerance = WIDE;
     r->command.smooth = r->way.smooth;
-    r->stop = !chained;
+    r->stop = !chained || r->way.stop[0];
     memcpy(r->rear, r->way.path.end, sizeof r->rear);
     memcpy(r->rear_joint, joint, sizeof joint);
     r->rear_kind = move->singular == ROBOT_WRIST ? COURSE_WRIST : COURSE_POSE;
-    r->rear_zone = move->zone;
+    r->rear_zone = r->way.stop[1] ? 0.0 : move->zone;
     return ROBOT_OK;
 }
 

@@ -35,6 +35,13 @@ static const double LEAST = 1e-7;
 /* Share of a joint's acceleration for what a corner asks across the path. */
 static const double CORNER = 0.6;
 
+/* A corner that leaves less than this share of the acceleration of the piece beside it is not
+ * driven: a stop costs two ramps, and crawling for it much more. */
+static const double CRAWL = 0.02;
+
+/* Way on either side that a corner gets, in its zones: as long as one of 12 degrees needs. */
+static const double LONG = 10.0;
+
 /* A piece is halved in thought so often before limits that do not hold are lowered; before bounds
  * are given up beside a singular place that is met; to come near to the limit of a joint. */
 enum { FINE = 6, CORE = 10, DEEP = 40 };
@@ -434,6 +441,47 @@ static double any_direction(const struct survey *s, const double joint[OPW_JOINT
     return acc;
 }
 
+/* The piece in which part `at` of the path lies ends there, and another begins. */
+static void split(struct way *w, double at)
+{
+    int n = 0;
+
+    while (n < w->count && w->piece[n].until <= at) {
+        n++;
+    }
+    const double from = n > 0 ? w->piece[n - 1].until : 0.0;
+    if (n == w->count || w->count == WAY_PIECES || at * w->path.length < LEAST
+        || (at - from) * w->path.length < LEAST
+        || (w->piece[n].until - at) * w->path.length < LEAST) {
+        return;
+    }
+    memmove(&w->piece[n + 1], &w->piece[n], (size_t)(w->count - n) * sizeof *w->piece);
+    w->piece[n].until = at;
+    w->count++;
+}
+
+/* The corner at one end of a path: a piece beside it that is as short as it needs gets an
+ * acceleration that may have any direction; farther off, a mean no longer mixes it with theirs.
+ * Short pieces get it whole. False, and nothing is lowered, if they would crawl. */
+static bool lead(struct way *w, const struct survey *s, int side, const double joint[OPW_JOINTS])
+{
+    const struct way_piece *p = &w->piece[side == 0 ? 0 : w->count - 1];
+    const double acc = any_direction(s, joint, p->acc), length = s->path->length;
+    const double own = LONG * s->l->zone[side] / length;
+    const double mean = p->cap * w->smooth / length;
+
+    if (acc < CRAWL * p->acc) {
+        return false;
+    }
+    const double room = side == 0 ? p->until : 1.0 - (w->count > 1 ? p[-1].until : 0.0);
+    if (acc < p->acc && 2.0 * (own + mean) < room) {
+        split(w, side == 0 ? own + mean : 1.0 - own - mean);
+        split(w, side == 0 ? own : 1.0 - own);
+    }
+    w->piece[side == 0 ? 0 : w->count - 1].acc = acc;
+    return true;
+}
+
 enum way_status way_plan(struct way *w, const struct course_geometry *g, const struct way_limits *l,
                          double joint[OPW_JOINTS], struct way_fault *fault_)
 {
@@ -459,17 +507,14 @@ enum way_status way_plan(struct way *w, const struct course_geometry *g, const s
             return fault(&s, WAY_SINGULAR, w->piece[WAY_PIECES - 1].until, q, 0);
         }
     }
-    if (l->corner[0]) {
-        w->piece[0].acc = any_direction(&s, joint, w->piece[0].acc);
-    }
-    if (l->corner[1]) {
-        w->piece[w->count - 1].acc = any_direction(&s, q, w->piece[w->count - 1].acc);
-    }
     double least = l->feed;
     for (int n = 0; n < w->count; n++) {
         least = el_min(least, w->piece[n].cap);
     }
     w->smooth = least < SLOW * l->feed ? 0.0 : l->smooth;
+    for (int side = 0; side < 2; side++) {
+        w->stop[side] = l->zone[side] > 0.0 && !lead(w, &s, side, side == 0 ? joint : q);
+    }
     spread(w, w->smooth);
     memcpy(joint, q, sizeof q);
     return WAY_OK;

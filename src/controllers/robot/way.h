@@ -20,7 +20,7 @@ struct way_limits {
     double speed[OPW_JOINTS]; /* [rad/s] */
     double turn[OPW_JOINTS];  /* [rad/s^2] */
     double smooth;            /* [s] time of the mean of the look-ahead; 0 none */
-    bool corner[2];           /* a corner may follow its start, precede its end */
+    double zone[2];           /* [mm] of a corner at its start, at its end; 0: a stop */
     bool refuse;              /* where the joints do not allow the feed */
 };
 
@@ -34,6 +34,7 @@ struct way {
     struct path path;
     int32_t count, next; /* pieces; the first that is not yet a command */
     double smooth;       /* [s] of its commands: 0 if its joints make it slow */
+    bool stop[2];        /* no corner at its start, its end: the joints would make it crawl */
     struct way_piece piece[WAY_PIECES];
 };
 

@@ -233,6 +233,49 @@ static void many(const struct robot_config *c)
     CHECK(w.time > 628.3 / 100.0 && w.time < 1.4 * 628.3 / 100.0);
 }
 
+/* Two lines whose corner is where joint 5 stands at an angle: the time they take with a zone there,
+ * and with a stop. [s] */
+static double time_by_a_corner(double fifth, enum robot_singular singular, double zone)
+{
+    const double from[] = { 0.1, 0.2, 0.1, 0.0, 0.6, 0.0 }, to[] = { 0.3, 0.3, 0.2, 0.1, 0.5, 0.0 };
+    const double corner[] = { 0.2, 0.3, 0.0, 0.0, fifth, 0.0 };
+    const struct robot_config c = rig_config();
+    struct rig_watch w = { .slowest = 1e9, .noise = NOISE };
+    struct robot_refusal why;
+
+    robot_start(&robot, &c, from);
+    for (int n = 0; n < 2; n++) {
+        struct robot_move m = { .kind = ROBOT_LINE,
+                                .feed = 300.0,
+                                .share = 1.0,
+                                .zone = n == 0 ? zone : 0.0,
+                                .singular = n == 0 ? singular : ROBOT_SLOW };
+        m.target.pose = manipulator_pose(&c.arm, n == 0 ? corner : to);
+        m.target.branch = ROBOT_ANY_BRANCH;
+        CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+    }
+    rig_run(&c, &w);
+    CHECK(w.speed <= 1.0 + 1e-6 && w.acc <= 1.0 + 1e-3);
+    return w.time;
+}
+
+/* A corner's acceleration may have any direction, and beside a singular place the joints leave next
+ * to none of it: the path slows down at its end only, and stops there if it would crawl. A line by
+ * the wrist joins none behind it, so its zone asks for nothing. */
+static void corners_beside_the_wrist(void)
+{
+    static const double FIFTH[] = { 0.3, 0.03, 3e-3, 3e-4, 3e-5 };
+
+    for (size_t k = 0; k < sizeof FIFTH / sizeof *FIFTH; k++) {
+        for (int by_wrist = 0; by_wrist < 2; by_wrist++) {
+            const enum robot_singular singular = by_wrist ? ROBOT_WRIST : ROBOT_SLOW;
+            const double rest = time_by_a_corner(FIFTH[k], singular, 0.0);
+            const double zone = time_by_a_corner(FIFTH[k], singular, 1.0);
+            CHECK(zone <= 1.6 * rest);
+        }
+    }
+}
+
 int main(void)
 {
     const struct robot_config c = rig_config();
@@ -250,5 +293,6 @@ int main(void)
     no_arcs(&c);
     mixed(&c);
     many(&c);
+    corners_beside_the_wrist();
     return check_result();
 }

@@ -18,6 +18,9 @@ static const double ROUNDING = 1e-15, MOST = 2e-5;
 /* Seeds that have broken a limit: a wrist's move that begins where joint 5's sine is 1.3e-4. */
 static const int32_t FOUND[] = { 548 };
 
+/* Chains that have: one whose line by the wrist crawled for a corner that none could join. */
+static const int32_t FOUND_CHAINS[] = { 7217 };
+
 /* Even samples along a path; how often the way between two is halved: to 1e-14 of the path. */
 enum { SAMPLES = 2000, FINEST = 36 };
 
@@ -469,6 +472,9 @@ int main(int argc, char **argv)
 
     for (size_t n = 0; n < sizeof FOUND / sizeof *FOUND && argc < 3; n++) {
         one(FOUND[n]);
+    }
+    for (size_t n = 0; n < sizeof FOUND_CHAINS / sizeof *FOUND_CHAINS && argc < 3; n++) {
+        chain(FOUND_CHAINS[n]);
     }
     for (int32_t n = first; n < first + number; n += argc > 2 ? 1 : CHECK_EACH) {
         one(n);
