@@ -79,7 +79,8 @@ bool mover_waits(const struct mover *p, const struct ring *r)
     return !mover_busy(p) && (p->stopped || blocked(p, r));
 }
 
-bool mover_resting(const struct mover *p, const struct ring *r)
+/* Whether what is under way stands, and nothing can begin. */
+static bool stands(const struct mover *p, const struct ring *r)
 {
     if (p->motion == MOVER_CHAIN) {
         return in_force(p, false) <= 0.0 && track_rests(&p->track);
@@ -94,6 +95,16 @@ bool mover_resting(const struct mover *p, const struct ring *r)
     return mix_rests(&p->mix, brakes(p))
            && (p->mix.count > 0 || brakes(p) || p->confirming || mover_waits(p, r)
                || r->count == 0);
+}
+
+/* Where a plan made anew has nothing left, as an override's may in the very instant in which the
+ * speed is 0, an abort or a leave ends with the next call of mover_advance. */
+bool mover_resting(const struct mover *p, const struct ring *r)
+{
+    const bool drops =
+        p->motion != MOVER_CHAIN && p->motion != MOVER_CURVE && (p->abort || p->leave);
+
+    return !drops && stands(p, r);
 }
 
 bool mover_moving(const struct mover *p)
@@ -271,7 +282,7 @@ void mover_abort(struct mover *p, struct ring *r)
 {
     p->abort = true;
     replan(p);
-    if (mover_resting(p, r)) {
+    if (stands(p, r)) {
         mover_stop(p, r);
     }
 }
@@ -295,7 +306,7 @@ void mover_leave(struct mover *p, const struct ring *r)
 
     p->leave = p->motion == MOVER_MIX && p->mix.count == 1;
     replan(p);
-    if (p->leave && mover_resting(p, r)) {
+    if (p->leave && stands(p, r)) {
         mover_place(p, r, at, velocity);
         rest_at(p, at, false);
         p->confirming = p->confirm;
@@ -482,7 +493,7 @@ double mover_advance(struct mover *p, const struct mover_beside *b, double dt)
             retire(p);
             continue;
         }
-        if (mover_resting(p, r)) {
+        if (stands(p, r)) {
             if (p->abort) {
                 mover_stop(p, r);
             } else if (p->leave) {

@@ -77,8 +77,40 @@ static void abort_at_rest(bool under_way)
     CHECK(r.last.place[1] == 5.0 && MCC_check_stop(&m));
 }
 
+/* An override that comes in the very instant in which the ramp of an abort has no speed left: the
+ * ramp of 20 ms from 500 mm/s has speeds that reach 0 at a point exactly, before the time of the
+ * plan is over. Whatever the points at which overrides come, the abort ends. */
+static void override_at_the_end(void)
+{
+    int32_t instants = 0;
+
+    for (int k = 1; k < 400; k++) {
+        struct machine machine = mcc_machine();
+        machine.acc_time = 0.01;
+        machine.dec_time = 0.02;
+        machine.dda_time = 1e-4;
+        machine.dda_length = 10;
+        begin(machine);
+        CHECK(MCC_ptp_x(&m, 100.0) > 0);
+        CHECK(MCC_line_y(&m, 1.0) > 0);
+        points_to_rest(k);
+        if (MCC_motion_abort(&m) != MCC_NO_ERR) {
+            continue;
+        }
+        for (int n = 0; n < 3; n++) {
+            CHECK_EQ(MCC_set_ptp_ospd(&m, n % 2 ? 2.0 : 0.5), MCC_NO_ERR);
+            points_to_rest(k);
+            instants += MCC_check_stop(&m);
+        }
+        points_to_rest(4000);
+        CHECK(MCC_check_stop(&m) && m.ring.count == 0 && !m.mover.abort);
+    }
+    CHECK(instants > 100);
+}
+
 int main(void)
 {
+    override_at_the_end();
     chains(false);
     chains(true);
     abort_at_rest(false);
