@@ -47,7 +47,7 @@ run() {
     target=$built/fuzz_$1 found=$built/$1.found
     mkdir -p "$found"
     if [ "$link" = -fsanitize=fuzzer ]; then
-        if ! "$target" -seed="$seed" -max_total_time="$3" -timeout=20 -artifact_prefix="$built/$1-" \
+        if ! "$target" -seed="$seed" -max_total_time="$3" -timeout=120 -artifact_prefix="$built/$1-" \
             -print_final_stats=1 "$found" "$PWD/$2" > "$target.log" 2>&1; then
             tail -40 "$target.log"
             exit 1
