@@ -1,4 +1,5 @@
-/* The server's end on the wires of a co-simulation: read at an instant, shown at the next. */
+/* FMU of the server's end of a network card's link (core net_host): it reads its inputs at the
+ * instants of a grid and shows the outcome at the next instant. */
 #include <string.h>
 
 #include "byte_ring.h"
@@ -7,16 +8,16 @@
 
 struct model {
     struct net_host host;
-    int64_t period;   /* [ns] grid of the wires */
-    int64_t instant;  /* [ns] next instant of it */
-    bool unpublished; /* what was done at the one before is not shown yet */
-    bool stored;
-    int64_t stored_at;  /* [ns] */
-    int32_t connection; /* as read last */
-    int32_t tx_words[BYTE_RING_WORDS];
-    int32_t tx_count, rx_taken;
-    double owed; /* packets of the flood */
-    uint32_t asked;
+    int64_t period;                    /* [ns] grid of the inputs */
+    int64_t instant;                   /* [ns] next instant of the grid */
+    bool unpublished;                  /* the outputs of the latest instant are not shown yet */
+    bool stored;                       /* the job is stored in the card */
+    int64_t stored_at;                 /* [ns] time at which it was */
+    int32_t connection;                /* number of the connection as read last */
+    int32_t tx_words[BYTE_RING_WORDS]; /* bytes to the card (byte_ring.h), */
+    int32_t tx_count, rx_taken;        /* their count, count of bytes taken from the card */
+    double owed;                       /* packets of the flood that are due */
+    uint32_t asked;                    /* packets of the flood sent */
 };
 
 #define MODEL_BLOB
@@ -26,7 +27,7 @@ struct model {
 
 static const double second = 1e9; /* [ns] */
 
-/* Whole pages, no more than the flash of a card has. */
+/* Check that the job file is whole pages and fits into the flash of a card. */
 static int check_job(struct fmu *f, const struct job_file *job)
 {
     if (job->bytes > JOB_FILE_MOST || job->bytes % NET_PAGE_BYTES)
@@ -82,7 +83,7 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* Another connection, or none: streams start anew. */
+/* When the connection's number changes, the byte streams start anew. */
 static void see_connection(struct fmu *f)
 {
     struct model *m = &f->s.m;
@@ -96,7 +97,8 @@ static void see_connection(struct fmu *f)
         net_host_connected(&m->host, m->instant);
 }
 
-/* Ask for the first setting as often as the flood has it; what finds no room is not made up for. */
+/* A flood of packets: ask for the first setting at the given rate. Packets for which there is no
+ * room are left out. */
 static void flood(struct fmu *f)
 {
     const struct vars *v = &f->s.v;

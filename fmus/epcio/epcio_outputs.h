@@ -1,4 +1,5 @@
-/* The card's state as outputs of the description, behind card_wires.h. */
+/* epcio_outputs - sets the outputs of the epcio FMU from the state of its card. Included by model.c
+ * after card_wires.h. */
 #ifndef EPCIO_OUTPUTS_H
 #define EPCIO_OUTPUTS_H
 

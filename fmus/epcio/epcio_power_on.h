@@ -1,4 +1,5 @@
-/* The parameters of the description as configuration and first register values of the card. */
+/* epcio_power_on - makes the card's configuration and its first register values of the parameters
+ * of the epcio FMU. Included by model.c after fmi_model.h. */
 #ifndef EPCIO_POWER_ON_H
 #define EPCIO_POWER_ON_H
 
@@ -25,7 +26,7 @@ static struct epcio_config config_of(const struct vars *v)
     return c;
 }
 
-/* Which parameter each element of a refused configuration came from is found by trying them. */
+/* Report a refused configuration: the parameter is found by checking the parts one by one. */
 static int refuse_config(struct fmu *f, enum epcio_status status)
 {
     const struct vars *v = &f->s.v;
@@ -42,7 +43,8 @@ static int refuse_config(struct fmu *f, enum epcio_status status)
     return fmu_fail(f, "the card refuses its parameters: %s", text);
 }
 
-/* Write count registers from `address` on; -1 after the first that is refused. */
+/* Write the elements of a parameter to the registers from `address` on; -1 after the first that is
+ * refused. */
 #define POWER_ON(name, address) \
     for (int i = 0; i < (int)(sizeof v->name / sizeof *ELEMENTS(v->name)); i++) { \
         const double value = (double)ELEMENTS(v->name)[i]; \
@@ -54,7 +56,8 @@ static int refuse_config(struct fmu *f, enum epcio_status status)
 /* The first element of a scalar, an array or a table. */
 #define ELEMENTS(x) _Generic((x), int32_t: &(x), bool: &(x), default: (x))
 
-/* First values of the registers: in an order in which no value is refused for one that follows. */
+/* Write the first values of the registers, in an order in which none is refused because of a later
+ * one. */
 static int write_power_on(struct fmu *f)
 {
     struct vars *v = &f->s.v;

@@ -1,4 +1,4 @@
-/* The EPCIO card on the wires of a co-simulation: sampling grid, registers, mailboxes. */
+/* FMU of the EPCIO card (core epcio): sampling grid, register and mailbox inputs, outputs. */
 #include <math.h>
 #include <string.h>
 
@@ -13,11 +13,11 @@ struct model {
     int64_t period;               /* [clocks] sampling grid of loops and host bus */
     int64_t instant;              /* [clock] next instant of that grid */
     bool powered;                 /* the first instant has passed */
-    struct mailbox taken;         /* numbers taken last of the host */
-    int32_t reg_seq;              /* taken last from the mailbox of registers */
-    enum epcio_status reg_status; /* of that transaction */
-    int32_t warned_length;        /* DDA length that was refused last, to say so once */
-    int32_t warned_frames;        /* frames refused when that was last said */
+    struct mailbox taken;         /* sequence numbers taken last from the host */
+    int32_t reg_seq;              /* sequence number taken last from the mailbox of registers */
+    enum epcio_status reg_status; /* status of that transaction */
+    int32_t warned_length;        /* DDA length that has to wait and was warned of */
+    int32_t warned_frames;        /* number of refused frames that were warned of */
 };
 
 #include "fmi_model.h"
@@ -43,7 +43,7 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* A new number in the register mailbox writes its registers in order, now, up to the first that the
+/* If the register mailbox has a new number, write its registers in order, up to the first that the
  * card refuses. */
 static void take_registers(struct fmu *f)
 {
@@ -145,7 +145,7 @@ static int sample(struct fmu *f)
                     bad < 6 ? bad + 1 : bad - 5, value[bad], epcio_status_text(s));
 }
 
-/* What cannot start before the pins have been seen once: ADC and remote I/O. */
+/* Start ADC and remote I/O, which need the inputs of the first instant. */
 static int power_on(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -159,8 +159,8 @@ static int power_on(struct fmu *f)
     return 0;
 }
 
-/* Instants in [t0, t1) read the inputs; the state shown is that at t1, with the DAC codes of the
- * latest instant before t1 if t1 is an instant itself. */
+/* Inputs are read at the instants in [t0, t1). The outputs show the state at t1, with the DAC codes
+ * of the latest instant before t1 even if t1 is an instant. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;

@@ -1,4 +1,5 @@
-/* The link on the wires of a co-simulation: read at an instant, shown at the next. */
+/* FMU of the network between a card and its host (core ethernet): it reads both ends at the
+ * instants of a grid and shows the outcome at the next instant. */
 #include <string.h>
 
 #include "ethernet.h"
@@ -6,11 +7,11 @@
 
 struct model {
     struct ethernet link;
-    int64_t period;   /* [ns] grid of the wires */
-    int64_t instant;  /* [ns] next instant of it */
-    bool unpublished; /* what was read at the one before is not shown yet */
-    bool wanted;      /* both ends wanted a connection then */
-    uint32_t warned;  /* faults when that was last said */
+    int64_t period;   /* [ns] grid of the inputs */
+    int64_t instant;  /* [ns] next instant of the grid */
+    bool unpublished; /* the outputs of the latest instant are not shown yet */
+    bool wanted;      /* both ends wanted a connection at the latest instant */
+    uint32_t warned;  /* number of faults that were warned of */
 };
 
 #include "fmi_model.h"

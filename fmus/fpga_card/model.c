@@ -1,4 +1,4 @@
-/* The FPGA card on the wires of a co-simulation: grid, mailboxes, pins. */
+/* FMU of the FPGA card (core fpga): grid, mailbox and pin inputs, outputs. */
 #include <string.h>
 
 #include "fpga_wires.h"
@@ -6,18 +6,18 @@
 
 struct model {
     struct fpga card;
-    int64_t period;  /* [clocks] grid of the wires */
+    int64_t period;  /* [clocks] grid of the inputs */
     int64_t instant; /* [clock] next instant of that grid */
     struct fpga_taken taken;
-    int64_t warned;         /* refused when that was last said */
-    int64_t dry;            /* underruns when these were last said */
+    int64_t warned;         /* number of refusals that were warned of */
+    int64_t dry;            /* number of underruns at the latest warning */
     double ai[FPGA_ANALOG]; /* [V] as read last */
 };
 
 #include "fmi_model.h"
 #include "fmu_period.h"
 
-/* Whole clocks of a time; 0 after fmu_fail(). */
+/* A time that must be a whole number of clocks; 0 after fmu_fail(). */
 static int64_t clocks_of(struct fmu *f, const char *name, double seconds)
 {
     const double clocks = seconds * FPGA_CLOCK_HZ;
@@ -55,8 +55,8 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* The clock of an input, of its element k > 0 if it is an array, rounded up to a whole one; 0 if
- * none is stated, -1 after fmu_fail(). */
+/* The clock in an input (element k > 0 of an array), rounded up to a whole one; 0 if none is
+ * stated, -1 after fmu_fail(). */
 static int64_t clock_of(struct fmu *f, const char *name, int k, double clock)
 {
     if (!(fabs(clock) < FMU_TICKS_MAX) && k)
@@ -66,7 +66,7 @@ static int64_t clock_of(struct fmu *f, const char *name, int k, double clock)
     return clock > 0.0 ? (int64_t)ceil(clock) : 0;
 }
 
-/* Clocks are checked in mailboxes that are new. */
+/* Check the clocks in mailboxes that have a new number. */
 static int check_host(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -121,7 +121,7 @@ static int read_pins(struct fmu *f)
     return 0;
 }
 
-/* What has been refused since this was last said. */
+/* Warn of refusals since the latest warning. */
 static void warn_refused(struct fmu *f)
 {
     struct model *m = &f->s.m;
@@ -138,8 +138,8 @@ static void warn_refused(struct fmu *f)
                  fpga_status_text(r->status));
 }
 
-/* Pulses have stood still because the host was late: at first, and each time that there are twice
- * as many. */
+/* Warn of underruns, where pulses stood still because the host was late: of the first one, and each
+ * time that their number has doubled. */
 static void warn_underruns(struct fmu *f, int64_t clock)
 {
     struct model *m = &f->s.m;
@@ -171,7 +171,7 @@ static void publish(struct fmu *f)
     v->dout = link_wrap(c->outputs);
 }
 
-/* Instants in [t0, t1) read the inputs; the state shown is that at t1. */
+/* Inputs are read at the instants in [t0, t1); the outputs show the state at t1. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;

@@ -1,5 +1,6 @@
-/* The logic analyser on the wires of a co-simulation: what is seen at an instant shows at the next;
- * events wait in memory and become a file when the run ends well. */
+/* FMU of the logic analyser (core analyser): it reads its inputs at the instants of a grid and
+ * shows the outcome at the next. Events are kept in memory and written to a file if the run ends
+ * well. */
 #include <inttypes.h>
 
 #include "analyser.h"
@@ -7,9 +8,9 @@
 
 struct model {
     struct analyser analyser;
-    int64_t instant;  /* [clock] next instant of the wires */
-    bool unpublished; /* what was seen at the one before is not shown yet */
-    int64_t held;     /* events so far */
+    int64_t instant;  /* [clock] next instant of the grid */
+    bool unpublished; /* the outputs of the latest instant are not shown yet */
+    int64_t held;     /* number of events so far */
 };
 
 #define MODEL_BLOB
@@ -19,7 +20,7 @@ struct model {
 
 enum { CLOCK_HZ = 40000000, CLOCK_NS = 1000000000 / CLOCK_HZ, GROUPS = 6 };
 
-/* Events so far. A restored FMU state may stand before or after the last of them. */
+/* Recorded events. A restored FMU state may be from before or after the last of them. */
 struct events {
     struct analyser_event *of;
     int64_t room, held;
@@ -30,7 +31,7 @@ static int cannot_write(struct fmu *f, const char *why)
     return fmu_fail(f, "record_file: cannot write %s: %s", f->s.v.record_file, why);
 }
 
-/* A path that cannot be written is told before the run, not after it. */
+/* Check before the run, not after it, that the file can be written. */
 static int model_open(struct fmu *f)
 {
     const char *name = f->s.v.record_file;
@@ -71,7 +72,8 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* Keep an event. Those that an FMU state brings along from another instance are not known here. */
+/* Record an event. Events from before a state of another instance are not known and stay marked
+ * so. */
 static int record(struct fmu *f, const struct analyser_event *event)
 {
     enum { FIRST = 1024 }; /* events of the first buffer; it doubles when full */
@@ -96,7 +98,7 @@ static int record(struct fmu *f, const struct analyser_event *event)
     return 0;
 }
 
-/* Channels of a group, as one. */
+/* Set the outputs of a group from the statistics of its channels together. */
 static void publish_group(struct vars *v, const struct analyser *a, int group)
 {
     struct analyser_channel all = { .least = INT64_MAX };

@@ -1,12 +1,13 @@
-/* Reads the compensation tables of the mcc FMU: two kinds of rows, each under a header of its own.
+/* comp_file - reads the compensation tables (pitch error, backlash) of the mcc FMU from a text
+ * file: two kinds of rows, each under its own header.
  *
  *     axis,interval,home              (interval in pulses; home: index of the point at position 0)
  *     1,8000,10
  *     axis,index,forward,backward     (corrections in pulses; indices of an axis without a gap)
  *     1,8,-3,-13
  *
- * Before the first index of an axis and behind its last the table goes on with their values. Empty
- * lines and lines that begin with # are passed over.
+ * Before the first index of an axis and after its last the table is filled with their values. Empty
+ * lines and lines that begin with # are skipped.
  */
 #ifndef COMP_FILE_H
 #define COMP_FILE_H
@@ -20,22 +21,22 @@ enum { COMP_CELLS = 4, COMP_LINE = 256 };
 
 struct comp_file {
     struct comp_table table[AXES];
-    int32_t last[AXES]; /* index read last, -1: none yet */
-    int cells;          /* of the rows under the latest header, 0 before the first */
-    int line;
-    char said[COMP_LINE + 160]; /* what is wrong */
+    int32_t last[AXES];         /* index read last for each axis, -1: none yet */
+    int cells;                  /* number of cells in a row under the latest header; 0: no header */
+    int line;                   /* number of the line */
+    char said[COMP_LINE + 160]; /* message about an error */
 };
 
 static const char *const comp_head[] = { "axis,interval,home", "axis,index,forward,backward" };
 
-/* Says what is wrong with a value; always -1. */
+/* Write the message about a wrong value; returns -1. */
 static int comp_bad(struct comp_file *f, const char *what, long value, const char *why)
 {
     snprintf(f->said, sizeof f->said, "line %d: %s %ld %s", f->line, what, value, why);
     return -1;
 }
 
-/* Whole numbers of a row into cell[]; their count, or -1. */
+/* Read the integers of a row into cell[]. Returns 0, or -1 if there are not f->cells of them. */
 static int comp_row(struct comp_file *f, const char *text, long cell[COMP_CELLS])
 {
     for (int n = 0;; n++) {
@@ -59,7 +60,7 @@ static int comp_row(struct comp_file *f, const char *text, long cell[COMP_CELLS]
     return -1;
 }
 
-/* axis,interval,home */
+/* Take a row axis,interval,home. */
 static int comp_axis(struct comp_file *f, const long c[COMP_CELLS])
 {
     struct comp_table *t = &f->table[c[0] - 1];
@@ -78,7 +79,7 @@ static int comp_axis(struct comp_file *f, const long c[COMP_CELLS])
     return 0;
 }
 
-/* axis,index,forward,backward */
+/* Take a row axis,index,forward,backward. */
 static int comp_point(struct comp_file *f, const long c[COMP_CELLS])
 {
     struct comp_table *t = &f->table[c[0] - 1];
@@ -106,7 +107,7 @@ static int comp_point(struct comp_file *f, const long c[COMP_CELLS])
     return 0;
 }
 
-/* One line without its end. */
+/* Take a line, without its line end. */
 static int comp_line(struct comp_file *f, const char *text)
 {
     long cell[COMP_CELLS];
@@ -134,7 +135,8 @@ static int comp_line(struct comp_file *f, const char *text)
     return f->cells == 3 ? comp_axis(f, cell) : comp_point(f, cell);
 }
 
-/* Read a line without its end, 1, or 0 at the end of the file; -1 if it is no line of text. */
+/* Read a line without its line end. Returns 1, 0 at the end of the file, or -1 if it is not text or
+ * too long. */
 static int comp_next(struct comp_file *f, FILE *file, char text[COMP_LINE])
 {
     int n = 0, c = getc(file);
@@ -157,7 +159,7 @@ static int comp_next(struct comp_file *f, FILE *file, char text[COMP_LINE])
     return 1;
 }
 
-/* Fills the tables; on an error says what is wrong. */
+/* Read a file into the tables. Returns 0, or -1 with a message in f->said. */
 static int comp_read(struct comp_file *f, const char *name)
 {
     char text[COMP_LINE];

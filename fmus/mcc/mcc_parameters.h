@@ -1,4 +1,5 @@
-/* Parameters of the mcc FMU as the library takes them. Included by model.c behind fmi_model.h. */
+/* mcc_parameters - checks the parameters of the mcc FMU and converts them to the configuration of
+ * the motion library and its PC. Included by model.c after fmi_model.h. */
 #ifndef MCC_PARAMETERS_H
 #define MCC_PARAMETERS_H
 
@@ -101,7 +102,7 @@ static int check_protection(struct fmu *f)
     return 0;
 }
 
-/* What belongs to the software law needs its output mode. */
+/* Parameters of the software control law need output_mode 2. */
 static int check_law(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -231,7 +232,7 @@ static struct law_config law_of(const struct vars *v)
     return c;
 }
 
-/* A cycle that is not 0 has a clock at least. */
+/* A cycle in clocks; one that is not 0 has at least one clock. */
 static int64_t cycle_of(double seconds)
 {
     return seconds > 0.0 ? (int64_t)llround(el_max(1.0, clocks(seconds))) : 0;

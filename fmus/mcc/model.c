@@ -1,4 +1,5 @@
-/* The motion library on its PC, on the wires of a co-simulation: bus grid, registers, mailboxes. */
+/* FMU of the motion library on its PC (core pc): bus grid, inputs from the card, levels and
+ * mailboxes to it, files. */
 #include <string.h>
 
 #include "library_in_use.h"
@@ -7,11 +8,11 @@
 
 struct model {
     struct pc pc;
-    int64_t bus;        /* [ns] */
-    int64_t instant;    /* [ns] next instant of the bus grid that reads */
-    bool unpublished;   /* what was read last shows at that instant */
-    int32_t told_error; /* run-time error that was reported */
-    bool told_change;   /* the tool change that is waited for was reported */
+    int64_t bus;        /* [ns] period of the bus grid */
+    int64_t instant;    /* [ns] next instant of the grid, at which inputs are read */
+    bool unpublished;   /* the outputs of the latest instant are shown at the next one */
+    int32_t told_error; /* run-time error that was reported last */
+    bool told_change;   /* the tool change for which the program waits was reported */
 };
 
 #define MODEL_BLOB
@@ -23,7 +24,7 @@ struct model {
 #include "program_fault.h"
 #include "tool_file.h"
 
-/* What path_file must not replace. */
+/* Files that are read and that path_file must not replace. */
 enum { INPUTS = 3 };
 struct inputs {
     struct output_input of[INPUTS];
@@ -44,7 +45,7 @@ static int cannot_write(struct fmu *f, const char *why)
     return fmu_fail(f, "path_file: cannot write %s: %s", f->s.v.path_file, why);
 }
 
-/* A path that cannot be written is told before the run, not after it. */
+/* Check before the run, not after it, that path_file can be written. */
 static int model_open(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -149,7 +150,7 @@ static void publish(struct fmu *f)
     }
 }
 
-/* The tables of comp_file come into force. */
+/* Give the library the compensation tables of comp_file. */
 static int set_compensation(struct fmu *f)
 {
     const char *name = f->s.v.comp_file;
@@ -167,7 +168,7 @@ static int set_compensation(struct fmu *f)
     return 0;
 }
 
-/* Tools, probe, and how the program is meant. */
+/* Give the library the tool table, the probe, and settings of the interpreter. */
 static int set_tools(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -190,7 +191,7 @@ static int set_tools(struct fmu *f)
     return 0;
 }
 
-/* The source document's rule for the cycle of the interpolation. */
+/* Warn if the interpolation cycle breaks the source document's rule. */
 static void warn_of_cycle(struct fmu *f)
 {
     const struct pc *pc = &f->s.m.pc;
@@ -238,7 +239,7 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* Read the wires at an instant of the bus grid and let the PC work. */
+/* Read the inputs at an instant of the bus grid and let the PC work. */
 static void read_bus(struct fmu *f, int64_t at)
 {
     const struct vars *v = &f->s.v;
@@ -271,7 +272,8 @@ static void read_bus(struct fmu *f, int64_t at)
     pc_instant(pc, at / CLOCK_NS, &card, &panel, &source);
 }
 
-/* A full FIFO drains, so nothing that passes by itself explains so many refusals. */
+/* Fail because the card has refused too many frames in a row: a full FIFO would have drained by
+ * then, so the reason does not pass by itself. */
 static int refused_by_card(struct fmu *f)
 {
     const struct pcl *pcl = &f->s.m.pc.pcl;
@@ -308,7 +310,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     }
 }
 
-/* The commands that have begun, as rows of path_file. */
+/* Write the commands that have begun to path_file. */
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;

@@ -1,4 +1,4 @@
-/* Writes the planned geometry of the mcc FMU. */
+/* path_file - writes the planned geometry of the mcc FMU, a row for each command, to a CSV file. */
 #ifndef PATH_FILE_H
 #define PATH_FILE_H
 
@@ -6,7 +6,7 @@
 #include "interpreter.h"
 #include "waiting.h"
 
-/* A number with all its digits, whatever decimal sign the host's locale has. */
+/* Write a comma and a number with all its digits, with a decimal point in any locale. */
 static void put(FILE *file, double x)
 {
     char digits[32];
@@ -73,8 +73,8 @@ static void put_path(FILE *file, struct interpreter in, const struct program *pr
     }
 }
 
-/* Write one row per command up to an index, as the interpreter makes them again from its start.
- * Returns NULL or what is wrong; then there is no new file and the old one is untouched. */
+/* Write one row per command up to the index `last`; the interpreter makes them again from its
+ * start. Returns NULL, or what is wrong; then there is no new file and an old one is untouched. */
 static const char *path_write(const char *name, const struct output_input *input, int inputs,
                               const struct interpreter *start, const struct program *program,
                               int32_t last)

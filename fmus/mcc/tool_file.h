@@ -1,4 +1,5 @@
-/* Reads the tool table of the mcc FMU: a tool a line, as tool_table.h has it.
+/* tool_file - reads the tool table of the mcc FMU from a text file: one tool per line, in the form
+ * of tool_table.h.
  *
  *     T1 P1 D6.0 Z+50.2 ;comment
  */
@@ -12,8 +13,8 @@ enum { TOOL_LINE = 256 };
 
 struct tool_file {
     struct tool_table table;
-    int line;
-    char said[2 * TOOL_LINE]; /* what is wrong */
+    int line;                 /* number of the line */
+    char said[2 * TOOL_LINE]; /* message about an error */
 };
 
 static int tool_bad(struct tool_file *f, const char *why, const char *text, int length)
@@ -22,7 +23,8 @@ static int tool_bad(struct tool_file *f, const char *why, const char *text, int 
     return -1;
 }
 
-/* The next line into text[]: its length, -1 at the end of the file, -2 if it is none. */
+/* Read the next line into text[]. Returns its length, -1 at the end of the file, -2 if it is not
+ * text or too long. */
 static int tool_next(struct tool_file *f, FILE *file, char text[TOOL_LINE])
 {
     int n = 0, c = getc(file);
@@ -42,7 +44,8 @@ static int tool_next(struct tool_file *f, FILE *file, char text[TOOL_LINE])
     return n > 0 && text[n - 1] == '\r' ? n - 1 : n;
 }
 
-/* Fills the table, which is closed then; on an error says what is wrong. */
+/* Read a file into the table, which is closed to other tools then. Returns 0, or -1 with a message
+ * in f->said. */
 static int tool_read(struct tool_file *f, const char *name, bool angles)
 {
     char text[TOOL_LINE];

@@ -1,9 +1,10 @@
-/* The DAC of the cards: parameters as the library takes them, wires, refusals. Included by model.c
- * behind fmi_model.h. */
+/* dac_axes - the voltage axes of the mcc_groups FMU, which are driven by the cards' DACs: their
+ * parameters, their outputs, and messages about refused channels. Included by model.c after
+ * fmi_model.h. */
 #ifndef DAC_AXES_H
 #define DAC_AXES_H
 
-/* The parameters of a card under the names of the description. */
+/* Read the parameters of card K, whose names begin with cardK_. */
 #define READ_DACS(K) \
     do { \
         for (int i = 0; i < GROUP_DACS; i++) { \
@@ -26,7 +27,7 @@
         } \
     } while (0)
 
-/* Before a group is created. */
+/* Give the library the parameters of the DACs, before any group is created. */
 static int set_dacs(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -49,7 +50,7 @@ static int set_dacs(struct fmu *f)
     return 0;
 }
 
-/* Why the axes of a group cannot have its channels. */
+/* Report why a group cannot have the channels of its axes; returns -1. */
 static int refuse_channels(struct fmu *f, int n, int card, bool voltage, int code)
 {
     if (code == MCC_VOLTAGE_COMMAND_CHANNEL) {
@@ -72,8 +73,8 @@ static int refuse_channels(struct fmu *f, int n, int card, bool voltage, int cod
                     n + 1, card, card);
 }
 
-/* Voltages that no axis has. At the start each must find its DAC free; later one that does not is
- * told once. */
+/* Set the voltages of DACs that are not of an axis. A DAC that is of an axis is an error at the
+ * start and a warning later, given once. */
 static int put_out(struct fmu *f, bool start)
 {
     const struct vars *v = &f->s.v;

@@ -1,4 +1,5 @@
-/* Groups of axes of the motion library on two cards: bus grid, registers, mailboxes. */
+/* FMU of groups, several motion libraries on one PC with two cards (core groups): bus grid, inputs
+ * from the cards, levels and mailboxes to them. */
 #include <math.h>
 #include <string.h>
 
@@ -8,12 +9,12 @@
 
 struct model {
     struct groups groups;
-    int32_t index[GROUP_MAX];      /* of the description's groups in the library; -1 none */
-    int64_t bus;                   /* [ns] */
-    int64_t instant;               /* [ns] next instant of the bus grid that reads */
-    bool unpublished;              /* what was read last shows at that instant */
-    int32_t told_error[GROUP_MAX]; /* run-time errors that were reported */
-    double output[GROUP_CARDS][GROUP_DACS]; /* [V] of dac_output, as seen last */
+    int32_t index[GROUP_MAX];      /* index of group 1, 2 .. in the library; -1 none */
+    int64_t bus;                   /* [ns] period of the bus grid */
+    int64_t instant;               /* [ns] next instant of the grid, at which inputs are read */
+    bool unpublished;              /* the outputs of the latest instant are shown at the next one */
+    int32_t told_error[GROUP_MAX]; /* run-time error of each group that was reported last */
+    double output[GROUP_CARDS][GROUP_DACS]; /* [V] inputs dac_output as read last */
 };
 
 #define MODEL_BLOB
@@ -41,11 +42,11 @@ static double clocks(double seconds)
     return seconds * CLOCK_HZ;
 }
 
-/* What the description says of a group. */
+/* Parameters of a group. */
 struct wanted {
     const char *program;
-    int32_t card;           /* from 1 */
-    const int32_t *channel; /* from 1 */
+    int32_t card;           /* number of its card, from 1 */
+    const int32_t *channel; /* channel of each axis, from 1 */
 };
 
 static struct wanted wanted(const struct vars *v, int n)
@@ -242,8 +243,8 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* What a card is given, under the names of its outputs; it keeps its command_aux while no axis has
- * the seventh error counter. */
+/* Set the outputs to a card, whose names begin with card1_ or card2_. command_aux keeps its value
+ * while no axis has the seventh error counter. */
 #define SHOW_1(type, name, elements) LINK_CARRY(v->card1_##name, link.name)
 #define SHOW_2(type, name, elements) LINK_CARRY(v->card2_##name, link.name)
 #define PUBLISH_CARD(K) \
@@ -309,7 +310,7 @@ static void publish(struct fmu *f)
         groups_counters(&m->groups, K - 1, &link); \
     } while (0)
 
-/* Read the wires at an instant of the bus grid and let the PC work. */
+/* Read the inputs at an instant of the bus grid and let the PC work. */
 static void read_bus(struct fmu *f, int64_t at)
 {
     const struct vars *v = &f->s.v;

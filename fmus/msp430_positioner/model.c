@@ -1,4 +1,5 @@
-/* The MSP430 positioner on the wires of a co-simulation: pin grid and parameters. */
+/* FMU of the MSP430 positioner (core msp430): the grid at which its pins are read, and its
+ * parameters in the chip's units. */
 #include <math.h>
 
 #include "el_extremes.h"
@@ -9,24 +10,24 @@
 struct model {
     struct msp430 chip;
     double voltage;   /* [V] mean over the pin period that ended at the latest instant */
-    int64_t clock_ns; /* [ns] */
+    int64_t clock_ns; /* [ns] period of MCLK */
     int64_t period;   /* [clocks] pin grid */
     int64_t instant;  /* [clock] next instant of that grid */
-    double phase;     /* [line periods] as the chip last saw it */
-    double missed;    /* [line periods] whole ones, moved while the plug was out */
-    bool unplugged;   /* at the latest instant */
+    double phase;     /* [line periods] phase of the scale as the chip saw it last */
+    double missed;    /* [line periods] whole ones that passed while the scale was unplugged */
+    bool unplugged;   /* the scale was unplugged at the latest instant */
 };
 
 #include "fmi_model.h"
 
-/* A decimal time such as 1e-4 s is not exact in binary: off by far less than this share. */
+/* Relative tolerance for decimal times such as 1e-4 s, which are not exact in binary. */
 #define WHOLE_TOLERANCE 1e-9
 
-/* Timer_A has 16 bit and divides by 8 at most [clocks]. A clock has at most 1e9/4096 ns, so that
- * times in ns are far within 64 bit. */
+/* Longest timer period [clocks]: Timer_A has 16 bits and divides by 8 at most. A clock has at most
+ * 1e9/4096 ns, so that times in ns are far within 64 bits. */
 #define TIMER_MAX (8.0 * 65536.0)
 
-/* Largest speed and acceleration in Q16.16: their sum fits 32 bit. */
+/* Largest speed and acceleration in Q16.16: their sum fits into 32 bits. */
 #define FIXED_MAX 1073741823.0
 
 static bool whole(double x, int64_t *n)
@@ -37,7 +38,7 @@ static bool whole(double x, int64_t *n)
     return fabs(x - round(x)) <= WHOLE_TOLERANCE * x;
 }
 
-/* A period in clocks: a whole number, and no more than the timer counts. */
+/* A period in clocks, which must be a whole number and not longer than TIMER_MAX. */
 static int set_period(struct fmu *f, const char *name, double period, int64_t *clocks)
 {
     const int64_t ns = f->s.m.clock_ns;
@@ -51,7 +52,7 @@ static int set_period(struct fmu *f, const char *name, double period, int64_t *c
     return 0;
 }
 
-/* The clock and the two grids in clocks. */
+/* Set the clock, the pin grid and the timer period. */
 static int set_times(struct fmu *f, struct msp430_config *c)
 {
     const struct vars *v = &f->s.v;
@@ -208,7 +209,7 @@ static void tell_stage(struct fmu *f, enum sequence_code before)
                   (double)(m->chip.clock * m->clock_ns) * 1e-9, TEXT[code]);
 }
 
-/* The scale as its plug lets it through. */
+/* Phase that the chip sees: while the scale is unplugged it does not change. */
 static double plugged(struct model *m, const struct vars *v)
 {
     if (!v->scale_unplugged && m->unplugged)
@@ -240,7 +241,8 @@ static int sample(struct fmu *f)
     return 0;
 }
 
-/* Instants in [t0, t1) read the inputs; what was done up to them is shown at the next instant. */
+/* Inputs are read at the instants in [t0, t1); the outputs show at each instant what the chip has
+ * done up to it. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;

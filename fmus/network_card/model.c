@@ -1,4 +1,4 @@
-/* The network card on the wires of a co-simulation: grid, stream of bytes, terminals, job file. */
+/* FMU of the network card (core netcard): grid, byte stream of the link, terminals, job file. */
 #include <string.h>
 
 #include "byte_ring.h"
@@ -7,10 +7,10 @@
 
 struct model {
     struct netcard card;
-    int64_t period;     /* [ns] grid of the wires */
+    int64_t period;     /* [ns] grid of the inputs */
     int64_t instant;    /* [ns] next instant of that grid */
-    int32_t connection; /* as read last */
-    int32_t seq;        /* command taken last */
+    int32_t connection; /* number of the connection as read last */
+    int32_t seq;        /* sequence number of the command taken last */
 };
 
 #define MODEL_BLOB
@@ -134,7 +134,7 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* The stream of a connection; a new number begins a new one. */
+/* Read the byte stream of the connection; a new number of the connection starts a new stream. */
 static void read_stream(struct fmu *f)
 {
     struct vars *v = &f->s.v;
@@ -194,7 +194,7 @@ static void read_terminals(struct fmu *f)
     netcard_set_inputs(c, (uint32_t)v->in & 0xFFFFu);
 }
 
-/* Instants in [t0, t1) read the wires; the state shown is that at t1. */
+/* Inputs are read at the instants in [t0, t1); the outputs show the state at t1. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;

@@ -1,5 +1,5 @@
-/* Trace recorder. Row k holds the inputs at k*period; rows wait in memory and become files when
- * the run ends well. */
+/* FMU that records traces: row k has the inputs at k * period. Rows are kept in memory and written
+ * to files if the run ends well. */
 #include <math.h>
 
 #include "trace_file.h"
@@ -22,17 +22,17 @@ enum {
     FIRST = 1024    /* rows of the first buffer; it doubles when full */
 };
 
-/* Rows recorded so far. A restored FMU state may stand before or after the last of them. */
+/* Recorded rows. A restored FMU state may be from before or after the last of them. */
 struct rows {
     double *real;  /* rows x real_columns */
     int32_t *ints; /* rows x int_columns */
-    int64_t room;  /* rows there is memory for */
-    int64_t held;  /* rows recorded */
+    int64_t room;  /* number of rows for which there is memory */
+    int64_t held;  /* number of rows recorded */
 };
 
 enum { FILES = 3 };
 
-/* The files, in the order in which they are written; the last one if csv says so. */
+/* The files, in the order in which they are written; the last one only if `csv` is true. */
 static const struct {
     const char *ending;
     bool (*write)(FILE *file, const struct trace *t);
@@ -67,7 +67,7 @@ static bool recording(const struct vars *v)
     return v->file[0] != '\0';
 }
 
-/* Where a trace file is. */
+/* Path of a trace file. */
 static struct fmu_path path_of(const struct fmu *f, int file)
 {
     struct fmu_path p = fmu_path(f, f->s.v.file, FMU_WRITTEN);
@@ -78,7 +78,7 @@ static struct fmu_path path_of(const struct fmu *f, int file)
     return p;
 }
 
-/* Files that this run writes. */
+/* Number of files that this run writes. */
 static int files_of(const struct vars *v)
 {
     return v->csv ? FILES : FILES - 1;
@@ -89,7 +89,7 @@ static int cannot_write(struct fmu *f, int file, const char *why)
     return fmu_fail(f, "cannot write %s%s: %s", f->s.v.file, files[file].ending, why);
 }
 
-/* A path that cannot be written is told before the run, not after it. */
+/* Check before the run, not after it, that the files can be written. */
 static int model_open(struct fmu *f)
 {
     if (!recording(&f->s.v)) {
@@ -138,7 +138,7 @@ static int make_room(struct fmu *f, struct rows *r, int64_t rows)
     while (room < rows) {
         room *= 2;
     }
-    /* One byte more: no columns is not no memory. */
+    /* One byte more, so that NULL always means no memory, also without columns. */
     double *real = realloc(r->real, (size_t)room * real_columns(&f->s.v) * sizeof *real + 1);
     r->real = real ? real : r->real;
     int32_t *ints = realloc(r->ints, (size_t)room * int_columns(&f->s.v) * sizeof *ints + 1);
@@ -150,7 +150,7 @@ static int make_room(struct fmu *f, struct rows *r, int64_t rows)
     return 0;
 }
 
-/* Rows an FMU state brings along from another instance are not known here. */
+/* Fill rows that are not known, because a restored state is of another instance. */
 static void fill_gap(const struct vars *v, struct rows *r, int64_t end)
 {
     size_t nr = real_columns(v), ni = int_columns(v);
@@ -162,7 +162,7 @@ static void fill_gap(const struct vars *v, struct rows *r, int64_t end)
     }
 }
 
-/* Copy so many channels; returns where the next ones go. */
+/* Copy `count` channels; returns the place for the next ones. */
 static double *put(double *to, const char *from, int32_t count)
 {
     memcpy(to, from, (size_t)count * sizeof *to);
@@ -223,7 +223,7 @@ static const char *write_part(struct fmu *f, int k, const struct trace *t, struc
     return output_end(o, good);
 }
 
-/* All files appear, or none and one message; what was recorded before then stays. */
+/* Either all files appear, or none with one message; then older files stay. */
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;

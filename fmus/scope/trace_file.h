@@ -1,5 +1,5 @@
-/* Recorded rows as files: two .npy (format version 1.0) and .csv. The writers return false when
- * something could not be written; errno says why. */
+/* trace_file - writes the rows that the scope FMU has recorded: two .npy files (real numbers and
+ * integers) and a .csv file. The writers return false, with errno, on an error. */
 #ifndef TRACE_FILE_H
 #define TRACE_FILE_H
 
@@ -12,14 +12,14 @@
 #include "npy_head.h"
 
 struct trace {
-    const double *real;
-    const int32_t *ints;
-    int64_t rows;
-    size_t real_columns, int_columns;
-    int64_t period; /* [ns] between two rows */
+    const double *real;               /* rows x real_columns */
+    const int32_t *ints;              /* rows x int_columns */
+    int64_t rows;                     /* number of rows */
+    size_t real_columns, int_columns; /* numbers of columns */
+    int64_t period;                   /* [ns] between two rows */
 };
 
-/* Head of a .npy file. `type`: f8 or i4. */
+/* Write the head of a .npy file; `type` is f8 or i4. */
 static bool trace_write_head(FILE *file, const char *type, int64_t rows, size_t columns)
 {
     char head[128];
@@ -41,7 +41,8 @@ static bool trace_write_int(FILE *file, const struct trace *t)
            && fwrite(t->ints, sizeof *t->ints, n, file) == n;
 }
 
-/* A number that reads back as the same double, with a point whatever the importer's locale. */
+/* Write a comma and a number that reads back as the same double, with a decimal point in any
+ * locale. */
 static bool trace_write_number(FILE *file, double x)
 {
     char text[40];

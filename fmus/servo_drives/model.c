@@ -1,4 +1,4 @@
-/* Six servo drives on one sampling grid. */
+/* FMU of six servo drives (core drive) on one sampling grid. */
 #include <math.h>
 
 #include "drive.h"
@@ -8,7 +8,7 @@ enum { CHANNELS = 6 };
 
 struct model {
     struct drive_state drive[CHANNELS];
-    struct drive_output next[CHANNELS]; /* computed at the latest instant, shown at the next */
+    struct drive_output next[CHANNELS]; /* outputs of the latest instant, shown at the next one */
     int64_t period;                     /* [ns] sampling grid */
     int64_t instant;                    /* [ns] next instant of that grid */
 };
@@ -91,7 +91,8 @@ static int sample(struct fmu *f)
     return 0;
 }
 
-/* Instants in [t0, t1) read the inputs; what they compute is shown from the next instant on. */
+/* Inputs are read at the instants in [t0, t1); the outputs show the result from the next instant
+ * on. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;

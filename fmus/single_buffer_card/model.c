@@ -1,4 +1,5 @@
-/* The single-buffer card on the wires of a co-simulation: bus grid, registers, mailboxes. */
+/* FMU of the single-buffer card (core epcio, single_buffer.h): bus grid, level and mailbox inputs,
+ * outputs. */
 #include <string.h>
 
 #include "mailbox.h"
@@ -9,9 +10,9 @@ struct model {
     struct single_buffer card;
     int64_t period;        /* [clocks] grid of the host bus */
     int64_t instant;       /* [clock] next instant of that grid */
-    struct mailbox taken;  /* numbers taken last of the host */
-    int32_t warned_length; /* DDA length that was refused last, to say so once */
-    int32_t warned_frames; /* frames refused when that was last said */
+    struct mailbox taken;  /* sequence numbers taken last from the host */
+    int32_t warned_length; /* DDA length that has to wait and was warned of */
+    int32_t warned_frames; /* number of refused frames that were warned of */
 };
 
 #include "fmi_model.h"
@@ -69,7 +70,7 @@ static void publish(struct fmu *f)
     }
 }
 
-/* Instants in [t0, t1) read the inputs; the state shown is that at t1. */
+/* Inputs are read at the instants in [t0, t1); the outputs show the state at t1. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;

@@ -1,4 +1,5 @@
-/* The software of the controller on the wires of a co-simulation: bus grid, mailboxes, files. */
+/* FMU of the robot controller, software on a PC (core soft): bus grid, inputs from the FPGA card,
+ * mailboxes to it, files. */
 #include <string.h>
 
 #include "library_in_use.h"
@@ -9,10 +10,10 @@
 
 struct model {
     struct soft soft;
-    int64_t instant;  /* [ns] next instant of the bus grid that reads */
-    bool unpublished; /* what was read last shows at that instant */
-    int32_t told;     /* error that was reported */
-    uint64_t text;    /* digest of the jobs it runs */
+    int64_t instant;  /* [ns] next instant of the bus grid, at which inputs are read */
+    bool unpublished; /* the outputs of the latest instant are shown at the next one */
+    int32_t told;     /* error that was reported last */
+    uint64_t text;    /* digest of the text of the jobs that it runs */
 };
 
 #define MODEL_BLOB
@@ -151,7 +152,7 @@ static void publish(struct fmu *f)
     v->reached = (int32_t)s->reached;
     v->taught = s->taught_count;
     v->queue = s->count;
-    if (cycle) { /* nothing of this changes between */
+    if (cycle) { /* these outputs change only with the cycle */
         publish_times(v, s);
         publish_arm(v, s, &b->config);
     }
@@ -167,7 +168,7 @@ static void publish(struct fmu *f)
     }
 }
 
-/* Every move of a part program is planned before the first one starts. */
+/* Plan every move of a part program before the first one starts, so that faults are found early. */
 static int rehearse(struct fmu *f, const struct orders_text *t)
 {
     const struct soft_blob *b = f->blob;
@@ -205,7 +206,7 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
-/* Read the wires at an instant of the bus grid and let the PC work. */
+/* Read the inputs at an instant of the bus grid and let the PC work. */
 static void read_bus(struct fmu *f, int64_t at)
 {
     const struct vars *v = &f->s.v;
@@ -235,7 +236,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
         return fmu_fail(f, "card_irq_clock = %g, card_input_irq_clock = %g: not clocks",
                         v->card_irq_clock, v->card_input_irq_clock);
     }
-    if (m->text != b->text) { /* a restored place is one of another list of instructions */
+    if (m->text != b->text) { /* the place in a restored state is of other instructions */
         return fmu_fail(f, "program: the state is one of another program");
     }
     for (;;) {
@@ -252,7 +253,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     }
 }
 
-/* The points that were taught. */
+/* Write the points that were taught. */
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;

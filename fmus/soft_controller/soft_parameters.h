@@ -1,10 +1,11 @@
-/* Parameters of the soft_controller FMU as its core takes them. Included behind fmi_model.h. */
+/* soft_parameters - checks the parameters of the soft_controller FMU and converts them to the
+ * configuration of the robot controller. Included after fmi_model.h. */
 #ifndef SOFT_PARAMETERS_H
 #define SOFT_PARAMETERS_H
 
 #include <math.h>
 
-/* Waits of interrupts, figures of LatencyMon reports of ordinary PCs [s]. */
+/* Interrupt latencies [s] of kinds of PCs (latency.h), from LatencyMon reports of ordinary PCs. */
 static const struct pc_wait {
     const char *name;
     double mean, rare, most;

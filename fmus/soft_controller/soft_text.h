@@ -1,5 +1,5 @@
-/* The files of the soft_controller FMU: program, points, and what was taught. Included behind
- * fmi_model.h. */
+/* soft_text - files of the soft_controller FMU: it reads the program and the points, and writes the
+ * points that were taught. Included after fmi_model.h. */
 #ifndef SOFT_TEXT_H
 #define SOFT_TEXT_H
 
@@ -7,7 +7,7 @@
 #include "fmu_output.h"
 #include "program_fault.h"
 
-/* All that is constant in a run. */
+/* What is constant in a run: configuration, program, points. */
 struct soft_blob {
     struct soft_config config;
     struct program_file *gcode;
@@ -15,7 +15,7 @@ struct soft_blob {
     bool has_inform;
     struct inform_program inform;
     struct inform_points points;
-    uint64_t text; /* digest of the jobs' text, 0 without jobs */
+    uint64_t text; /* digest of the jobs' text; 0 without jobs */
 };
 
 static struct orders_text text_of(const struct soft_blob *b)
@@ -24,7 +24,7 @@ static struct orders_text text_of(const struct soft_blob *b)
                                  &b->points };
 }
 
-/* The whole of a text file, to be freed. NULL after fmu_fail(). */
+/* Read a whole text file; the caller frees the text. NULL after fmu_fail(). */
 static char *read_text(struct fmu *f, const char *parameter, const char *name, int64_t *length)
 {
     FILE *file;
@@ -47,7 +47,7 @@ static char *read_text(struct fmu *f, const char *parameter, const char *name, i
     return text;
 }
 
-/* FNV-1a: another text has another digest, but for one in 2^64. */
+/* Digest of a text (FNV-1a); two different texts have the same in one of 2^64 cases. */
 static uint64_t digest_of(const char *text, int64_t length)
 {
     uint64_t sum = 0xcbf29ce484222325u;
@@ -57,7 +57,7 @@ static uint64_t digest_of(const char *text, int64_t length)
     return sum;
 }
 
-/* A reader's report, told with the file's name. */
+/* Report a reader's error with the file's name; returns -1. */
 static int refuse_text(struct fmu *f, const char *name, const char *text,
                        const struct inform_report *r)
 {
@@ -111,7 +111,7 @@ static int read_jobs(struct fmu *f, struct soft_blob *b)
     return code;
 }
 
-/* By its parameter, or by the end of the program's name. */
+/* The program's language: by the parameter `language`, or by the ending of the program's name. */
 static int language_of(struct fmu *f, bool *gcode)
 {
     const struct vars *v = &f->s.v;
@@ -148,14 +148,15 @@ struct soft_inputs {
     struct output_input of[SOFT_INPUTS];
 };
 
-/* What teach_file must not replace. */
+/* Files that are read and that teach_file must not replace. */
 static struct soft_inputs inputs_of(const struct fmu *f)
 {
     return (struct soft_inputs){ { { fmu_path(f, f->s.v.program, FMU_READ), "it is program" },
                                    { fmu_path(f, f->s.v.points, FMU_READ), "it is points" } } };
 }
 
-/* As joints: they say the same whatever the tool, and where axes 4 and 6 are in line, too. */
+/* Write the points as joint angles, which are unambiguous whatever the tool, and also in the wrist
+ * singularity, where axes 4 and 6 are in line. */
 static void put_points(FILE *file, const struct soft *s)
 {
     for (int n = 0; n < s->taught_count; n++) {
@@ -166,7 +167,7 @@ static void put_points(FILE *file, const struct soft *s)
     }
 }
 
-/* NULL, or why it cannot be written. */
+/* Write teach_file. Returns NULL, or why it cannot be written. */
 static const char *write_points(const struct fmu *f, const struct soft *s)
 {
     const struct soft_inputs in = inputs_of(f);

@@ -1,9 +1,9 @@
-/* Steps of signals by a table. At an instant a signal shows its latest step up to then, of two at
- * one instant the later in the table; before its first it is 0. */
+/* FMU whose outputs are steps from a table. A signal has the value of its latest step; of two steps
+ * at one instant that of the later one in the table; before its first step 0. */
 #include "vars.h"
 
 struct model {
-    int32_t steps; /* of the table that are in use */
+    int32_t steps; /* number of steps of the table in use */
 };
 
 #include "fmi_model.h"
@@ -14,7 +14,7 @@ enum { ROWS = 128, EACH = 32, SIGNALS = 3 * EACH };
 _Static_assert(sizeof((struct vars *)0)->at == ROWS * sizeof(double), "rows of the table");
 _Static_assert(sizeof((struct vars *)0)->real == EACH * sizeof(double), "signals of a type");
 
-/* What is in force at an instant [ns]. */
+/* Set the outputs to the values at an instant [ns]. */
 static void show(struct fmu *f, int64_t now)
 {
     struct vars *v = &f->s.v;

@@ -1,6 +1,7 @@
-/* The wires that both generations of the card have: grid of the host bus, DDA time, mailbox of
- * commands, interrupts. Included behind fmi_model.h by a model whose struct has the members card,
- * period, instant, taken, warned_length and warned_frames. */
+/* card_wires - what the FMUs of both generations of the motion card (epcio, single_buffer_card) do
+ * alike with their variables: grid of the host bus, DDA time, mailbox of commands, interrupts.
+ * Included after fmi_model.h by a model whose struct has the members card, period, instant, taken,
+ * warned_length and warned_frames. */
 #ifndef CARD_WIRES_H
 #define CARD_WIRES_H
 
@@ -8,10 +9,10 @@
 #include "mailbox.h"
 #include "status.h"
 
-/* A member of a struct link_host from the input of its name. */
+/* Set a member of a struct link_host from the input of its name. */
 #define WIRES_READ(type, name, elements) LINK_CARRY(link.name, v->host_##name)
 
-/* Clocks of loop_period; 0 after fmu_fail(). */
+/* The parameter loop_period in clocks; 0 after fmu_fail(). */
 static int64_t wires_period(struct fmu *f)
 {
     const double period = f->s.v.loop_period, clocks = period * EPCIO_CLOCK_HZ;
@@ -21,7 +22,8 @@ static int64_t wires_period(struct fmu *f)
     return 0;
 }
 
-/* What the card says of the DDA time on the wires. A length that must wait is told once. */
+/* Report the card's status of a new DDA time: -1 after fmu_fail() if it is out of range. A length
+ * that has to wait is a warning, given once. */
 static int wires_dda(struct fmu *f, enum epcio_status s)
 {
     const struct vars *v = &f->s.v;
@@ -39,8 +41,8 @@ static int wires_dda(struct fmu *f, enum epcio_status s)
     return 0;
 }
 
-/* A new number in the command mailbox brings a transaction: 1, 0 without one, -1 after
- * fmu_fail(). */
+/* If the mailbox of frames has a new number, fill in its transaction and return 1; 0 if not, -1
+ * after fmu_fail(). */
 static int wires_command(struct fmu *f, struct bus_write *w)
 {
     const struct vars *v = &f->s.v;
@@ -53,7 +55,8 @@ static int wires_command(struct fmu *f, struct bus_write *w)
     return mailbox_write(&f->s.m.taken, &link, w);
 }
 
-/* What the card says when it is sent. */
+/* Report the card's status of a transaction that was sent to it, and mark it as taken if it is
+ * right. */
 static int wires_sent(struct fmu *f, const struct bus_write *w, enum epcio_status s)
 {
     if (s == EPCIO_BAD_COUNT)
@@ -64,7 +67,7 @@ static int wires_sent(struct fmu *f, const struct bus_write *w, enum epcio_statu
     return 0;
 }
 
-/* Frames that the card has refused since this was last asked. */
+/* Warn of frames that the card has refused since the latest call. */
 static void wires_refused(struct fmu *f)
 {
     struct model *m = &f->s.m;
@@ -77,7 +80,7 @@ static void wires_refused(struct fmu *f)
     m->warned_frames = m->card.frames_refused;
 }
 
-/* Interrupts and what became of the transactions. */
+/* Set the outputs of interrupts and transactions. */
 static void wires_publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;

@@ -1,4 +1,5 @@
-/* What fmus/<name>/model.c gives the FMI layer, and what the layer gives it.
+/* fmi_model - contract between a model, fmus/<name>/model.c, and the FMI layer, which makes FMI 2.0
+ * and 3.0 of it: the functions that each gives the other.
  *
  * model.c reads:
  *     #include "vars.h"           generated from the description: struct vars, FMU_* constants
@@ -20,7 +21,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Formats that a compiler checks: Windows has two families of them. */
+/* Kind of printf formats that the compiler checks; Windows has two. */
 #ifdef __MINGW_PRINTF_FORMAT
 #define FMU_PRINTF __MINGW_PRINTF_FORMAT
 #else
@@ -29,16 +30,16 @@
 
 #include "fmu_in_use.h"
 
-/* Everything getFMUState keeps, but for what MODEL_IN_USE leaves out. */
+/* Everything that getFMUState saves, except what MODEL_IN_USE leaves out. */
 struct state {
-    struct vars v; /* every variable of the description, by its name */
-    struct model m;
-    int64_t now; /* [ns] since startTime */
+    struct vars v;  /* every variable of the description, by its name */
+    struct model m; /* all other state of the model */
+    int64_t now;    /* [ns] time since startTime */
 };
 
 struct fmu {
     struct state s;
-    void *blob; /* what model_open made; NULL without MODEL_BLOB */
+    void *blob; /* files and buffers that model_open made; NULL without MODEL_BLOB */
 };
 
 /* The model's own functions. They return 0, or -1 after fmu_fail(). */
@@ -60,12 +61,12 @@ static int model_open(struct fmu *f);
 /* The run ended well: write files, all or none. */
 static int model_end(struct fmu *f);
 
-/* Free f->blob, delete what is half written. Follows every model_open, one that failed too:
+/* Free f->blob and delete half-written files. It follows every model_open, also one that failed, so
  * f->blob may be NULL. */
 static void model_close(struct fmu *f);
 #endif
 
-/* What the layer gives the model. */
+/* The functions that the layer gives the model. */
 
 /* Report a status of Error to the importer; printf format; returns -1. */
 #if defined(__GNUC__)
@@ -74,7 +75,7 @@ __attribute__((format(FMU_PRINTF, 2, 3)))
 static int
 fmu_fail(struct fmu *f, const char *format, ...);
 
-/* Tell the importer something worth knowing (category logEvents, or logStatusWarning). */
+/* Send the importer a message; printf format; categories logEvents and logStatusWarning. */
 #if defined(__GNUC__)
 __attribute__((format(FMU_PRINTF, 2, 3), unused))
 #endif
@@ -93,7 +94,7 @@ __attribute__((unused))
 static const char *
 fmu_resources(const struct fmu *f);
 
-/* Where a file is, or in words why it is nowhere. */
+/* Path of a file, or if not `good` the reason why there is none. */
 enum { FMU_PATH_MAX = 4096 };
 struct fmu_path {
     bool good;
@@ -102,9 +103,10 @@ struct fmu_path {
 
 enum fmu_use { FMU_READ, FMU_WRITTEN };
 
-/* The file that a parameter names: by a path, a file:// URI with percent-encoded UTF-8, or as
- * resource:NAME, which is NAME in the resources and is only read. A resource that is missing is
- * told with what there is; any other name leads to a path, whether there is a file or not. */
+/* Path of the file that a parameter names: by a path, a file:// URI with percent-encoded UTF-8, or
+ * as resource:NAME, which is NAME in the resources and can only be read. A missing resource gives a
+ * text that lists the existing ones; any other name gives a path, whether there is a file or
+ * not. */
 #if defined(__GNUC__)
 __attribute__((unused))
 #endif

@@ -1,7 +1,7 @@
-/* Files and folders by names in UTF-8, for what an FMU reads (fmu_input.h) and writes
- * (fmu_output.h, fmu_recorder_folder.h). Windows takes such a name for one in the code page of its
- * user, and one of 260 characters for too long, so there it becomes UTF-16, and a long one whole,
- * behind \\?\. Functions return as the C library's do, and set errno. */
+/* fmu_file - files and folders by names in UTF-8 on every system, for the files that an FMU reads
+ * (fmu_input.h) and writes (fmu_output.h, fmu_recorder_folder.h). Windows would take such a name in
+ * the user's code page and refuse 260 characters; so there names become UTF-16, and long ones
+ * absolute with the prefix \\?\. Functions return like those of the C library and set errno. */
 #ifndef FMU_FILE_H
 #define FMU_FILE_H
 
@@ -32,7 +32,8 @@ struct file_wide {
     wchar_t text[FILE_WIDE + 10];
 }; /* with a head, and a pattern behind it */
 
-/* The character at p, which moves behind it; 0 at the end, UINT32_MAX if there is none. */
+/* Read the UTF-8 character at *p and move *p behind it; 0 at the end, UINT32_MAX if it is not
+ * valid. */
 static inline uint32_t file_character(const char **p)
 {
     const unsigned char *at = (const unsigned char *)*p;
@@ -58,7 +59,7 @@ static inline uint32_t file_character(const char **p)
     return c;
 }
 
-/* False, and errno says why: no UTF-8, or too long. */
+/* Convert a name to UTF-16. False, with errno, if it is not UTF-8 or too long. */
 static inline bool file_utf16(struct file_wide *w, const char *name)
 {
     size_t n = 0;
@@ -77,7 +78,7 @@ static inline bool file_utf16(struct file_wide *w, const char *name)
     return true;
 }
 
-/* The name as Windows takes it. */
+/* Convert a name to the form that Windows takes. */
 static inline bool file_widen(struct file_wide *w, const char *name)
 {
     struct file_wide whole; /* from the root on */
@@ -94,7 +95,7 @@ static inline bool file_widen(struct file_wide *w, const char *name)
     return true;
 }
 
-/* What has this name; links are followed. */
+/* As stat(): links are followed. */
 static inline int file_look(const char *name, file_stat *s)
 {
     struct file_wide w;
@@ -112,7 +113,7 @@ static inline FILE *file_read(const char *name)
     return file_widen(&w, name) ? _wfopen(w.text, L"rb") : NULL;
 }
 
-/* Make a file that is not there, to write. */
+/* Create a file for writing; fails if it exists. */
 static inline FILE *file_create(const char *name)
 {
     struct file_wide w;
@@ -150,7 +151,8 @@ static inline int file_remove_folder(const char *name)
     return file_widen(&w, name) ? _wrmdir(w.text) : -1;
 }
 
-/* Of windows.h, whose macros would meet the names of the cores: BY_HANDLE_FILE_INFORMATION. */
+/* BY_HANDLE_FILE_INFORMATION of windows.h, which is not included because its macros collide with
+ * names of the cores. */
 struct file_identity {
     unsigned long before[7], volume, between[3], number[2];
 };
@@ -167,7 +169,7 @@ static inline bool file_identify(const char *name, struct file_identity *i)
     return good;
 }
 
-/* Do both names, one of which may be missing, stand for one file? */
+/* Whether both names are of the same file; false if one does not exist. */
 static inline bool file_same(const char *a, const char *b)
 {
     struct file_identity i, j;
@@ -290,7 +292,7 @@ static inline void file_folder_close(struct file_folder *f)
 }
 #endif
 
-/* NULL, or what it is instead of a regular file. */
+/* NULL for a regular file, else a text for what it is. */
 static inline const char *file_regular(const file_stat *s)
 {
     return S_ISREG(s->st_mode)   ? NULL

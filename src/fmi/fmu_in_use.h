@@ -1,4 +1,5 @@
-/* Which part of an array is in use, told as data: a saved state keeps nothing else of it.
+/* fmu_in_use - rows of data that say which part of a model's arrays is in use; a saved state leaves
+ * out the rest.
  *
  * Rings, queues and tables have a fixed size, and most of one is not in use most of the time. A
  * model defines MODEL_IN_USE: rows, one behind the other, in the order in which the arrays stand in
@@ -7,15 +8,15 @@
  *     FMU_LIST(array, count)               the first `count` elements
  *     FMU_RING(array, first, count, kept)  `count` from element `first` on, which may go on at the
  *                                          begin, and `kept` before these
- *     FMU_BETWEEN(array, from, to, more)   a ring of elements that are counted through: from those
- *                                          with number `from`, as many as `to` - `from` + `more`
- *     FMU_TO_END(array, first)             those from element `first` on
+ *     FMU_BETWEEN(array, from, to, more)   a ring whose elements are numbered without end:
+ *                                          `to` - `from` + `more` elements from number `from` on
+ *     FMU_TO_END(array, first)             the elements from `first` to the end
  *     FMU_FLAGS(array, each, flags)        `each` elements for each of the flags that is not 0
  *     FMU_WHEN(member, flag, low, high)    all of a member while low <= flag <= high, else nothing,
- *                                          whatever rows of its own members behind it say
+ *                                          whatever later rows for its own members say
  *
- * What is not in use may hold anything behind a restored state, so nothing may read it before it is
- * written. An array without a row is kept whole.
+ * A part that is not in use may hold anything after a state was restored, so it must not be read
+ * before it is written. An array without a row is kept whole.
  */
 #ifndef FMU_IN_USE_H
 #define FMU_IN_USE_H
@@ -52,17 +53,18 @@ struct fmu_row {
 #define FMU_WHEN(member, flag, low, high) \
     { FMU_PLACE(member), FMU_BYTES(member), 1, 0, 0, FMU_MEMBER(flag), low, high, FMU_ROW_WHEN },
 
-/* A part of a state that is left out. [byte], multiples of 8 */
+/* A part of a state that is left out, from .. to [byte], multiples of 8. */
 struct fmu_span {
     uint32_t from, to;
 };
 
 enum {
-    FMU_SPANS = 512,  /* the most; what is not named is kept */
-    FMU_SPAN_MIN = 64 /* [byte] a shorter one is not worth its place in the list */
+    FMU_SPANS = 512,  /* largest number of parts; beyond it they are kept */
+    FMU_SPAN_MIN = 64 /* [byte] a shorter part is kept */
 };
 
-/* List one more of `n`, in the order of places; returns how many there are. */
+/* Append a part to the list of n parts, which are in the order of their places. Returns the new
+ * number. */
 static inline size_t fmu_span_add(struct fmu_span *span, size_t n, size_t from, size_t to)
 {
     const size_t a = (from + 7u) / 8u * 8u, b = to / 8u * 8u;
@@ -72,7 +74,7 @@ static inline size_t fmu_span_add(struct fmu_span *span, size_t n, size_t from, 
     return n;
 }
 
-/* A count or a flag, by its size. */
+/* Value of a member that is a count or a flag, of 1, 4 or 8 bytes; 0 if its size is 0. */
 static inline int64_t fmu_row_member(const char *state, uint32_t at, uint32_t size)
 {
     switch (size) {
@@ -83,7 +85,7 @@ static inline int64_t fmu_row_member(const char *state, uint32_t at, uint32_t si
     }
 }
 
-/* Leave out of an array at `at` all but `used` elements from `first` on. */
+/* Leave out the elements of a ring at `at` except `used` elements from `first` on. */
 static inline size_t fmu_row_ring(const struct fmu_row *row, size_t at, int64_t first, int64_t used,
                                   struct fmu_span *span, size_t n)
 {
@@ -99,7 +101,7 @@ static inline size_t fmu_row_ring(const struct fmu_row *row, size_t at, int64_t 
     return fmu_span_add(span, n, at + (size_t)end * row->each, at + (size_t)elements * row->each);
 }
 
-/* Leave out the elements without a flag. */
+/* Leave out the elements whose flag is 0. */
 static inline size_t fmu_row_flags(const struct fmu_row *row, size_t at, const char *state,
                                    struct fmu_span *span, size_t n)
 {
@@ -118,7 +120,8 @@ static inline size_t fmu_row_flags(const struct fmu_row *row, size_t at, const c
     return n;
 }
 
-/* List what is not in use in a state that lies at `base` of the one whose parts are listed. */
+/* Append the parts of a state that are not in use to the list. The state lies at `base` [byte]
+ * within the one that is saved. Returns the new number. */
 static inline size_t fmu_spans(const void *state, size_t base, const struct fmu_row *rows,
                                size_t count, struct fmu_span *span, size_t n)
 {
@@ -126,7 +129,7 @@ static inline size_t fmu_spans(const void *state, size_t base, const struct fmu_
     for (const struct fmu_row *row = rows; row < rows + count; row++) {
         const size_t at = base + row->at;
         if (n > 0 && at < span[n - 1].to) {
-            continue; /* it lies in what is left out */
+            continue; /* the array lies in a part that is left out already */
         }
         const int64_t first = fmu_row_member(s, row->first, row->first_size);
         const int64_t number = fmu_row_member(s, row->count, row->count_size);

@@ -1,4 +1,5 @@
-/* A file that an FMU reads is a regular one. */
+/* fmu_input - opening a file that an FMU reads. It must be a regular file: a pipe or a device could
+ * block the importer. */
 #ifndef FMU_INPUT_H
 #define FMU_INPUT_H
 
@@ -9,7 +10,7 @@
 #include <unistd.h>
 #endif
 
-/* Open a regular file; a pipe without a writer is not waited for. Returns NULL, or what is
+/* Open a regular file for reading, without waiting for a pipe's writer. Returns NULL, or what is
  * wrong. */
 static const char *file_open(const char *name, FILE **file)
 {

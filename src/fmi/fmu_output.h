@@ -1,5 +1,6 @@
-/* A file that an FMU writes takes the place of a regular file or of nothing, in full and at the
- * end. Functions return NULL, or words for what is wrong. */
+/* fmu_output - writing a file so that it appears complete at the end or not at all: it is written
+ * as NAME.part and renamed. It replaces only a regular file. Functions return NULL, or a text for
+ * what is wrong. */
 #ifndef FMU_OUTPUT_H
 #define FMU_OUTPUT_H
 
@@ -7,22 +8,23 @@
 
 #include "fmu_file.h"
 
-/* A file that the same instance reads, "" if none, and what to say if it would be replaced. */
+/* A file that the same instance reads ("" if none), and the text if an output would replace it. */
 struct output_input {
     struct fmu_path path;
     const char *words;
 };
 
-/* A file on its way: it is written under the name `part`. */
+/* A file being written, under the name `part`. */
 struct output {
     char name[FMU_STRING_MAX + 16];
     char part[FMU_STRING_MAX + 48];
-    bool shown;                    /* it has the name */
-    char old[FMU_STRING_MAX + 48]; /* what had the name before is kept here, "" if nothing */
+    bool shown;                    /* it has been renamed to `name` */
+    char old[FMU_STRING_MAX + 48]; /* name under which the replaced file is kept; "" if none */
     FILE *file;
 };
 
-/* May a file take this name? A link is not replaced: it may be somebody's way to another file. */
+/* Check that a file may be written under this name. A link is not replaced, because it may lead to
+ * another file. */
 static const char *output_check(const char *name, const struct output_input *input, int inputs)
 {
     file_stat s;
@@ -36,10 +38,10 @@ static const char *output_check(const char *name, const struct output_input *inp
     return why;
 }
 
-/* Make the part, under a name that is nobody's yet. */
+/* Create the part, under a name that does not exist yet. */
 static const char *output_begin(struct output *o, const char *name)
 {
-    enum { TRIES = 100 }; /* parts that killed runs have left, at most */
+    enum { TRIES = 100 }; /* most parts that killed runs may have left behind */
     memset(o, 0, sizeof *o);
     snprintf(o->name, sizeof o->name, "%s", name);
     for (int i = 1; i <= TRIES; i++) {
@@ -56,7 +58,7 @@ static const char *output_begin(struct output *o, const char *name)
     return NULL;
 }
 
-/* The part is complete; `good`: so far without an error. */
+/* Close the part, which is complete; `good`: no error so far. */
 static const char *output_end(struct output *o, bool good)
 {
     int error = good && !ferror(o->file) ? 0 : errno ? errno : EIO;
@@ -67,7 +69,7 @@ static const char *output_end(struct output *o, bool good)
     return error ? strerror(error) : NULL;
 }
 
-/* Delete the parts that are still there, bring back what stood in the place of the others. */
+/* Give up n outputs: delete parts and files that were renamed, bring back the replaced files. */
 static void output_drop(struct output *o, int n)
 {
     for (int k = 0; k < n; k++) {
@@ -81,7 +83,7 @@ static void output_drop(struct output *o, int n)
     }
 }
 
-/* Move what has the name out of the way. */
+/* Rename the file that has the name, if there is one, to `old`. */
 static const char *output_set_aside(struct output *o)
 {
     file_stat s;
@@ -101,13 +103,14 @@ static const char *output_set_aside(struct output *o)
     return strerror(errno);
 }
 
-/* Give all parts their names. On an error *bad is the one, and output_drop brings back what was. */
+/* Rename all parts to their names. On an error *bad is the index of the output, and output_drop
+ * restores the state before. */
 static const char *output_show(struct output *o, int n, int *bad)
 {
 #ifdef _WIN32
     const int aside = n; /* rename does not replace there */
 #else
-    const int aside = n - 1; /* behind the last one nothing can fail any more */
+    const int aside = n - 1; /* after the last rename nothing can fail any more */
 #endif
     for (int k = 0; k < n; k++) {
         *bad = k;
@@ -128,7 +131,7 @@ static const char *output_show(struct output *o, int n, int *bad)
     return NULL;
 }
 
-/* Could a file be made under this name? Nothing is left behind. */
+/* Check that a file can be written under this name; leaves nothing behind. */
 static const char *output_try(const char *name, const struct output_input *input, int inputs)
 {
     struct output o;

@@ -1,4 +1,5 @@
-/* A part: an FMU's model without FMI, to be linked into a program that runs several in one loop.
+/* fmu_part - interface of a part: an FMU's model without FMI, to be linked with others into a
+ * system that runs all of them in one loop.
  *
  * A relocatable object of one FMU shows one name, motionfmu_part_<model identifier>, which is a
  * const struct fmu_part. It has no variables of its own: all state is in instances, memory of
@@ -20,16 +21,17 @@
 
 enum fmu_message { FMU_ERROR, FMU_WARNING, FMU_EVENT };
 
-/* Who runs a part, as one component of a system. */
+/* The system that runs a part, as the part sees it. */
 struct fmu_host {
-    void *owner;
-    const char *name;      /* of the component */
+    void *owner;           /* the system's struct fmu */
+    const char *name;      /* name of the component */
     const char *resources; /* folder of the FMU's resources, ends in a separator; "" if none */
     void (*tell)(const struct fmu_host *host, enum fmu_message kind, const char *format,
                  va_list args);
 };
 
-/* Sizes stand in the object as digits, so that who generates C text can read them there. */
+/* The sizes are in the object file as decimal digits too, for the generator of a system's C
+ * text. */
 #define FMU_PART_MARK "motionfmu part 3 "
 enum { FMU_PART_DIGITS = 9, FMU_PART_ALIGN = 16 };
 
@@ -43,27 +45,28 @@ struct fmu_part {
     } sizes;
     size_t size; /* [byte] of an instance */
 
-    /* Cleared memory becomes an instance whose variables have their start values. */
+    /* Make an instance of memory that is all 0: set its variables to their start values. */
     void (*clear)(void *part);
 
-    /* Give an instance its host and what `open` made; take both away: returns what `open` made. */
+    /* Give an instance its host and its blob; take both away and return the blob. */
     void (*attach)(void *part, const struct fmu_host *host, void *blob);
     void *(*detach)(void *part);
 
-    /* As the functions of fmi_model.h. `open` is followed by `close`, also if it failed. */
+    /* The model's functions of fmi_model.h. `open` is followed by `close`, also if it failed. */
     int (*open)(void *part);
     int (*start)(void *part);
     int (*step)(void *part, int64_t t0, int64_t t1);
     int (*end)(void *part);
     void (*close)(void *part);
 
-    /* Warn once of communication steps [ns] that do not go with the FMU's own grid. */
+    /* Warn if communication steps [ns] and the FMU's own grid do not divide each other. */
     void (*watch)(void *part, int64_t step);
 
-    /* Tell which elements of an input, by its offset in struct vars, break its limits: -1. */
+    /* Report the first element of an input, by its offset in struct vars, that is out of range;
+     * returns -1. */
     int (*refuse)(void *part, size_t offset);
 
-    /* Which part of its arrays is in use: MODEL_IN_USE, places in the instance. */
+    /* Rows of MODEL_IN_USE, with places in the instance: which part of its arrays is in use. */
     const struct fmu_row *rows;
     size_t row_count;
 };

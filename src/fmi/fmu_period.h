@@ -1,14 +1,15 @@
-/* Periods and times that have to be whole numbers of ticks. */
+/* fmu_period - check that a period given in seconds is a whole number of ticks, as every periodic
+ * parameter must be. */
 #ifndef FMU_PERIOD_H
 #define FMU_PERIOD_H
 
 #include <math.h>
 #include <stdbool.h>
 
-/* A decimal period such as 1e-4 s is not exact in binary: off by far less than this [ticks]. */
+/* Tolerance [ticks] for decimal periods such as 1e-4 s, which are not exact in binary. */
 #define FMU_PERIOD_TOLERANCE 1e-6
 
-/* Ticks beyond this are not whole numbers in a double any more: 2^53, of 25 ns 7 years. */
+/* Largest number of ticks, 2^53 (7 years of 25 ns): beyond it a double has no exact integers. */
 #define FMU_TICKS_MAX 9007199254740992.0
 
 /* Whether so many ticks are a period: whole, and at least one. */

@@ -1,8 +1,8 @@
-/* Records values in a folder of .npy files, one a signal: `<name>.npy` and `time.npy` [s], each
- * with a row for every row recorded, shape (rows,) or (rows, count). Rows wait in blocks of memory
- * and go to the files a block at a time. The folder appears under its name in full at the end, in
- * the place of nothing, an empty folder or an older recording. Functions that return an int: 0, or
- * -1, and recorder.why says what is wrong. */
+/* fmu_recorder - records the signals of a run in a folder of .npy files, one per signal:
+ * `<name>.npy` and `time.npy` [s], of shape (rows,) or (rows, count). Rows are collected in blocks
+ * of memory and written a block at a time. The folder appears complete at the end, where there was
+ * none, an empty one or an older recording. Functions that return an int return 0, or -1 with the
+ * reason in recorder.why. */
 #ifndef FMU_RECORDER_H
 #define FMU_RECORDER_H
 
@@ -12,52 +12,54 @@
 #include "fmu_recorder_folder.h"
 #include "npy_head.h"
 
-/* What is recorded; a name is that of a file, too. */
+/* A signal to be recorded. */
 struct recorder_column {
-    const char *name;
-    const void *value; /* where its values are when a row is recorded */
+    const char *name;  /* also that of its file */
+    const void *value; /* address of its values when a row is recorded */
     char kind;         /* 'd' double, 'i' int32_t, 'b' bool */
-    int32_t count;     /* values; of 1 the shape is (rows,) */
+    int32_t count;     /* number of values; 1: the shape is (rows,) */
 };
 
-/* A column on its way to its file. */
+/* A column with its block of rows and its file. */
 struct recorder_stream {
-    const char *value;
-    char *block;
-    int column;
+    const char *value; /* as in the column */
+    char *block;       /* rows that are not in the file yet */
+    int column;        /* index of the column; -1: time */
     FILE *file;
-    int64_t ahead; /* [byte] of the file to which there is room on the disk */
+    int64_t ahead; /* [byte] place in the file up to which room on the disk is reserved */
 };
 
 /* Columns whose rows have the same size: their blocks are full at the same time. */
 struct recorder_group {
     struct recorder_stream *streams;
     int count;
-    size_t width;  /* [byte] of a row */
-    int64_t first; /* row at the begin of the blocks */
-    int64_t room;  /* rows in a block */
+    size_t width;  /* [byte] size of a row */
+    int64_t first; /* number of the row at the begin of the blocks */
+    int64_t room;  /* number of rows that a block holds */
 };
 
 struct recorder {
     struct recorder_folder folder;
-    const struct recorder_column *columns; /* the caller's, as long as it is open */
-    struct recorder_stream *streams;       /* time.npy among them */
+    const struct recorder_column *columns; /* the caller's, while it is open */
+    struct recorder_stream *streams;       /* those of all columns and of time */
     struct recorder_group *groups;
-    char *blocks;
-    int count, group_count;
-    double time, period; /* [s] */
-    int64_t row;         /* the next one */
-    int64_t full;        /* no block is full before that many rows */
-    char why[RECORDER_WHY];
+    char *blocks;           /* memory of all blocks */
+    int count, group_count; /* number of streams; of groups */
+    double time, period;    /* [s] time of the row; from row to row */
+    int64_t row;            /* number of the next row */
+    int64_t full;           /* number of rows before which no block is full */
+    char why[RECORDER_WHY]; /* error, "" if none */
 };
 
 enum {
     RECORDER_PAGE = 4096,
-    RECORDER_HEAD = RECORDER_PAGE, /* of a file, so that its other pages are whole ones of data */
-    RECORDER_BLOCK = 64 * 1024,    /* [byte] at most, in whole pages: half of it costs the kernel a
-                                    * half more, four times as much a tenth less, and the caches */
-    RECORDER_AHEAD = 1024 * 1024,  /* [byte] of room that is taken at once, at most */
-    RECORDER_LINE = 64             /* of a cache: blocks a power of two apart would share few */
+    RECORDER_HEAD = RECORDER_PAGE, /* head of a file, so that data begin at a page */
+    RECORDER_BLOCK = 64 * 1024,    /* [byte] largest block, in whole pages: half of it costs the
+                                    * kernel half as much again, four times as much saves a tenth
+                                    * but burdens the caches */
+    RECORDER_AHEAD = 1024 * 1024,  /* [byte] most room on the disk that is reserved at once */
+    RECORDER_LINE = 64             /* [byte] cache line between blocks: blocks a power of two apart
+                                    * would compete for the same lines */
 };
 
 static inline size_t recorder_size(char kind)
@@ -78,7 +80,7 @@ static inline int recorder_fail(struct recorder *r, const char *name, const char
     return -1;
 }
 
-/* Give up; half-written files go. Also the end of a recorder that recorder_end has ended. */
+/* Close a recorder. Files that recorder_end has not completed are deleted. */
 static inline void recorder_close(struct recorder *r)
 {
     if (!r) {
@@ -101,7 +103,7 @@ static inline void recorder_close(struct recorder *r)
     free(r);
 }
 
-/* The head of a stream's file, at its begin. */
+/* Write the head of a stream's file. */
 static inline bool recorder_head(const struct recorder *r, const struct recorder_stream *s)
 {
     const struct recorder_column c = recorder_column_of(r, s->column);
@@ -120,7 +122,7 @@ static inline size_t recorder_width(const struct recorder *r, const struct recor
     return recorder_size(c.kind) * (size_t)c.count;
 }
 
-/* Rows of so many bytes in a block: whole pages. */
+/* Number of rows of `width` bytes in a block, so that it is whole pages. */
 static inline int64_t recorder_room(size_t width)
 {
     const size_t odd = width & (~width + 1); /* the largest power of two in it */
@@ -129,7 +131,7 @@ static inline int64_t recorder_room(size_t width)
     return (int64_t)(steps ? steps * step : step);
 }
 
-/* Streams by width, blocks behind one another. */
+/* Order the streams by width, make the groups and place the blocks. */
 static inline bool recorder_layout(struct recorder *r)
 {
     size_t bytes = 0;
@@ -160,8 +162,9 @@ static inline bool recorder_layout(struct recorder *r)
     return r->blocks;
 }
 
-/* Begin: the folder that holds `folder` must exist. `period` [s] from row to row. NULL: `why`, of
- * so much room, says what is wrong, and nothing is left behind. */
+/* Open a recorder; the parent of `folder` must exist. `period` is the time from row to row [s].
+ * Returns NULL with the reason in `why`, of `room` bytes, and leaves nothing behind, on an
+ * error. */
 static inline struct recorder *recorder_open(const char *folder,
                                              const struct recorder_column *columns, int count,
                                              double period, char *why, size_t room)
@@ -191,7 +194,7 @@ static inline struct recorder *recorder_open(const char *folder,
         const char *own = recorder_column_of(r, s->column).name;
         s->file = file_create(recorder_file(name, &r->folder, own));
         if (s->file) {
-            setvbuf(s->file, NULL, _IONBF, 0); /* what is written are blocks already */
+            setvbuf(s->file, NULL, _IONBF, 0); /* whole blocks are written, which need no buffer */
         }
         if (!s->file || !recorder_head(r, s)) {
             recorder_fail(r, own, strerror(errno));
@@ -203,14 +206,14 @@ static inline struct recorder *recorder_open(const char *folder,
     return r;
 }
 
-/* Nothing but 0? */
+/* Whether all bytes are 0. */
 static inline bool recorder_empty(const char *block, size_t size)
 {
     return size == 0 || (block[0] == 0 && memcmp(block, block + 1, size - 1) == 0);
 }
 
-/* Before a block from `at` [byte] on: room on the disk for as much again as there is; before a hole
- * none. */
+/* Before a block at `at` [byte] is written: reserve room on the disk for as much again as the file
+ * has. Before a block that stays a hole, give reserved room back. */
 static inline void recorder_make_room(struct recorder_stream *s, int64_t at, size_t size,
                                       bool empty)
 {
@@ -224,7 +227,8 @@ static inline void recorder_make_room(struct recorder_stream *s, int64_t at, siz
     }
 }
 
-/* Write what waits of a group, before the next row. A block of 0 is left out: it reads as that. */
+/* Write the rows of a group that are not in the files yet. A block that is all 0 is skipped: the
+ * hole in the file reads as 0. */
 static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
 {
     const size_t size = (size_t)(r->row - g->first) * g->width;
@@ -269,7 +273,7 @@ static inline int recorder_flush_full(struct recorder *r)
     return 0;
 }
 
-/* Record one row of all values, as they are now. */
+/* Record one row with the present values of all columns. */
 static inline int recorder_row(struct recorder *r)
 {
     if (r->why[0]) {
@@ -280,8 +284,7 @@ static inline int recorder_row(struct recorder *r)
         const struct recorder_stream *const s = g->streams;
         const int count = g->count;
         const size_t at = (size_t)(r->row - g->first) * g->width;
-/* A copy of a known size is a few instructions without a call, about as many as a turn of the
- * loop around it. */
+/* A copy of a constant size is a few instructions instead of a call. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define RECORDER_UNROLLED _Pragma("GCC unroll 8")
 #else
@@ -313,8 +316,8 @@ static inline int recorder_row(struct recorder *r)
     return ++r->row < r->full ? 0 : recorder_flush_full(r);
 }
 
-/* The next row is this one, as after a state was restored: later ones are forgotten, and rows that
- * were never recorded are 0. */
+/* Set the number of the next row, as after a state was restored: later rows are dropped, and rows
+ * that were never recorded are 0. */
 static inline int recorder_at(struct recorder *r, int64_t row)
 {
     if (row == r->row) {
@@ -339,7 +342,8 @@ static inline int recorder_at(struct recorder *r, int64_t row)
     return 0;
 }
 
-/* End well: the folder appears. Then, as after an error, only recorder_close is left. */
+/* Complete the files and let the folder appear. After it, and after an error, only recorder_close
+ * may be called. */
 static inline int recorder_end(struct recorder *r)
 {
     if (r->why[0] || recorder_flush_all(r) != 0) {

@@ -1,5 +1,5 @@
-/* The folder of a recording: written under another name, shown in full at the end. Functions
- * return NULL, or words for what is wrong. */
+/* fmu_recorder_folder - the folder of a recording (fmu_recorder.h): it is written as NAME.part and
+ * renamed when it is complete. Functions return NULL, or a text for what is wrong. */
 #ifndef FMU_RECORDER_FOLDER_H
 #define FMU_RECORDER_FOLDER_H
 
@@ -12,14 +12,14 @@
 #include "fmu_file.h"
 
 enum {
-    RECORDER_PATH = 1100,                /* [byte] of a folder's name */
-    RECORDER_FILE = RECORDER_PATH + 300, /* of a file's in it */
-    RECORDER_WHY = RECORDER_FILE + 200
+    RECORDER_PATH = 1100,                /* [byte] longest path of a folder */
+    RECORDER_FILE = RECORDER_PATH + 300, /* [byte] longest path of a file in it */
+    RECORDER_WHY = RECORDER_FILE + 200   /* [byte] longest text of an error */
 };
 
 struct recorder_folder {
     char name[RECORDER_PATH];
-    char part[RECORDER_PATH]; /* where it is written; "" if there is none */
+    char part[RECORDER_PATH]; /* name under which it is written; "" if it is not */
 };
 
 static inline int recorder_seek(FILE *file, int64_t at)
@@ -40,8 +40,8 @@ static inline int recorder_cut(FILE *file, int64_t size)
 #endif
 }
 
-/* Take room on the disk from `at` on, beyond the file's end, where a system has that: pages of a
- * file are written for two thirds of the time then. No error: a write that has no room tells. */
+/* Reserve room on the disk from `at` on, beyond the file's end, if the system can: writing pages of
+ * the file then takes two thirds of the time. Errors are ignored; a later write reports them. */
 static inline void recorder_ahead(FILE *file, int64_t at, int64_t size)
 {
 #ifdef FALLOC_FL_KEEP_SIZE
@@ -53,7 +53,7 @@ static inline void recorder_ahead(FILE *file, int64_t at, int64_t size)
 #endif
 }
 
-/* Name of the file of a signal while it is written. */
+/* Path of a signal's file while it is written. */
 static inline const char *recorder_file(char name[RECORDER_FILE], const struct recorder_folder *f,
                                         const char *signal)
 {
@@ -61,11 +61,11 @@ static inline const char *recorder_file(char name[RECORDER_FILE], const struct r
     return name;
 }
 
-/* A folder next to another, under a name that is nobody's yet. */
+/* Create a folder next to `name`, under a name that does not exist yet. */
 static inline const char *recorder_beside(char made[RECORDER_PATH], const char *name,
                                           const char *ending)
 {
-    enum { TRIES = 100 }; /* folders that killed runs have left, at most */
+    enum { TRIES = 100 }; /* most folders that killed runs may have left behind */
     for (int i = 1; i <= TRIES; i++) {
         snprintf(made, RECORDER_PATH, i == 1 ? "%s.%s" : "%s.%s%d", name, ending, i);
         if (file_make_folder(made) == 0) {
@@ -79,7 +79,7 @@ static inline const char *recorder_beside(char made[RECORDER_PATH], const char *
     return strerror(errno);
 }
 
-/* Is that an entry of a recording? */
+/* Whether an entry of a folder belongs to a recording: NAME.npy. */
 static inline bool recorder_is_file(const char *entry)
 {
     const size_t n = strlen(entry);
@@ -103,7 +103,8 @@ static inline void recorder_remove(const char *folder)
     file_remove_folder(folder);
 }
 
-/* May a recording take this name? A link is not replaced: it may be somebody's way elsewhere. */
+/* Check that a recording may replace what has this name: an empty folder or an older recording. A
+ * link is not replaced, because it may lead elsewhere. */
 static inline const char *recorder_folder_check(const char *folder)
 {
     file_stat s;
@@ -143,7 +144,7 @@ static inline const char *recorder_folder_begin(struct recorder_folder *f, const
     return why ? why : recorder_beside(f->part, f->name, "part");
 }
 
-/* The part, whose files are closed, gets the name; on an error what had it still has it. */
+/* Rename the part, whose files are closed, to the name; on an error the old folder keeps it. */
 static inline const char *recorder_folder_show(struct recorder_folder *f)
 {
     file_stat s;
@@ -171,7 +172,7 @@ static inline const char *recorder_folder_show(struct recorder_folder *f)
     return NULL;
 }
 
-/* What is left of it goes; its files are closed and removed. */
+/* Remove the part, if it is still there; its files must be closed and removed. */
 static inline void recorder_folder_drop(struct recorder_folder *f)
 {
     if (f->part[0]) {

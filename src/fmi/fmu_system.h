@@ -1,4 +1,5 @@
-/* What the generated text of a system of parts is made of: wires, limits, tables. */
+/* fmu_system - macros and types of which the generated C text of a system of parts consists: tables
+ * of parts, wires and recorded columns, and quick checks of the values on all wires. */
 #ifndef FMU_SYSTEM_H
 #define FMU_SYSTEM_H
 
@@ -13,8 +14,8 @@
 
 #include "fmu_part.h"
 
-/* A program that is made for a run or two shall not wait for the optimization of what runs once a
- * call, which takes longer than that of the loop. */
+/* For a program that is compiled for a run or two, code outside of the loop is not optimised: that
+ * would take longer than optimising the loop. */
 #if defined(SYSTEM_QUICKLY) && defined(__clang__)
 #define SYSTEM_COLD_BEGIN _Pragma("clang optimize off")
 #define SYSTEM_COLD_END   _Pragma("clang optimize on")
@@ -29,25 +30,28 @@
 struct vars;
 
 struct system_part {
-    const char *name; /* of the component */
+    const char *name; /* name of the component */
     const struct fmu_part *part;
-    size_t at;                                      /* of its instance, in struct model */
-    void (*give)(void *part, const struct vars *v); /* all values that are set before a run */
+    size_t at; /* [byte] place of its instance in struct model */
+    void (*give)(void *part, const struct vars *v); /* set its parameters and inputs before a run */
 };
 
+/* Destination of a wire. */
 struct system_wire {
-    int to;    /* part */
-    size_t at; /* of the input, in the part's struct vars */
+    int to;    /* index of the part */
+    size_t at; /* [byte] place of the input in the part's struct vars */
 };
 
+/* A recorded signal: name, place in struct model [byte], kind and count of struct
+ * recorder_column. */
 struct system_column {
     const char *name;
-    size_t at; /* in struct model */
+    size_t at;
     char kind;
     int32_t count;
 };
 
-/* A part that is linked in; its name is not one of the program's. */
+/* Declare a part that is linked in; its name is not exported. */
 #if defined(__GNUC__)
 #define SYSTEM_PART(name) __attribute__((visibility("hidden"))) extern const struct fmu_part name
 #else
@@ -60,12 +64,12 @@ struct system_column {
         memcpy(&(to), &(from), sizeof(to)); \
     } while (0)
 
-/* What the values that all wires have brought are together, so that it is asked once. Most need
- * only be finite: x * 0 is 0 of these and no number of all others. */
+/* Check of the values on all wires together, which is evaluated once. Most values need only be
+ * finite: x * 0 is 0 for a finite x and NaN for any other. */
 struct system_check {
-    double off[2]; /* sums of x * 0, of every other element */
-    uint32_t bits; /* that no whole number may have */
-    bool good;     /* those with other limits are within them */
+    double off[2]; /* sums of x * 0, of even and odd elements */
+    uint32_t bits; /* union of the bits that integers have and must not have */
+    bool good;     /* the values with other limits are within them */
 };
 
 #define SYSTEM_FINITE(x) system_finite(&check, (const double *)&(x), sizeof(x) / sizeof(double))
@@ -95,7 +99,7 @@ static inline void system_reals(struct system_check *c, const double *x, size_t 
     }
 }
 
-/* Whole numbers from 0 to 2^k - 1. */
+/* Integers whose range is 0 .. high = 2^k - 1. */
 static inline void system_bits(struct system_check *c, const int32_t *x, size_t n, int32_t high)
 {
     for (size_t i = 0; i < n; i++) {

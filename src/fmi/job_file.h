@@ -1,5 +1,5 @@
-/* What the FMUs at both ends of a network card's link read: a job file, kept beside the state, and
- * the key of the link. Include it behind fmi_model.h. */
+/* job_file - parameters that the FMUs at both ends of a network card's link read: a job file, kept
+ * beside the state, and the key of the link. Include it after fmi_model.h. */
 #ifndef JOB_FILE_H
 #define JOB_FILE_H
 
@@ -8,9 +8,9 @@
 
 enum { JOB_FILE_MOST = 1 << 21, JOB_KEY_BYTES = 32 };
 
-/* One byte more than the flash has tells a file that is too long. */
+/* The file's bytes; one byte more than the flash has reveals a file that is too long. */
 struct job_file {
-    uint32_t bytes; /* 0: none */
+    uint32_t bytes; /* number of bytes; 0: no job */
     uint8_t byte[JOB_FILE_MOST + 1];
 };
 
@@ -59,7 +59,7 @@ static int job_key_digit(char c)
                                   : -1;
 }
 
-/* The parameter `key`, 64 hexadecimal digits; zeros without one. */
+/* Read the parameter `key`, 64 hexadecimal digits; without one the key is all 0. */
 static int job_key(struct fmu *f, uint8_t key[JOB_KEY_BYTES])
 {
     const char *text = f->s.v.key;

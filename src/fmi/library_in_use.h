@@ -1,11 +1,12 @@
-/* Arrays of the motion library and of what it shares with the robot controller, and which part of
- * them is in use: rows of fmu_in_use.h for a member of struct model. */
+/* library_in_use - which part of the large arrays of the motion library, and of the cores that it
+ * shares with the robot controller, is in use: rows of fmu_in_use.h for a member of struct
+ * model. */
 #ifndef LIBRARY_IN_USE_H
 #define LIBRARY_IN_USE_H
 
 #include "fmu_in_use.h"
 
-/* A struct interpreter. */
+/* For a struct interpreter. */
 #define INTERPRETER_IN_USE(in) \
     FMU_RING(in.cutter.held, in.cutter.first, in.cutter.count, 0) \
     FMU_LIST(in.tools.table.tool, in.tools.table.count) \
@@ -15,11 +16,11 @@
     FMU_LIST(in.flow.call, in.flow.level) \
     FMU_LIST(in.made, in.count)
 
-/* A struct ring, and the struct track_mean of a mover. */
+/* For a struct ring, and for the struct track_mean of a mover. */
 #define RING_IN_USE(ring)        FMU_RING(ring.entry, ring.head, ring.count, 0)
 #define MEAN_IN_USE(mean, mover) FMU_WHEN(mean, mover.motion, MOVER_CHAIN, MOVER_CHAIN)
 
-/* A struct curve_plan: shape and pace are made when a curve begins. */
+/* For a struct curve_plan, whose shape and pace are made when a curve begins. */
 #define CURVE_IN_USE(curve, mover) \
     FMU_WHEN(curve.shape, mover.motion, MOVER_CURVE, MOVER_CURVE) \
     FMU_WHEN(curve.shape.run.vertex, curve.shape.running, 1, 1) \
@@ -31,7 +32,7 @@
     FMU_TO_END(curve.pace.plan[0].node, curve.pace.plan[0].first) \
     FMU_TO_END(curve.pace.plan[1].node, curve.pace.plan[1].first)
 
-/* A struct mcc. */
+/* For a struct mcc. */
 #define MCC_IN_USE(mcc) \
     FMU_LIST(mcc.tools.tool, mcc.tools.count) \
     INTERPRETER_IN_USE(mcc.program) \
@@ -40,7 +41,7 @@
     CURVE_IN_USE(mcc.curve_plan, mcc.mover) \
     FMU_RING(mcc.queue.item, mcc.queue.head, mcc.queue.count, 0)
 
-/* A struct voltage. */
+/* For a struct voltage. */
 #define VOLTAGE_IN_USE(voltage) \
     FMU_BETWEEN(voltage.trail.point, voltage.trail.first, voltage.trail.frames, 1)
 

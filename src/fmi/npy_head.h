@@ -1,5 +1,5 @@
-/* Head of a .npy file (format version 1.0): a Python dictionary, padded to a fixed size, so that it
- * can be written again once the rows are known.
+/* npy_head - head of a NumPy .npy file (format version 1.0): a Python dictionary with type and
+ * shape, padded to a fixed size, so that it can be written again when the number of rows is known.
  * https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html */
 #ifndef NPY_HEAD_H
 #define NPY_HEAD_H
@@ -8,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* `size`: a multiple of 64, 128 at least, so that data is aligned when it is mapped. `type`: f8, i4
- * or b1; `columns` -1: one value a row, its shape is (rows,). */
+/* Write a head of `size` bytes, a multiple of 64 and at least 128, so that data is aligned when it
+ * is mapped. `type` is f8, i4 or b1; columns = -1 means one value per row, shape (rows,). */
 static inline void npy_head(char *head, size_t size, const char *type, int64_t rows,
                             int64_t columns)
 {

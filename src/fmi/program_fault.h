@@ -1,4 +1,5 @@
-/* Says what is wrong with a part program, where, and which text. Included behind fmi_model.h. */
+/* program_fault - messages to the importer about faults and notes in a part program, with file,
+ * line, column and quoted text. Included after fmi_model.h. */
 #ifndef PROGRAM_FAULT_H
 #define PROGRAM_FAULT_H
 
@@ -7,7 +8,7 @@
 #include "fault.h"
 #include "program_file.h"
 
-/* Some text of the line a report speaks of. */
+/* A part of the line that a report is about. */
 struct quote {
     char text[SOURCE_LINE_MAX + 1];
 };
@@ -22,7 +23,7 @@ static struct quote quote(struct program_file *program, const struct fault_repor
     return q;
 }
 
-/* Name of the text that a report speaks of: of the program, and of a file that it calls. */
+/* Name of the file that a report is about: the program, or a file that it calls. */
 struct file_name {
     char text[1200];
 };
@@ -34,7 +35,7 @@ static struct file_name file_of(const char *program, const struct fault_report *
     return n;
 }
 
-/* What is wrong with a line of a program of that name. */
+/* Report a fault in a line of the program `name`; returns -1. */
 static int tell_fault(struct fmu *f, const char *name, struct program_file *program,
                       const struct fault_report *r)
 {
@@ -62,7 +63,7 @@ static int tell_fault(struct fmu *f, const char *name, struct program_file *prog
                     (int)r->at + 1);
 }
 
-/* Tell the notes on the program that a parameter names, and refuse it if it has a fault. */
+/* Send the notes on the program that a parameter names, and refuse it if it has a fault. */
 static int judge_program(struct fmu *f, const char *parameter, const char *name,
                          struct program_file *program, const struct fault_list *all)
 {

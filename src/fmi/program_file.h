@@ -1,4 +1,5 @@
-/* Reads a part program of an FMU with the mcc core, through a window of fixed size. */
+/* program_file - the part program of an FMU and the files that it calls, read through a window of
+ * fixed size, as a struct source for the interpreter. */
 #ifndef PROGRAM_FILE_H
 #define PROGRAM_FILE_H
 
@@ -8,16 +9,15 @@
 
 enum { PROGRAM_WINDOW = 1 << 16 }; /* [byte] some two thousand blocks */
 
-/* An open part program, or a file that one calls; byte[0 .. count) stands at an offset of the file,
- * which is read up to offset + count. */
+/* An open part program, or a file that one calls. */
 struct program_file {
     FILE *file;
-    int64_t offset, count;
-    int error;                 /* errno value of a read that failed */
-    char *path;                /* of the program: files that it calls are beside it */
-    struct program_file *next; /* of those that it has called */
-    char name[FAULT_FILE];     /* of such a file */
-    char byte[PROGRAM_WINDOW];
+    int64_t offset, count;     /* [byte] place of the window in the file; its filling */
+    int error;                 /* errno of a read that failed */
+    char *path;                /* path of the program; files that it calls are in its folder */
+    struct program_file *next; /* list of the files that it has called */
+    char name[FAULT_FILE];     /* name by which this file is called; "" for the program */
+    char byte[PROGRAM_WINDOW]; /* the window */
 };
 
 /* Go to an offset, also beyond 2 GiB. */
@@ -30,7 +30,7 @@ static int program_seek(FILE *file, int64_t offset)
 #endif
 }
 
-/* Fill the window from an offset on, keeping what it has of it. */
+/* Fill the window from an offset on, keeping the bytes that it has already. */
 static int program_fill(struct program_file *p, int64_t offset)
 {
     const int64_t skip = offset - p->offset;
@@ -54,7 +54,8 @@ static int program_fill(struct program_file *p, int64_t offset)
     return 0;
 }
 
-/* Bytes of an open file from an offset on. */
+/* Bytes of an open file from an offset on: *text points to them. Returns their number, -1 on an
+ * error. */
 static int64_t program_bytes(struct program_file *p, int64_t offset, const char **text)
 {
     const int64_t behind = p->offset + p->count;
@@ -68,7 +69,7 @@ static int64_t program_bytes(struct program_file *p, int64_t offset, const char 
     return p->offset + p->count - offset;
 }
 
-/* Returns NULL or what is wrong; *program stays NULL if the file is empty. */
+/* Open a part program. Returns NULL, or what is wrong; *program stays NULL if the file is empty. */
 static const char *program_open(const char *name, struct program_file **program)
 {
     FILE *file;
@@ -113,7 +114,8 @@ static void program_close(struct program_file *p)
     }
 }
 
-/* The file of a name beside a program, opened at its first use; NULL: there is none. */
+/* The file `name`.ngc in the folder of a program, opened at its first use; NULL if there is
+ * none. */
 static struct program_file *program_called(struct program_file *p, const char *name)
 {
     char path[4096];
@@ -138,7 +140,7 @@ static struct program_file *program_called(struct program_file *p, const char *n
     return c;
 }
 
-/* struct source's look. */
+/* The function `look` of a struct source. */
 static int64_t program_look(void *context, const char *file, int64_t offset, const char **text)
 {
     struct program_file *p = context;

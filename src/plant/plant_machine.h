@@ -1,4 +1,5 @@
-/* What the processor has beyond what every one of its kind has, asked of itself. */
+/* plant_machine - asks the processor at run time whether it has AVX2, the wide vectors with which a
+ * plant computes several axes at once. */
 #ifndef PLANT_MACHINE_H
 #define PLANT_MACHINE_H
 
@@ -6,7 +7,8 @@
 
 #include "el_lanes.h"
 
-/* That of EL_WIDE: packed sources include the system's headers before any of ours. */
+/* The condition of EL_WIDE (el_lanes.h) again, because packed sources include the system's headers
+ * before any of ours. */
 #if defined(__GNUC__) && defined(__x86_64__) && !defined(_WIN32) && !defined(EL_PLAIN)
 #include <cpuid.h>
 #include <stdatomic.h>
@@ -14,7 +16,7 @@
 
 #ifdef EL_WIDE
 
-/* Do the processor and the system that runs on it have AVX2? (Intel SDM 1, 14.7.1) */
+/* Whether processor and operating system support AVX2 (Intel SDM 1, 14.7.1). */
 static inline bool plant_ask_avx2(void)
 {
     enum { OSXSAVE_AVX = 1 << 27 | 1 << 28, AVX2 = 1 << 5, XMM_YMM = 6 };
@@ -26,10 +28,10 @@ static inline bool plant_ask_avx2(void)
     return (kept & XMM_YMM) == XMM_YMM && __get_cpuid_count(7, 0, &a, &b, &c, &d) && (b & AVX2);
 }
 
-/* The same, asked once: where machines are simulated the question takes as long as a step. */
+/* The same, asked only once: in a virtual machine cpuid may take as long as a step. */
 static inline bool plant_has_avx2(void)
 {
-    static _Atomic signed char known; /* 0: not yet, else 1 or -1; all threads find the same */
+    static _Atomic signed char known; /* 0: not asked yet; 1 yes, -1 no; the same in all threads */
     signed char found = atomic_load_explicit(&known, memory_order_relaxed);
     if (found == 0) {
         found = plant_ask_avx2() ? 1 : -1;

@@ -1,8 +1,8 @@
 /* Model of every Modelica FMU: PLANT_INSTANCES copies of one class on a fixed micro-grid.
  *
- * At each instant of the grid k h the inputs are read, and held to the next instant, where the new
- * state shows. Communication points between two instants show the older one, so any split of an
- * interval gives the same bits.
+ * At each instant of the grid k h the inputs are read, and held to the next instant, when the
+ * outputs get the new state. At communication points between two instants they show the older one,
+ * so any split of an interval gives the same bits.
  *
  * Integrator: classic Runge-Kutta of order 4, in n equal sub-steps per micro step. It is stable to
  * (h/n) |lambda| = 2.785 on the negative real axis and 2.83 on the imaginary one. model_start
@@ -28,7 +28,8 @@
 #include "plant.h"
 #include "plant_stiffness.h"
 
-/* It takes long: a fuzz harness, which starts a plant again and again, keeps what it gave. */
+/* plant_stiffness takes long, so a fuzz harness, which starts a plant again and again, replaces it
+ * by a function that remembers its results. */
 #ifndef PLANT_STIFFNESS
 #define PLANT_STIFFNESS plant_stiffness
 #endif
@@ -44,32 +45,32 @@ enum {
 
 _Static_assert(!PLANT_CONTROLLED || PLANT_LANES == 1, "steps of its own for each axis");
 
-/* Axes with the same number of sub-steps. */
+/* Axes with the same number of sub-steps, a lane each, which are integrated together. */
 struct plant_block {
-    double x[PLANT_STATE_SIZE];
-    double u[PLANT_INPUT_SIZE];
-    double c[PLANT_CONSTANT_SIZE];
-    int instance[PLANT_LANES]; /* the last axis fills the lanes that are left */
-    int lanes;                 /* one of PLANT_WIDTHS; the step from quantity to quantity */
-    int used;                  /* lanes with an axis of their own */
-    int sub_steps;
-    double fastest;            /* [1/s] bound of |lambda| at the start, of its stiffest axis */
-    double size[PLANT_STATES]; /* what is large for each state */
-    double asked;              /* [s] step that the error asks for */
+    double x[PLANT_STATE_SIZE];    /* states: [quantity][lane] */
+    double u[PLANT_INPUT_SIZE];    /* inputs, likewise */
+    double c[PLANT_CONSTANT_SIZE]; /* constants, likewise */
+    int instance[PLANT_LANES];     /* axis in each lane; the last one fills the unused lanes */
+    int lanes;                     /* number of lanes, one of PLANT_WIDTHS */
+    int used;                      /* number of lanes with an axis of their own */
+    int sub_steps;                 /* sub-steps of a micro step */
+    double fastest;                /* [1/s] bound of |lambda| at the start, of its stiffest axis */
+    double size[PLANT_STATES];     /* scale of the error of each state */
+    double asked;                  /* [s] step size that the error control asks for */
 };
 
 struct model {
     struct plant_block block[PLANT_INSTANCES];
     int blocks;
     int64_t step_ns; /* [ns] micro step */
-    bool watched;    /* the first communication step was compared with it */
+    bool watched;    /* the first communication step was compared with the micro step */
 };
 
 #include "fmi_model.h"
 
-static const double plant_h_lambda = 2.0;
+static const double plant_h_lambda = 2.0; /* largest (h/n) |lambda| */
 
-/* What is done with the lanes of a block as a constant. */
+/* A case of a switch that calls a function with the number of lanes as a constant. */
 #define PLANT_CASE(n, call) \
     case n: call; break;
 
@@ -109,7 +110,8 @@ static void plant_step_plain(struct plant_block *b, double h)
 #undef STEP
 }
 
-/* Also what is between the rates is of wide vectors: a wide load waits for two narrow stores. */
+/* The sums between the rates use wide vectors, too: a wide load would wait for two narrow
+ * stores. */
 EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
 {
 #define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
@@ -119,7 +121,7 @@ EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
 #undef STEP
 }
 
-/* One axis of several, or two, have not enough to do at once for wide vectors. */
+/* Whether wide vectors pay: not for a block of one or two lanes, unless the plant has only one. */
 static bool plant_wide(const struct plant_block *b)
 {
     return (b->lanes > 2 || PLANT_LANES == 1) && plant_has_avx2();
@@ -130,10 +132,11 @@ static void plant_step(struct plant_block *b, double h)
     (plant_wide(b) ? plant_step_avx2 : plant_step_plain)(b, h);
 }
 
-/* One step of h [s] by Bogacki and Shampine (1989) to y; its error, 1 being allowed. */
+/* One step of h [s] by Bogacki and Shampine (1989) to y. Returns its error relative to the allowed
+ * one. */
 static double plant_trial(const struct plant_block *b, double h, double *y)
 {
-    enum { STAGES = 4 }; /* y stands in the last row: the fourth stage is for the error alone */
+    enum { STAGES = 4 }; /* the point of the fourth stage is y; its rate serves the error only */
     static const double a[STAGES][STAGES - 1] = {
         { 0.0 }, { 1.0 / 2.0 }, { 0.0, 3.0 / 4.0 }, { 2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0 }
     };
@@ -172,7 +175,7 @@ static int plant_controlled(struct plant_block *b, double h)
         }
         double step = b->asked < left ? b->asked : left, y[PLANT_STATE_SIZE];
         if (step < left && 2.0 * step > left) {
-            step = 0.5 * left; /* not a whole one and then a scrap */
+            step = 0.5 * left; /* two equal steps instead of a long and a very short one */
         }
         const double error = plant_trial(b, step, y);
         double factor = error > 0.0 ? safety / el_cbrt(error) : grow;
@@ -180,7 +183,7 @@ static int plant_controlled(struct plant_block *b, double h)
         if (error <= 1.0) {
             memcpy(b->x, y, sizeof y);
             left = step < left ? left - step : 0.0;
-            /* A step cut by the grid says nothing against the larger one asked for before. */
+            /* A step that the grid has cut short is no reason to ask for less than before. */
             b->asked = factor < 1.0 || factor * step > b->asked ? factor * step : b->asked;
         } else {
             b->asked = step * (factor < safety ? factor : safety);
@@ -218,7 +221,7 @@ static void plant_read(struct fmu *f)
     }
 }
 
-/* Whether rows of lanes are all numbers: 0 times a number is 0, times infinity or NaN it is NaN. */
+/* Whether all values are finite: 0 times a finite number is 0, times infinity or NaN it is NaN. */
 static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 {
     double rest[PLANT_LANES] = { 0.0 }, sum = 0.0;
@@ -233,7 +236,7 @@ static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
     return sum == 0.0;
 }
 
-/* Whether state and outputs of a block are all numbers. */
+/* Whether all states and outputs of a block are finite. */
 static bool plant_finite(const struct plant_block *b, const double *y)
 {
     bool good = false;
@@ -247,7 +250,7 @@ static bool plant_finite(const struct plant_block *b, const double *y)
     return good;
 }
 
-/* Say which row is the first that is no number; that of a state comes first. */
+/* Report the first value that is not finite, a state before an output; returns -1. */
 static int plant_refuse(struct fmu *f, const struct plant_block *b, const double *y, int64_t now)
 {
     const double *a = b->x;
@@ -265,7 +268,7 @@ static int plant_refuse(struct fmu *f, const struct plant_block *b, const double
                     names[i / b->lanes], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
 }
 
-/* Show the state at the grid instant `now` [ns] on the outputs, if all are numbers. */
+/* Set the outputs from the state at the grid instant `now` [ns]; fails if a value is not finite. */
 static int plant_publish(struct fmu *f, int64_t now)
 {
     for (int n = 0; n < f->s.m.blocks; n++) {
@@ -282,9 +285,10 @@ static int plant_publish(struct fmu *f, int64_t now)
     return 0;
 }
 
-/* Tell once if steps are coarse for what an importer sees: a lag slower than its communication step
- * `seen` [s]. A Runge-Kutta step of z time constants makes such a lag wrong by z^4/120 of itself,
- * 1e-4 at z = 1/3. What is faster has died away between two communication points. */
+/* Warn if the integration steps are coarse for time constants that an importer can see, those above
+ * its communication step `seen` [s]. A Runge-Kutta step of z time constants has a relative error of
+ * z^4/120 in that lag, 1e-4 at z = 1/3. Faster lags have decayed between two communication
+ * points. */
 static void plant_watch(struct fmu *f, double seen)
 {
     static const double coarse = 1.0 / 3.0;
@@ -308,11 +312,11 @@ static void plant_watch(struct fmu *f, double seen)
     }
 }
 
-/* What is known of an active axis before it has a lane. */
+/* An active axis before it is placed in a lane. */
 struct plant_axis {
-    double p[PLANT_PARAMETER_SIZE];
-    double fastest; /* [1/s] */
-    int sub_steps;  /* 0: not active, or placed */
+    double p[PLANT_PARAMETER_SIZE]; /* its parameters */
+    double fastest;                 /* [1/s] bound of |lambda| */
+    int sub_steps;                  /* 0: not active, or already placed */
 };
 
 /* Put an axis into the lanes of a block from `lane` on. */
@@ -334,7 +338,7 @@ static void plant_fill(struct plant_block *b, int lane, int instance, const stru
     }
 }
 
-/* Lanes of a block of so many axes, at most PLANT_LANES. */
+/* Number of lanes of a block for so many axes, at most PLANT_LANES. */
 static int plant_width(int axes)
 {
 #define WIDE_ENOUGH(n) \
@@ -399,7 +403,7 @@ static int model_start(struct fmu *f)
     const double y[PLANT_OUTPUTS] = { 0.0 };
     struct plant_axis axes[PLANT_INSTANCES];
     const double step = 1e9 * f->s.v.micro_step;
-    const double tolerance = 1e-3; /* [ns] no clock means less; 25 us is 25000.000000000004 ns */
+    const double tolerance = 1e-3; /* [ns] for decimal steps: 25 us is 25000.000000000004 ns */
     memset(&f->s.m, 0, sizeof f->s.m);
     memset(axes, 0, sizeof axes);
     if (!(step >= FMU_TICK_NS && step <= 1e18) || fabs(step - round(step)) > tolerance

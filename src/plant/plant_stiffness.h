@@ -1,5 +1,6 @@
-/* How fast a plant is at a point: the largest |eigenvalue| of its equations over all branches. For
- * plant_model.c, the only unit that includes it. */
+/* plant_stiffness - how stiff a plant is: bound of the largest |eigenvalue| of its equations at a
+ * point, over all branches (contact or gap, and so on). plant_model.c chooses its sub-steps by
+ * it. */
 #ifndef PLANT_STIFFNESS_H
 #define PLANT_STIFFNESS_H
 
@@ -51,8 +52,8 @@ static double plant_spectral_radius(const double *matrix, int squarings)
     }
 }
 
-/* [1/s] bound of |lambda| at a point with these branches; branches that exclude each other may give
- * 0/0 and NaN. */
+/* Bound of |lambda| [1/s] at a point with these branches; NaN is possible where branches exclude
+ * each other and give 0/0. */
 static double plant_radius(const double *x, const double *u, const double *p, unsigned branches,
                            int squarings)
 {
@@ -61,15 +62,15 @@ static double plant_radius(const double *x, const double *u, const double *p, un
     return plant_spectral_radius(a, squarings);
 }
 
-/* Whether a value, no NaN, is larger than the largest so far, NaN before the first. */
+/* Whether a value, which may be NaN, is larger than the largest so far (NaN before the first). */
 static bool plant_larger(double radius, double largest)
 {
     return !isnan(radius) && !(largest >= radius);
 }
 
-/* [1/s] bound of |lambda| at a point, over all branches; NaN if none has one. Of many branches not
- * every combination is looked at: from none and from all of them each in turn is changed if that
- * makes the bound larger. */
+/* Bound of |lambda| [1/s] at a point over all branches; NaN if no combination has one. If there are
+ * many branches not every combination is tried: starting from none and from all of them, each
+ * branch in turn is switched if that makes the bound larger. */
 static double plant_stiffness(const double *x, const double *u, const double *p)
 {
     const int every = 8;
@@ -92,7 +93,7 @@ static double plant_stiffness(const double *x, const double *u, const double *p)
         double here = plant_spectral_radius(a, PLANT_ROUGH);
         for (int bit = 0; bit < PLANT_BRANCHES; bit++) {
             plant_jacobian(x, u, p, branches ^ 1u << bit, changed);
-            if (memcmp(a, changed, sizeof a) == 0) { /* as many a branch does that is far away */
+            if (memcmp(a, changed, sizeof a) == 0) { /* the branch does not matter at this point */
                 continue;
             }
             const double radius = plant_spectral_radius(changed, PLANT_ROUGH);

@@ -2,7 +2,8 @@
 
 #include <string.h>
 
-/* Table of a struct and its size in bytes; NULL for a name that is none. */
+/* Fields of the struct with the name `of`, their number and the struct's size in bytes. NULL and
+ * *count = -1 if there is no such struct; NULL also for a struct without fields. */
 const struct field *binding_fields(const char *of, int32_t *count, int64_t *size)
 {
     const struct table *const all[] = { MCC_TABLES, ROBOT_TABLES, GCODE_TABLES, PLAN_TABLES,

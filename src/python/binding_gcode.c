@@ -1,4 +1,5 @@
-/* binding_gcode - a part program from Python: its commands, its faults, the time it takes. */
+/* binding_gcode - part programs for Python: their commands, faults and notes, and the time that a
+ * machine needs for them. */
 #include <string.h>
 
 #include "binding.h"
@@ -7,7 +8,7 @@
 #include "mover.h"
 #include "waiting.h"
 
-/* A program as it is read, and a machine to time it on. */
+/* A program being read, and a machine for its cycle time. */
 struct gcode_reader {
     struct binding_text text;
     struct source source;
@@ -16,7 +17,7 @@ struct gcode_reader {
     double point[AXES], feed;                 /* [mm], [mm/s] at the start */
     double origin[INTERPRETER_SYSTEMS][AXES]; /* [mm] */
     struct tool_table tools;
-    double period; /* [s] from point to point */
+    double period; /* [s] interpolation cycle */
     struct mover mover;
     struct ring ring;
     struct track_mean mean;
@@ -115,7 +116,7 @@ const struct table GCODE_TABLES[] = {
 
 static const double PULSES_PER_MM = 1000.0; /* for the range of positions only */
 
-/* Six axes without bounds, fast enough for any program. */
+/* Defaults: six axes without travel limits, fast enough for any program. */
 void binding_gcode_defaults(struct gcode_reader *g)
 {
     memset(g, 0, sizeof *g);
@@ -134,14 +135,14 @@ void binding_gcode_defaults(struct gcode_reader *g)
     g->period = 1e-3;
 }
 
-/* A line of a tool table; NULL, or what is wrong with the text at *at. */
+/* Add a line of a tool table. Returns NULL, or what is wrong with the text at *at. */
 const char *binding_gcode_tool(struct gcode_reader *g, const char *text, int32_t length,
                                struct tool_text *at)
 {
     return tool_table_line(&g->tools, text, length, g->program.angles, at);
 }
 
-/* Begin a text that stays where it is while it is read, as do those of files that it calls. */
+/* Begin to read a text. It and the texts of files that it calls must stay in memory meanwhile. */
 void binding_gcode_begin(struct gcode_reader *g, const char *text, int64_t length,
                          binding_file file)
 {
@@ -156,9 +157,8 @@ void binding_gcode_begin(struct gcode_reader *g, const char *text, int64_t lengt
     g->in.tools.table = g->tools;
 }
 
-/* The next commands, at most so many; *result is an enum interpreter_result, of the last one. What
- * only the machine can tell is passed over; a program that runs for ever ends where a check
- * does. */
+/* Read the next commands, at most `room`; *result is the enum interpreter_result of the last one.
+ * Waits for the machine are skipped; an endless program ends where a check of it ends. */
 int64_t binding_gcode_read(struct gcode_reader *g, struct command *c, int64_t room, int32_t *result,
                            struct fault_report *r)
 {
@@ -193,7 +193,7 @@ void binding_reports(const struct fault_list *all, struct fault_report *r, int32
     count[2] = all->more;
 }
 
-/* Faults and notes of the program, which has begun and nothing of it is read. */
+/* Faults and notes of the program, of which nothing has been read yet. */
 void binding_gcode_check(struct gcode_reader *g, struct fault_report *r, int32_t count[3])
 {
     struct fault_list all;
@@ -202,7 +202,7 @@ void binding_gcode_check(struct gcode_reader *g, struct fault_report *r, int32_t
     binding_reports(&all, r, count);
 }
 
-/* Fill the ring from the commands, which get their index; how many are taken. */
+/* Move commands into the ring and number them. Returns how many have been taken so far. */
 static int64_t fill(struct gcode_reader *g, struct command *c, int64_t taken, int64_t count)
 {
     for (; taken < count && !ring_full(&g->ring); taken++) {
@@ -212,9 +212,9 @@ static int64_t fill(struct gcode_reader *g, struct command *c, int64_t taken, in
     return taken;
 }
 
-/* Drive the commands as the machine would, stops and waits passed at once: the time that each one
- * was the latest to have begun [s]; the places at the ends of all periods, or NULL [mm]. Returns
- * how many periods there are. */
+/* Interpolate the commands as the machine would, with stops and waits skipped. Gives the time for
+ * which each command was the latest one begun [s] and, unless NULL, the position at the end of each
+ * period [mm]. Returns the number of periods. */
 int64_t binding_gcode_time(struct gcode_reader *g, struct command *c, int64_t count,
                            double *seconds, double (*places)[AXES])
 {
@@ -253,8 +253,8 @@ int64_t binding_gcode_time(struct gcode_reader *g, struct command *c, int64_t co
     }
 }
 
-/* Points of the paths of commands: of command i from[i + 1] - from[i] of them, which begin at
- * from[i], evenly from its start to its end. [mm] */
+/* Points on the paths of commands [mm]: for command i the points from[i] .. from[i + 1] - 1, evenly
+ * spaced from its start to its end. */
 void binding_gcode_points(const struct command *c, int64_t count, const int64_t *from,
                           double (*points)[AXES])
 {
@@ -268,7 +268,7 @@ void binding_gcode_points(const struct command *c, int64_t count, const int64_t 
     }
 }
 
-/* Smallest and largest coordinates of a path, exact. [mm] */
+/* Smallest and largest coordinates of a command's path [mm], exact. */
 void binding_gcode_extent(const struct command *c, double low[AXES], double high[AXES])
 {
     for (int i = 0; i < AXES; i++) {

@@ -1,11 +1,11 @@
-/* binding_mcc - the library, its card and station from Python. */
+/* binding_mcc - the motion library with its card and ideal motors (a station) for Python. */
 #include <string.h>
 
 #include "binding.h"
 #include "binding_text.h"
 #include "station.h"
 
-/* Settings have the names and units of the FMU's parameters. A member of each axis of a machine. */
+/* Settings have the names and units of the FMU's parameters. AXIS_IN: a member of every axis. */
 #define AXIS_IN(m, name, unit, ...) \
     { name, \
       unit, \
@@ -155,7 +155,7 @@ static const struct field pin_fields[] = {
     PIN(power),
 };
 
-/* The document's parameters, where they are in struct mcc. */
+/* The parameters of the source document and their places in struct mcc. */
 #define PARAM(m, unit) \
     { #m, \
       unit, \
@@ -213,7 +213,7 @@ void binding_defaults(struct station_config *config)
     *config = station_defaults();
 }
 
-/* The library of a station, and the machine of a configuration. */
+/* The motion library of a station; the machine of a configuration. */
 struct mcc *binding_mcc(struct station *s)
 {
     return &s->pc.mcc;
@@ -224,9 +224,9 @@ const struct machine *binding_machine(const struct station_config *config)
     return &config->machine;
 }
 
-/* With the text of a part program in memory, NULL for none, and the files it calls: run a station,
- * check the program, plan as the task does and take points as a card would: their frames, at most
- * `room`. [pulses] */
+/* Functions with the text of a part program in memory (NULL: none) and the files that it calls: run
+ * a station; check the program; plan it as the task does and take the points as a card would, which
+ * gives at most `room` frames [pulses]. */
 int binding_run(struct station *s, int64_t until, const char *text, int64_t length,
                 binding_file file)
 {

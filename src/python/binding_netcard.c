@@ -1,14 +1,14 @@
-/* binding_netcard - the network card from Python, with a machine that counts its pulses. */
+/* binding_netcard - the network card for Python, with a simple machine that counts its pulses. */
 #include <stdio.h>
 #include <string.h>
 
 #include "binding.h"
 #include "netcard.h"
 
-static const int64_t LOOK_NS = 1000000; /* between two looks at the machine's switches */
+static const int64_t LOOK_NS = 1000000; /* time between two updates of the machine's switches */
 
-/* A card and its machine: an origin switch is on from its place onwards in the way of homing; no
- * limit is ever met, no drive has an alarm. */
+/* A card and its machine: the origin switch of an axis is on from `origin` onwards in the direction
+ * of homing; no limit switch is ever on and no drive has an alarm. */
 struct netcard_sim {
     struct netcard_config config;
     int64_t origin[CARD_AXES]; /* [pulses] */
@@ -57,8 +57,8 @@ void binding_netcard_settings(struct netcard_sim *s)
     s->config.settings = card_settings_start();
 }
 
-/* Power on; the flash with these bytes, erased if there are none. False, and why: a setting is not
- * good. */
+/* Power on, with these bytes in the flash (NULL: erased). False, with the reason in `words`, if a
+ * setting is out of range. */
 bool binding_netcard_start(struct netcard_sim *s, const uint8_t seed[NET_SHA_BYTES],
                            const uint8_t *flash, char *words, size_t size)
 {
@@ -97,7 +97,7 @@ static struct netcard_axes look(const struct netcard_sim *s)
     return a;
 }
 
-/* All up to this time [ns]. */
+/* Let time pass up to `until` [ns]. */
 void binding_netcard_run(struct netcard_sim *s, int64_t until)
 {
     while (s->card.now < until) {
@@ -125,7 +125,7 @@ int32_t binding_netcard_state(const struct netcard_sim *s)
     return s->card.state;
 }
 
-/* All bytes of its flash. */
+/* Copy all bytes of the card's flash. */
 void binding_netcard_flash(const struct netcard_sim *s, uint8_t bytes[FLASH_BYTES])
 {
     for (int32_t k = 0; k < FLASH_PAGES; k++) {

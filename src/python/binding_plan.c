@@ -1,11 +1,11 @@
-/* binding_plan - drawings become jobs of a network card, from Python. */
+/* binding_plan - planning a drawing into the job file of a network card, for Python. */
 #include <string.h>
 
 #include "binding.h"
 #include "job_writer.h"
 #include "net_plan.h"
 
-/* A plan under way and the pages it makes. */
+/* A plan in progress and the pages of its job file. */
 struct planner {
     struct net_plan_config config;
     struct job_header header;
@@ -74,7 +74,7 @@ const struct table PLAN_TABLES[] = {
     { NULL, NULL, 0, 0 },
 };
 
-/* Begin, as the settings say: what is no plain number comes here. */
+/* Begin with the settings that Python has filled in; arrays that are no fields are arguments. */
 void binding_plan_start(struct planner *p, const uint8_t origin[JOB_ORIGIN_BYTES],
                         const uint64_t jerk_max[JOB_AXES], const uint16_t pins[JOB_EVENTS],
                         const uint8_t level[JOB_EVENTS])
@@ -90,8 +90,9 @@ void binding_plan_start(struct planner *p, const uint8_t origin[JOB_ORIGIN_BYTES
     job_writer_start(&p->writer, &p->header);
 }
 
-/* Frames from vertices, until those are taken or there is no room; they go into pages, too. Behind
- * the last vertex to the end. Returns the frames made; *taken vertices, *pages. */
+/* Plan frames from vertices and write them into pages, until the vertices are taken or there is no
+ * room; after the last vertex to the end of the job. Returns the number of frames; `done` is the
+ * numbers of vertices taken and of pages. */
 int64_t binding_plan_run(struct planner *p, const struct net_plan_vertex *v, const int64_t count[3],
                          struct net_plan_frame *f, uint8_t (*page)[JOB_PAGE_BYTES], int64_t done[2])
 {
@@ -118,7 +119,7 @@ int64_t binding_plan_run(struct planner *p, const struct net_plan_vertex *v, con
     return made;
 }
 
-/* The last page and the header; what is wrong with the job, or empty. */
+/* Write the last page and the header. Returns what is wrong with the job, or "". */
 const char *binding_plan_end(struct planner *p, uint8_t page[JOB_PAGE_BYTES],
                              uint8_t header[JOB_PAGE_BYTES])
 {

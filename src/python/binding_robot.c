@@ -1,4 +1,5 @@
-/* binding_robot - the robot's control and its kinematics from Python. */
+/* binding_robot - the robot controller with its card and arm (a robot station), and the kinematics
+ * of arms, for Python. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -12,7 +13,7 @@ static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
 enum { MESSAGE = INFORM_MESSAGE_MAX };
 
-/* A program in either language with its points; it stays where it is while it runs. */
+/* A program in either language, with its points. It must stay in memory while it runs. */
 struct robot_program {
     struct binding_text text;
     struct source source;
@@ -57,7 +58,7 @@ static const struct field reading_fields[] = {
 };
 
 #define SEEN(m, name, unit) ONE(robot_station, m, name, unit)
-/* Names and units of the FMU's outputs. */
+/* Reports, with the names and units of the FMU's outputs. */
 #define REPORT(m, name) ONE(robot_station, soft.report.m, name, "")
 #define TIME(m, name)   ONE_IN(robot_station, soft.report.m, name, "s", SECONDS)
 static const struct field seen_fields[] = {
@@ -158,7 +159,8 @@ void binding_robot_defaults(struct robot_station_config *c)
     *c = robot_station_defaults();
 }
 
-/* Each function with a message returns 0, or 1 and the message; numbers: value, limit. */
+/* The functions with a message return 0, or 1 with the message; `number` is the wrong value and its
+ * limit. */
 int binding_robot_on(struct robot_station *s, const struct robot_station_config *c,
                      double number[2], char message[MESSAGE])
 {
@@ -185,7 +187,7 @@ void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
     arm->tool = s->tool;
 }
 
-/* Read a program in one of the languages, none with an empty text, and its points. */
+/* Read a program (an empty text is none) in one of the languages, and its points. */
 int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
                        bool gcode, binding_file file, char message[MESSAGE])
 {
@@ -242,7 +244,7 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
     return 0;
 }
 
-/* Start a program that was read, all rests; a part program is planned beforehand. */
+/* Start a program that was read, while the robot is at rest; a part program is planned first. */
 int binding_robot_start(struct robot_station *s, const struct robot_program *p, const char *job,
                         struct soft *trial, char message[MESSAGE])
 {
@@ -270,7 +272,7 @@ void binding_robot_run(struct robot_station *s, int64_t until, const struct robo
     robot_station_run(s, until, p ? &p->orders : NULL);
 }
 
-/* A move to joints [deg] or a pose X Y Z A B C [mm], [deg]. */
+/* Move to joint angles [deg] or to a pose X Y Z [mm] A B C [deg]. */
 int binding_robot_move(struct robot_station *s, struct robot_move *m, const double target[6],
                        struct robot_refusal *why, char message[MESSAGE])
 {
@@ -296,7 +298,7 @@ int binding_robot_jog(struct robot_station *s, struct robot_refusal *why, char m
     return (int)status;
 }
 
-/* Digital outputs of a mask, or an analog output from 0 on if that is 0. */
+/* Set the digital outputs of a mask; with mask 0, the analog output `index`, counted from 0. */
 int binding_robot_output(struct robot_station *s, uint32_t mask, uint32_t value, int32_t index,
                          double volt)
 {
@@ -327,7 +329,7 @@ int binding_robot_taught(const struct robot_station *s, int32_t n, char line[INF
     return soft_taught(&s->soft, n, line);
 }
 
-/* A tool as a matrix, the other way round if asked for. */
+/* Position and rotation of a tool as a matrix, or of its inverse. */
 static void tool_matrix(const struct manipulator *m, bool back, double at[3], double turn[3][3])
 {
     const struct pose tool = back ? pose_inverse(&m->tool) : m->tool;
@@ -338,7 +340,7 @@ static void tool_matrix(const struct manipulator *m, bool back, double at[3], do
     quaternion_matrix(tool.turn, turn);
 }
 
-/* A frame [m] in a pose. */
+/* A pose followed by a frame: product of both transformations [m]. */
 static void behind(const struct opw_pose *p, const double at[3], const double turn[3][3],
                    struct opw_pose *out)
 {
@@ -358,7 +360,8 @@ static void radians(const double degrees[OPW_JOINTS], double joint[OPW_JOINTS])
     }
 }
 
-/* Of n joints [deg] the matrices of the tip [mm]. */
+/* Forward kinematics: for n sets of joint angles [deg] the 4 x 4 matrices of the tool centre point
+ * [mm]. */
 void binding_robot_forward(const struct manipulator *m, int64_t n, const double (*joint)[6],
                            double (*matrix)[4][4])
 {
@@ -379,7 +382,7 @@ void binding_robot_forward(const struct manipulator *m, int64_t n, const double 
     }
 }
 
-/* Branches of a tip's matrix. */
+/* Inverse kinematics: all branches for the matrix of a tool centre point. */
 static uint32_t solve(const struct manipulator *m, const double at[3], const double turn[3][3],
                       const double matrix[4][4], const double near[6],
                       double all[OPW_BRANCHES][OPW_JOINTS])
@@ -394,7 +397,7 @@ static uint32_t solve(const struct manipulator *m, const double at[3], const dou
     return opw_inverse(&m->opw, &flange, near, all);
 }
 
-/* All branches of n matrices, NaN where there is none. */
+/* Inverse kinematics: all branches for n matrices; NaN for a branch that does not exist. */
 void binding_robot_inverse(const struct manipulator *m, int64_t n, const double (*matrix)[4][4],
                            const double (*near)[6], double (*joint)[OPW_BRANCHES][OPW_JOINTS])
 {
@@ -412,7 +415,8 @@ void binding_robot_inverse(const struct manipulator *m, int64_t n, const double 
     }
 }
 
-/* The branch within the limits that is nearest to near, with its joints [deg]; -1 and NaN: none. */
+/* The branch within the limits whose joint angles [deg] are nearest to `near`; -1 and NaN if there
+ * is none. */
 void binding_robot_nearest(const struct manipulator *m, int64_t n, const double (*matrix)[4][4],
                            const double (*near)[6], double (*joint)[OPW_JOINTS], int32_t *branch)
 {
@@ -434,7 +438,7 @@ void binding_robot_nearest(const struct manipulator *m, int64_t n, const double 
     }
 }
 
-/* Distances from singular [mm], 1, 1 and branches of n joints. */
+/* Singularity factors ([mm], 1, 1) and branches of n sets of joint angles. */
 void binding_robot_factors(const struct manipulator *m, int64_t n, const double (*joint)[6],
                            double (*factor)[3], int32_t *branch)
 {
@@ -448,7 +452,7 @@ void binding_robot_factors(const struct manipulator *m, int64_t n, const double 
     }
 }
 
-/* Poses X Y Z A B C of n matrices and back [mm], [deg]. */
+/* Poses X Y Z [mm] A B C [deg] of n matrices, and matrices of poses. */
 void binding_robot_pose(int64_t n, const double (*matrix)[4][4], double (*pose)[6])
 {
     for (int64_t k = 0; k < n; k++) {

@@ -7,7 +7,7 @@ struct binding_text binding_text_of(const char *text, int64_t length, binding_fi
     return (struct binding_text){ .text = { text, length }, .file = file };
 }
 
-/* struct source's look. */
+/* The function `look` of a struct source. */
 static int64_t look(void *context, const char *file, int64_t offset, const char **text)
 {
     struct binding_text *t = context;

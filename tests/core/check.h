@@ -1,4 +1,5 @@
-/* Checks for the C tests: each prints file:line and the values; main returns check_result(). */
+/* check - checks for the C tests: a check that fails prints file, line and values and the test goes
+ * on; main returns check_result(), which is not 0 if one has failed. */
 #ifndef CHECK_H
 #define CHECK_H
 
@@ -8,8 +9,8 @@
 
 static int check_failures;
 
-/* Step of loops over cases alike: under ASan, where each takes several times as long, every fifth
- * shows what the sanitizers look for. */
+/* Stride of loops over similar cases: under ASan, where a case takes several times as long, every
+ * fifth case is enough for the sanitizers. */
 #ifdef __SANITIZE_ADDRESS__
 enum { CHECK_EACH = 5 };
 #else
@@ -36,7 +37,7 @@ enum { CHECK_EACH = 1 };
         } \
     } while (0)
 
-/* Two numbers may differ by so much. */
+/* Two numbers may differ by the tolerance at most. */
 #define CHECK_NEAR(got, want, tolerance) \
     do { \
         const double check_got = (got), check_want = (want); \
@@ -54,7 +55,7 @@ static inline int check_result(void)
     return check_failures != 0;
 }
 
-/* Reproducible random number in low .. high (xorshift64). */
+/* A random integer in low .. high, the same sequence on every machine (xorshift64). */
 static inline int64_t check_random(uint64_t *state, int64_t low, int64_t high)
 {
     *state ^= *state << 13;
@@ -63,7 +64,7 @@ static inline int64_t check_random(uint64_t *state, int64_t low, int64_t high)
     return low + (int64_t)(*state % (uint64_t)(high - low + 1));
 }
 
-/* Uniform in [low, high), the same sequence on every machine (xorshift64). */
+/* A random number, uniform in [low, high), the same sequence on every machine (xorshift64). */
 static inline double check_real(uint64_t *state, double low, double high)
 {
     *state ^= *state << 13;

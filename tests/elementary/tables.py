@@ -153,15 +153,32 @@ def sine_tables() -> Iterable[str]:
     """Those of sine, cosine and tangent."""
     widest = (mp.pi / SINES) ** 2
     words = inverse_quarter()
-    yield numbers("256 / 2 pi", "TURN_STEPS", [float(SINES / (2 * mp.pi))])
+    yield numbers("steps in a radian: 256 / (2 pi)", "TURN_STEPS", [float(SINES / (2 * mp.pi))])
     yield numbers(
-        "2 pi / 256: 30 bits, 30 bits, the rest", "TURN_STEP", reduced(2 * mp.pi / SINES, 30)
+        "the step 2 pi / 256 as a sum: 30 bits, 30 bits, the rest",
+        "TURN_STEP",
+        reduced(2 * mp.pi / SINES, 30),
     )
-    yield numbers("(sin r - r) / r^3 in r^2", "SINE_REST", polynomial(sine_rest, 0, widest, 3))
-    yield numbers("(cos r - 1) / r^2 in r^2", "COSINE_REST", polynomial(cosine_rest, 0, widest, 3))
-    yield table("sin(2 pi k / 256): 26 bits, the rest, the nearest double", "SINES", sines())
-    yield numbers("pi / 2", "QUARTER", pair(mp.pi / 2))
-    yield array("2 / pi, in words behind the point", "uint32_t WORDS", f"[{len(words)}]", words)
+    yield numbers(
+        "coefficients of (sin r - r) / r^3, ascending powers of r^2",
+        "SINE_REST",
+        polynomial(sine_rest, 0, widest, 3),
+    )
+    yield numbers(
+        "coefficients of (cos r - 1) / r^2, ascending powers of r^2",
+        "COSINE_REST",
+        polynomial(cosine_rest, 0, widest, 3),
+    )
+    yield table(
+        "row k: sin(2 pi k / 256) as 26 bits and the rest; the nearest double", "SINES", sines()
+    )
+    yield numbers("pi / 2 as a sum of two doubles", "QUARTER", pair(mp.pi / 2))
+    yield array(
+        "fractional bits of 2 / pi, in words of 32 bits, the first one first",
+        "uint32_t WORDS",
+        f"[{len(words)}]",
+        words,
+    )
 
 
 def exp_tables() -> Iterable[str]:
@@ -171,13 +188,17 @@ def exp_tables() -> Iterable[str]:
     rest = polynomial(lambda r: (mpmath.expm1(r) - r) / r**2, -half, half, 4)
     less = polynomial(lambda r: (mpmath.expm1(r) - r - r * r / 2) / r**3, -half, half, 4)
     powers = [pair(mpf(2) ** (mpf(k) / POWERS)) for k in range(POWERS)]
-    yield numbers("128 / ln 2", "OCTAVE_STEPS", [float(POWERS / ln2)])
+    yield numbers("steps in a unit of x: 128 / ln 2", "OCTAVE_STEPS", [float(POWERS / ln2)])
     yield numbers(
-        "ln 2 / 128: 35 bits, 35 bits, the rest", "OCTAVE_STEP", reduced(ln2 / POWERS, 35)
+        "the step ln 2 / 128 as a sum: 35 bits, 35 bits, the rest",
+        "OCTAVE_STEP",
+        reduced(ln2 / POWERS, 35),
     )
-    yield numbers("(exp r - 1 - r) / r^2 in r", "EXP_REST", rest)
-    yield numbers("(exp r - 1 - r - r^2 / 2) / r^3 in r", "LESS_REST", less)
-    yield table("2^(k / 128)", "POWERS", powers)
+    yield numbers("coefficients of (e^r - 1 - r) / r^2, ascending powers of r", "EXP_REST", rest)
+    yield numbers(
+        "coefficients of (e^r - 1 - r - r^2 / 2) / r^3, ascending powers of r", "LESS_REST", less
+    )
+    yield table("row k: 2^(k / 128) as a sum of two doubles", "POWERS", powers)
 
 
 def log_tables() -> Iterable[str]:
@@ -185,34 +206,52 @@ def log_tables() -> Iterable[str]:
     ln2, far = mpmath.log(2), mpf(1) / 128
     rest = polynomial(lambda r: (mpmath.log1p(r) - r + r * r / 2) / r**3, -far, far, 6)
     inverses = [[0.0, 0.0]] + [pair(mpf(1) / n) for n in range(1, INVERSES)]
-    yield numbers("ln 2 on a grid of 2^-41, and rests", "LN2", parts(ln2, on_grid(ln2, GRID), 3))
-    yield numbers("(log(1 + r) - r + r^2 / 2) / r^3 in r", "LOG_REST", rest)
-    yield table("c, near 1/m; -log c on a grid of 2^-41, and rests", "LOGARITHMS", logarithms())
-    yield table("1 / n", "INVERSES", inverses)
+    yield numbers(
+        "ln 2 as a sum: a multiple of 2^-41, two rests", "LN2", parts(ln2, on_grid(ln2, GRID), 3)
+    )
+    yield numbers(
+        "coefficients of (log(1 + r) - r + r^2 / 2) / r^3, ascending powers of r", "LOG_REST", rest
+    )
+    yield table(
+        "for each interval of m: c near 1/m; -log c as a multiple of 2^-41 and two rests",
+        "LOGARITHMS",
+        logarithms(),
+    )
+    yield table("row n: 1 / n as a sum of two doubles", "INVERSES", inverses)
 
 
 def arc_tables() -> Iterable[str]:
     """Those of the arc functions."""
     rest = polynomial(atan_rest, 0, mpf(1) / 125**2, 4)
     inverses = [pair(mpf(1) / n) for n in range(1, 2 * ARC_TERMS, 2)]
-    yield numbers("(atan z - z) / z^3 in z^2", "ATAN_REST", rest)
-    yield table("atan(i / 64)", "ANGLES", [pair(mpmath.atan(mpf(i) / 64)) for i in range(65)])
-    yield table("1 / (2 n + 1)", "ODD_INVERSES", inverses)
+    yield numbers("coefficients of (atan z - z) / z^3, ascending powers of z^2", "ATAN_REST", rest)
+    yield table(
+        "row i: atan(i / 64) as a sum of two doubles",
+        "ANGLES",
+        [pair(mpmath.atan(mpf(i) / 64)) for i in range(65)],
+    )
+    yield table("row n: 1 / (2 n + 1) as a sum of two doubles", "ODD_INVERSES", inverses)
     turns = ((0, 1), (1, -1), (2, -1), (1, 1))
     starts = [[*pair(mp.pi / 2 * quarters), float(sign)] for quarters, sign in turns]
-    yield table("0 and pi/2 less, pi/2 and pi less: in pairs, and a sign", "ARC_STARTS", starts)
+    yield table(
+        "for each octant: angle as a sum of two doubles, sign of what is added to it",
+        "ARC_STARTS",
+        starts,
+    )
 
 
 def series_tables() -> Iterable[str]:
-    """Those of a series of powers."""
+    """Those of the slow ways' power series."""
     factorials = [pair(1 / mpmath.factorial(n)) for n in range(FACTORIALS)]
-    yield table("1 / n!", "FACTORIALS", factorials)
+    yield table("row n: 1 / n! as a sum of two doubles", "FACTORIALS", factorials)
 
 
 def cbrt_tables() -> Iterable[str]:
     """Those of the cube root."""
     start = polynomial(mpmath.cbrt, 1, 2, 5)
-    yield numbers("cube root of 1 to 2, to 12 bits", "CBRT_START", start)
+    yield numbers(
+        "coefficients of the cube root in 1 .. 2, to 12 bits, ascending powers", "CBRT_START", start
+    )
     yield numbers("cube roots of 1, 2, 4", "CBRTS", [float(mpmath.cbrt(2**k)) for k in range(3)])
 
 
@@ -222,7 +261,11 @@ def texts() -> dict[str, str]:
     for make in (sine_tables, exp_tables, log_tables, arc_tables, series_tables, cbrt_tables):
         name = f"el_{make.__name__}.h"
         guard = name.upper().replace(".", "_")
-        head = "/* Made by tests/elementary/tables.py, which computes every number. */"
+        what = str(make.__doc__).removeprefix("Those of ").removesuffix(".")
+        head = (
+            f"/* {name[:-2]} - constants of {what}, for the files of this core.\n"
+            " * Made by tests/elementary/tables.py, which computes every number. */"
+        )
         include = "#include <stdint.h>\n\n" if make is sine_tables else ""
         body = "\n".join(make())
         found[name] = f"{head}\n#ifndef {guard}\n#define {guard}\n\n{include}{body}\n#endif\n"

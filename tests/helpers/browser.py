@@ -31,7 +31,7 @@ def browser() -> Iterator[Any]:
 
 @contextmanager
 def tab(browser: Any, address: str, size: dict[str, int] = PHONE) -> Iterator[Any]:
-    """A page in a browser of some size; it is wrong if it tells an error in its console."""
+    """A page in a browser window of a given size; an error in its console fails the test."""
     context = browser.new_context(viewport=size, is_mobile=size is PHONE, has_touch=size is PHONE)
     page = context.new_page()
     page.set_default_timeout(60_000)

@@ -1,4 +1,4 @@
-"""A server of cards with soft cards on loopback, and a link between them that misbehaves."""
+"""A server of cards with soft cards on loopback, and a proxy between them that delays and cuts."""
 
 import asyncio
 import contextlib
@@ -24,7 +24,7 @@ WAIT = 0.005  # [s] until a soft card connects again
 
 
 def job_of(pages: int, seed: int = 1) -> bytes:
-    """A file that the server takes for a job."""
+    """Bytes of a file that the server accepts as a job file."""
     return b"MCJ1" + random.Random(seed).randbytes(256 * pages - 4)
 
 
@@ -40,7 +40,7 @@ def flash_with(job: bytes) -> bytes:
 
 
 def run(main: Coroutine[Any, Any, Any]) -> Any:
-    """Run a test that may not hang."""
+    """Run an asynchronous test with a time limit."""
 
     async def bounded() -> Any:
         return await asyncio.wait_for(main, 2 * PATIENCE)
@@ -49,14 +49,14 @@ def run(main: Coroutine[Any, Any, Any]) -> Any:
 
 
 async def until(true: Callable[[], object]) -> None:
-    """Wait until something is so."""
+    """Wait until a condition is true."""
     async with asyncio.timeout(PATIENCE):
         while not true():
             await asyncio.sleep(0.002)
 
 
 class Bench:
-    """A server, its folder and port, and who talks to it."""
+    """A server, its folder and port, and the soft cards that are connected to it."""
 
     def __init__(self, cards: Cards, folder: Path, port: int) -> None:
         self.cards, self.folder, self.port = cards, folder, port
@@ -74,7 +74,7 @@ class Bench:
         await until(lambda: wanted <= {v.id for v in self.cards.list() if v.connected})
 
     def view(self, card: int) -> Any:
-        """What the server knows of a card."""
+        """The server's record of a card."""
         return next(v for v in self.cards.list() if v.id == card)
 
     def texts(self, card: int, kind: str) -> list[str]:
@@ -146,7 +146,7 @@ def numbers(card: SoftCard) -> list[int]:
 
 
 class ChaosLink:
-    """Hands bytes on in pieces, late, and cuts connections in the middle of a frame."""
+    """A proxy that forwards bytes in pieces and late, and cuts connections within a frame."""
 
     def __init__(self, port: int, seed: int, mean: int) -> None:
         self._port, self._chance = port, random.Random(seed)
@@ -162,7 +162,7 @@ class ChaosLink:
         return int(self._server.sockets[0].getsockname()[1])
 
     async def close(self) -> None:
-        """Cut all."""
+        """Cut all connections."""
         assert self._server
         self._server.close()
         for task in self._tasks:

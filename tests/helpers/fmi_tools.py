@@ -26,7 +26,7 @@ _CALL: dict[str, tuple[Any, ...]] = {
 
 
 class Variable:
-    """One variable, an array as one, as both versions tell it."""
+    """One variable (an array is one), from the description of either version."""
 
     def __init__(self, first: Any, refs: list[int], count: int) -> None:
         self.type = _TYPE.get(first.type, first.type)
@@ -249,7 +249,7 @@ def random_inputs(instance: Instance, seed: int, count: int) -> list[dict[str, l
 
 
 def start_values(name: str, folder: Path) -> dict[str, Any]:
-    """What an FMU needs to run at all: files, by the names of its string parameters."""
+    """Files that an FMU needs to run, by the names of its string parameters."""
     variables = unpacked(name, 3)[2]
     values: dict[str, Any] = {}
     if "program" in variables:
@@ -262,7 +262,7 @@ def start_values(name: str, folder: Path) -> dict[str, Any]:
 
 
 def run(instance: Instance, inputs: list[dict[str, list[Any]]], size: float) -> list[str]:
-    """Step through the inputs; all outputs after each step, as text that tells bits apart."""
+    """Step through the inputs; all outputs after each step, as text that shows every bit."""
     seen = []
     for row in inputs:
         for name, values in row.items():

@@ -152,7 +152,7 @@ class Container:
             return ending.ran(NAME, self._scopes, [])
 
     def close(self) -> None:
-        """Nothing is held between runs."""
+        """Nothing to release: each run has its own container."""
 
 
 def run(scenario: motionfmu.Scenario, **options: Any) -> motionfmu.Result:

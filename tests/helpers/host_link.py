@@ -1,4 +1,4 @@
-"""Library and card as FMUs, exchanged value by value, so that every frame is seen on the wire."""
+"""Library and card as FMUs, connected value by value, so that every frame can be checked."""
 
 import atexit
 import tempfile
@@ -91,7 +91,7 @@ def unpacked(name: str) -> Path:
 
 
 class Run:
-    """Steps library and card and keeps the books of every frame."""
+    """Steps library and card and checks the balance of all frames at each step."""
 
     def __init__(self, case: Case, folder: Path) -> None:
         file = folder / "program.ngc"
@@ -167,7 +167,7 @@ class Run:
         self.wires.buffers["card", "frames_refused"][0] += told
 
     def book(self) -> None:
-        """Check the books at a communication point."""
+        """Check sent and taken frames at a communication point."""
         frames = self.value("card", "frames_taken")
         new = frames - len(self.taken)
         assert 0 <= new <= len(self.sent), "a frame came from nowhere"
@@ -194,7 +194,7 @@ class Run:
             slave.free()
 
     def balance(self) -> None:
-        """All frames are out, and the library knows where that is."""
+        """Check that all frames have been put out and the library's position is their sum."""
         pulses = np.array(self.value("card", "pulse_count"))
         frames = np.array(self.taken).reshape(-1, 6).sum(axis=0)
         assert np.array_equal(pulses, frames), "pulses out are not the commands in"

@@ -29,7 +29,7 @@ SHOWN = ("current", "spool", "pressure_a", "pressure_b", "table_position", "tabl
 
 @functools.cache
 def equation():
-    """The class, flattened once."""
+    """The Modelica class of the axis, flattened once."""
     return causal.load(PACKAGE, "MotionControl.HydraulicAxis")
 
 

@@ -63,7 +63,7 @@ def left_by_p(kc: float, friction: tuple[float, float, float]) -> int:
 
 
 def travel(time: float) -> float:
-    """Way of TRACK from rest [counts]."""
+    """Distance that TRACK covers from rest [counts]."""
     time = max(time, 0.0)
     return 20000.0 * time**2 if time < 0.1 else 4000.0 * (time - 0.05)
 

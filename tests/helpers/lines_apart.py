@@ -7,7 +7,7 @@ Lines = list[np.ndarray]
 
 
 def apart(a: Lines, b: Lines, near: int = 0) -> float:
-    """Largest distance of the vertices of one from the lines of the other.
+    """Largest distance of the vertices of one polyline from the lines of the other.
 
     near: only the chords whose middles are nearest, so many; enough where all are short.
     """

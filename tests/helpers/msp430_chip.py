@@ -44,7 +44,7 @@ def repaired(listing: str) -> str:
 
 
 def assemble(listing: str) -> tuple[list[tuple[str, list[str]]], dict[str, int]]:
-    """Instructions with operands, and the places of the labels."""
+    """Instructions with operands, and the addresses of the labels."""
     code: list[tuple[str, list[str]]] = []
     labels = {}
     for line in listing.splitlines():
@@ -108,7 +108,7 @@ class Chip:
         return (0, 0, 4, 4)[quarter % 4] | (16, 0, 0, 16)[quarter % 4]
 
     def execute(self) -> None:
-        """What the instruction does in its last clock."""
+        """Do what an instruction does in its last clock."""
         name, operands = self.code[self.at]
         self.at += 1
         memory = self.memory

@@ -173,7 +173,7 @@ def planned(told: np.ndarray, bounds: np.ndarray, what: str) -> np.ndarray:
 
 @dataclass
 class Ride:
-    """How a ride went: its time [s] and a row for each step."""
+    """Result of a ride: its time [s] and a row for each step."""
 
     time: float
     steps: np.ndarray
@@ -182,7 +182,7 @@ class Ride:
 
 @dataclass
 class Orders:
-    """How a ride is asked for: overrides of its steps, of which the last one goes on."""
+    """Settings of a ride: overrides of its steps, of which the last one holds from then on."""
 
     dt: float = 1e-3
     overrides: Sequence[float] | np.ndarray = (1.0,)
@@ -234,7 +234,7 @@ def shares(steps: np.ndarray, bounds: np.ndarray, dt: float) -> dict[str, float]
 
 
 def at_rest_at_its_end(done: Ride) -> bool:
-    """Never back, never too far, and at last without speed at the end of the path."""
+    """Check that a ride never goes back or beyond the path, and ends at rest at its end."""
     way = done.steps["way"]
     return (
         done.time > 0

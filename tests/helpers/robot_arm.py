@@ -19,7 +19,7 @@ EXACT = {"lost_motion": 0.0, "transmission_error_1": 0.0, "transmission_error_2"
 
 @cache
 def arm() -> Ode:
-    """The class, flattened once."""
+    """The Modelica class of the arm, flattened once."""
     return causal.load(PACKAGE, "MotionControl.SixAxisArm")
 
 
@@ -43,7 +43,7 @@ class Arm:
         return np.array([v for _, v in found]).reshape(found[0][0].dims or ())
 
     def places(self, state: str) -> list[int]:
-        """Where a state of the joints stands, for example link.angle."""
+        """Index of a state of the joints, for example link.angle."""
         part, name = state.split(".")
         return [self.states.index(f"{part}[{k}].{name}") for k in range(1, 7)]
 

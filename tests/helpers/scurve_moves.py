@@ -58,7 +58,7 @@ def to_speed(count: int, dice: np.random.Generator, beyond: float = 0.0) -> np.n
 
 
 def in_unit(moves: np.ndarray, second: float) -> np.ndarray:
-    """The same moves, told in units of so many seconds."""
+    """The same moves with another unit of time [s]."""
     told = moves.copy()
     for name, power in SECONDS.items():
         told[name] *= second**-power

@@ -22,7 +22,7 @@ class ChainPath(interpolator.AbstractGeometricPath):
 
     @property
     def path_interval(self) -> np.ndarray:
-        """From the start to the end."""
+        """Interval of the path parameter."""
         return np.array([0.0, self.length])
 
     def __call__(self, ways: Any, order: int = 0) -> np.ndarray:
@@ -40,7 +40,7 @@ class FeedConstraint(constraint.LinearConstraint):
         self.discretization_type = constraint.DiscretizationType.Collocation
 
     def compute_constraint_params(self, path: ChainPath, grid: np.ndarray, *_: Any) -> tuple:
-        """Bounds of (du/dt)^2 at the grid alone."""
+        """Bounds of (du/dt)^2 at the points of the grid only."""
         most = (self.feed / np.linalg.norm(path(grid, 1), axis=1)) ** 2
         return None, None, None, None, None, None, np.stack([np.zeros_like(most), most], 1)
 

@@ -1,5 +1,6 @@
-/* Numbers of twice 53 bits, as the sum of two doubles, from + - * / and sqrt alone; and what a
- * function needs to know of the form of a double. All of it inline, for elementary's own files. */
+/* double_double - arithmetic with some 106 bits: a number is the sum of two doubles, computed with
+ * + - * / and sqrt alone. It also has the exact product and sum of two doubles, a double's bits,
+ * and the test whether a rounding is certain. Inline, for the files of this core only. */
 #ifndef DOUBLE_DOUBLE_H
 #define DOUBLE_DOUBLE_H
 
@@ -9,7 +10,7 @@
 #include <stdint.h>
 #include <string.h>
 
-/* The results' proof needs each operation rounded to 53 bits, once. */
+/* The error bounds hold only if each operation is rounded once, to 53 bits. */
 #if defined(__FAST_MATH__)
 #error "elementary: not with -ffast-math"
 #endif
@@ -17,7 +18,7 @@
 #error "elementary: here a sum has more bits than a double (x87): use -msse2 -mfpmath=sse"
 #endif
 
-/* h + l; h is the double nearest to the sum. */
+/* The number h + l; h is the double nearest to it. */
 struct dd {
     double h, l;
 };
@@ -48,26 +49,28 @@ static inline double dd_power(int k)
     return dd_of_bits((uint64_t)(k + 1023) << 52);
 }
 
-/* The nearest number of 24 bits, of which products of two are exact; 2^-126 < |x| < 2^127. */
+/* The nearest number of 24 bits, so that the product of two such numbers is exact;
+ * 2^-126 < |x| < 2^127. */
 static inline double dd_half(double x)
 {
     return (double)(float)x;
 }
 
-/* a + b, where a is 0 or |a| >= |b|. */
+/* a + b exactly, where a is 0 or |a| >= |b|. */
 static inline struct dd dd_fast(double a, double b)
 {
     const double h = a + b;
     return dd_of(h, b - (h - a));
 }
 
+/* a + b exactly. */
 static inline struct dd dd_sum(double a, double b)
 {
     const double h = a + b, c = h - a;
     return dd_of(h, (a - (h - c)) + (b - c));
 }
 
-/* a b, |a| and |b| below 2^500: their halves of 26 bits have products without rounding. */
+/* a b exactly (Dekker), |a| and |b| below 2^500: halves of 26 bits have exact products. */
 static inline struct dd dd_product(double a, double b)
 {
     const double c = 134217729.0 * a, d = 134217729.0 * b; /* 2^27 + 1 */
@@ -98,7 +101,7 @@ static inline struct dd dd_mul(struct dd a, struct dd b)
     return dd_fast(p.h, p.l + (a.h * b.l + a.l * b.h));
 }
 
-/* Exact for a power of two. */
+/* a b; exact if b is a power of two. */
 static inline struct dd dd_times(struct dd a, double b)
 {
     return dd_of(a.h * b, a.l * b);
@@ -118,20 +121,22 @@ static inline struct dd dd_sqrt(struct dd a)
     return h == 0.0 ? a : dd_fast(h, (((a.h - p.h) - p.l) + a.l) / (2.0 * h));
 }
 
-/* h + l rounded, if every number from h + l - error to h + l + error rounds to the same. */
+/* Rounding test: *y is h + l rounded. True if every number from h + l - error to h + l + error
+ * rounds to the same double. */
 static inline bool dd_settled(double h, double l, double error, double *y)
 {
     *y = h + (l - error);
     return *y == h + (l + error);
 }
 
-/* a 2^k rounded once, 2^-100 < |a| < 2^100, |k| < 1200. What is nearer to the middle between two
- * doubles than the 2^-94th part of itself is taken for that middle, which powers do meet. */
+/* a 2^k rounded once, 2^-100 < |a| < 2^100, |k| < 1200. A number that is closer than 2^-94 of
+ * itself to the midpoint of two doubles is taken for that midpoint, which results of el_pow do
+ * meet. */
 static inline double dd_rounded(struct dd a, int k)
 {
     a = dd_fast(a.h, a.l);
     const int exponent = (int)(dd_bits(a.h) >> 52 & 2047) - 1023;
-    if (exponent + k < -1022) { /* the result has fewer bits: those of a sum with a large one */
+    if (exponent + k < -1022) { /* subnormal: adding a large number rounds to its fewer bits */
         const double large = copysign(ldexp(1.0, -1022 - k), a.h);
         const struct dd s = dd_fast(large, a.h);
         return copysign(ldexp((s.h + (s.l + a.l)) - large, k), a.h);

@@ -1,20 +1,20 @@
-/* Arc functions: all from the angle of a point. With i / 64 near y / x <= 1,
+/* Arc functions, all computed as the angle of a point (x, y). With i / 64 near y / x <= 1,
  *
- *     atan(y / x) = atan(i / 64) + atan z,   z = (y - x i / 64) / (x + y i / 64), |z| < 1/127,
+ *     atan(y / x) = atan(i / 64) + atan z,   z = (y - x i / 64) / (x + y i / 64), |z| < 1/127.
  *
- * which is what lacks of pi/2 or pi, or exceeds pi/2, where x < y or x is negative. */
+ * In the other octants this angle is subtracted from pi/2 or pi, or added to pi/2. */
 #include "elementary.h"
 #include "double_double.h"
 #include "el_arc_tables.h"
 
-/* What the quick way may be off by, of the angle. Its products are of 24 bits by 24 or 7, exact, or
- * of what is 2^-24 of its number: z = first + tail without its cubic part is off by 2^-73.8 z if
- * i = 0, else by 2^-73.9, where the angle is 2^-7.01 or more: 2^-66.8 of it. y and x of asin and
+/* Bound of the quick way's relative error. Its products are exact (24 bits by 24 or 7) or concern
+ * the part 2^-24 of a number: z = first + tail without its cubic part has an error of 2^-73.8 z if
+ * i = 0, else of 2^-73.9, where the angle is at least 2^-7.01: 2^-66.8 of it. The sides of asin and
  * acos add 2^-74. The cubic part, 2^-15.5 z, has 16 roundings: 2^-64.5; four more sums of it:
  * 2^-66.5. Together 2^-63.9. */
 #define PART 0x1.2p-64
 
-/* h + l, h the nearest number of 24 bits. */
+/* The number h + l, h the nearest number of 24 bits. */
 struct cut {
     double h, l;
 };
@@ -25,8 +25,9 @@ static inline struct cut cut_of(double x)
     return (struct cut){ h, x - h };
 }
 
-/* The angle of a point, whose larger side is x and other side y, both 2^-60 to 2^60: start is the
- * row of its eighth of a turn. */
+/* The quick way: angle of a point whose larger coordinate is x and smaller one y in magnitude, both
+ * 2^-60 to 2^60; `start` is the row of ARC_STARTS for its octant. False if the rounding is not
+ * certain. */
 static inline bool quick(struct cut y, struct cut x, const double start[3], double *result)
 {
     const int i = (int)(64.0F * ((float)y.h / (float)x.h) + 0.5F);
@@ -42,7 +43,7 @@ static inline bool quick(struct cut y, struct cut x, const double start[3], doub
     return dd_settled(b.h, a.l + b.l + (start[1] + sign * ANGLES[i][1] + tail), b.h * PART, result);
 }
 
-/* atan(y / x), x >= y > 0, by a series to z^17 / 17: 2^-124. */
+/* atan(y / x), x >= y > 0, by the series up to z^17 / 17; the rest is below 2^-124. */
 static struct dd atan_of(struct dd y, struct dd x)
 {
     const int i = (int)(64.0 * (y.h / x.h) + 0.5);
@@ -57,7 +58,7 @@ static struct dd atan_of(struct dd y, struct dd x)
     return dd_add(dd_of(ANGLES[i][0], ANGLES[i][1]), dd_mul(sum, z));
 }
 
-/* The angle of a point, 0 to pi; y >= 0. */
+/* The slow way: angle of a point, 0 to pi, y >= 0, in double-double. */
 static double slow(struct dd y, struct dd x)
 {
     const struct dd quarter = { ARC_STARTS[1][0], ARC_STARTS[1][1] };
@@ -69,7 +70,8 @@ static double slow(struct dd y, struct dd x)
     return dd_rounded(r, 0);
 }
 
-/* Where y and x differ by 2^60 or one is 0 or infinite; both >= 0 but for the sign of x. */
+/* Angle of a point whose coordinates differ by a factor of 2^60 or more, or one of which is 0 or
+ * infinite; y >= 0. */
 static double limit(double y, double x)
 {
     const double pi = ARC_STARTS[2][0], less = ARC_STARTS[2][1], a = fabs(x);
@@ -110,14 +112,14 @@ double el_atan(double x)
     return fabs(x) < 0x1p-27 ? x : el_atan2(x, 1.0);
 }
 
-/* sqrt(1 - x^2) */
+/* sqrt(1 - x^2), the other side of the triangle with hypotenuse 1. */
 static struct dd other(double x)
 {
     return dd_sqrt(dd_mul(dd_sum(1.0, -x), dd_sum(1.0, x)));
 }
 
-/* The same off by 2^-74.3 of it, 0 <= x < 1: root^2 is within 2^-22 of high, so that their
- * difference is exact. */
+/* The same with a relative error of 2^-74.3, 0 <= x < 1: first^2 is within 2^-22 of high, so that
+ * their difference is exact. */
 static inline struct cut quick_other(double x)
 {
     const struct dd a = dd_fast(1.0, -x), b = dd_fast(1.0, x);

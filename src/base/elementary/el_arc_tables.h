@@ -1,12 +1,13 @@
-/* Made by tests/elementary/tables.py, which computes every number. */
+/* el_arc_tables - constants of the arc functions, for the files of this core.
+ * Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_ARC_TABLES_H
 #define EL_ARC_TABLES_H
 
-/* (atan z - z) / z^3 in z^2 */
+/* coefficients of (atan z - z) / z^3, ascending powers of z^2 */
 static const double ATAN_REST[4] = { -0x1.5555555555555p-2, 0x1.99999999998c3p-3,
                                      -0x1.249249149480dp-3, 0x1.c7103e65d46d3p-4 };
 
-/* atan(i / 64) */
+/* row i: atan(i / 64) as a sum of two doubles */
 static const double ANGLES[65][2] = { { 0.0, 0.0 },
                                       { 0x1.fff555bbb729bp-7, -0x1.220c39d4dff5p-61 },
                                       { 0x1.ffd55bba97625p-6, -0x1.5ec431444912cp-60 },
@@ -73,7 +74,7 @@ static const double ANGLES[65][2] = { { 0.0, 0.0 },
                                       { 0x1.8e17aa99cc05ep-1, -0x1.ec182ab042f61p-56 },
                                       { 0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55 } };
 
-/* 1 / (2 n + 1) */
+/* row n: 1 / (2 n + 1) as a sum of two doubles */
 static const double ODD_INVERSES[9][2] = { { 0x1p+0, 0.0 },
                                            { 0x1.5555555555555p-2, 0x1.5555555555555p-56 },
                                            { 0x1.999999999999ap-3, -0x1.999999999999ap-57 },
@@ -84,7 +85,7 @@ static const double ODD_INVERSES[9][2] = { { 0x1p+0, 0.0 },
                                            { 0x1.1111111111111p-4, 0x1.1111111111111p-60 },
                                            { 0x1.e1e1e1e1e1e1ep-5, 0x1.e1e1e1e1e1e1ep-61 } };
 
-/* 0 and pi/2 less, pi/2 and pi less: in pairs, and a sign */
+/* for each octant: angle as a sum of two doubles, sign of what is added to it */
 static const double ARC_STARTS[4][3] = { { 0.0, 0.0, 0x1p+0 },
                                          { 0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, -0x1p+0 },
                                          { 0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53, -0x1p+0 },

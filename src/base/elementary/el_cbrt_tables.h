@@ -1,8 +1,9 @@
-/* Made by tests/elementary/tables.py, which computes every number. */
+/* el_cbrt_tables - constants of the cube root, for the files of this core.
+ * Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_CBRT_TABLES_H
 #define EL_CBRT_TABLES_H
 
-/* cube root of 1 to 2, to 12 bits */
+/* coefficients of the cube root in 1 .. 2, to 12 bits, ascending powers */
 static const double CBRT_START[5] = { 0x1.04bc2bde493b9p-1, 0x1.6c697f83452edp-1,
                                       -0x1.2d024eeecb9cbp-2, 0x1.544aaec5e4624p-4,
                                       -0x1.4b077fcd0882bp-7 };

@@ -4,14 +4,15 @@
 
 enum {
     LIMBS = 14, /* of 32 bits: 10^120 has 399, and it is doubled twice at most */
-    BITS = 54   /* of the quotient: those of a double and one to round by */
+    BITS = 54   /* bits of the quotient: those of a double and one to round by */
 };
 
-/* A whole number, its lowest limb first. */
+/* An integer of 448 bits, its lowest limb first. */
 struct large {
     uint32_t limb[LIMBS];
 };
 
+/* x becomes 10 x + plus. */
 static void times_ten(struct large *x, uint32_t plus)
 {
     uint64_t carry = plus;
@@ -53,7 +54,8 @@ static void subtract(struct large *a, const struct large *b)
     }
 }
 
-/* The quotient of two whole numbers bit by bit, from the highest on; what is left rounds it. */
+/* up / down rounded to the nearest double: the quotient bit by bit from the highest on, rounded by
+ * its last bit and the remainder. */
 static double quotient(struct large *up, struct large *down)
 {
     int exponent = 0;
@@ -65,7 +67,7 @@ static double quotient(struct large *up, struct large *down)
     for (; compare(up, down) < 0; exponent--) {
         twice(up);
     }
-    for (int i = 0; i < BITS; i++) { /* up is from down on to below twice that */
+    for (int i = 0; i < BITS; i++) { /* up < 2 down */
         const bool one = compare(up, down) >= 0;
         if (one) {
             subtract(up, down);

@@ -1,4 +1,5 @@
-/* el_decimal - the double nearest to a decimal number; a double printed in full comes back. */
+/* el_decimal - the double nearest to a decimal number, for readers of numbers in text: digits are
+ * collected one by one, then converted. A double printed in full is read back exactly. */
 #ifndef EL_DECIMAL_H
 #define EL_DECIMAL_H
 
@@ -6,15 +7,15 @@
 #include <stdint.h>
 
 enum {
-    EL_DECIMAL_DIGITS = 120, /* 0.1 as a double has 55 */
-    EL_DECIMAL_SHORT = 15,   /* digits of an integer below 2^53 */
-    EL_DECIMAL_EXACT = 22    /* powers of ten that are doubles */
+    EL_DECIMAL_DIGITS = 120, /* most digits of a number; the double 0.1 printed in full has 55 */
+    EL_DECIMAL_SHORT = 15,   /* numbers of so many digits are integers below 2^53, exact */
+    EL_DECIMAL_EXACT = 22    /* largest power of ten that is exact as a double */
 };
 
-/* Digits as they are read, without leading zeros. */
+/* The digits of a number as they are read, without leading zeros. */
 struct el_decimal {
-    int32_t count, behind; /* all, and those behind the point */
-    int64_t whole;         /* the first EL_DECIMAL_SHORT as an integer */
+    int32_t count, behind; /* number of digits; of digits behind the decimal point */
+    int64_t whole;         /* the first EL_DECIMAL_SHORT digits as an integer */
     uint8_t digit[EL_DECIMAL_DIGITS];
 };
 
@@ -25,7 +26,7 @@ static inline void el_decimal_begin(struct el_decimal *d)
     d->whole = 0;
 }
 
-/* Append a digit; false: there is no room. */
+/* Append a digit, 0 .. 9, before or behind the decimal point; false if there is no room. */
 static inline bool el_decimal_add(struct el_decimal *d, int32_t digit, bool behind)
 {
     if (d->count == EL_DECIMAL_DIGITS || d->behind == EL_DECIMAL_DIGITS) {
@@ -39,10 +40,10 @@ static inline bool el_decimal_add(struct el_decimal *d, int32_t digit, bool behi
     return true;
 }
 
-/* The nearest double, of two equally near the even one; 0 or more: of any number of digits. */
+/* The nearest double, >= 0, for any number of digits; of two equally near ones the even one. */
 double el_decimal_long(const struct el_decimal *d);
 
-/* The same, at once where one division of exact numbers rounds. */
+/* The same; quick for short numbers, which one division of exact numbers rounds correctly. */
 static inline double el_decimal_value(const struct el_decimal *d)
 {
     static const double TEN_TO[EL_DECIMAL_EXACT + 1] = { 1e0,  1e1,  1e2,  1e3,  1e4,  1e5,

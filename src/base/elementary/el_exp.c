@@ -1,18 +1,20 @@
-/* The exponential function and what is made of it. With k the nearest step of ln 2 / 128 and r what
- * is left of x: e^x = 2^(k / 128) (1 + (e^r - 1)). */
+/* Exponential and hyperbolic functions. With k = round(128 x / ln 2) and r = x - k ln 2 / 128,
+ * e^x = 2^(k / 128) (1 + (e^r - 1)). */
 #include "elementary.h"
 #include "el_exp.h"
 #include "el_exp_tables.h"
 #include "el_extremes.h"
 #include "el_series_tables.h"
 
-/* Exponents of the quick way: below 2^-54 e^x = 1; from 512 on the result may not be normal. */
+/* Biased exponents of x for the quick way: for |x| < 2^-54 e^x rounds to 1; for |x| >= 512 it may
+ * be infinite or subnormal. */
 enum { LEAST = 1023 - 54, MOST = 1023 + 9 };
-/* What the quick way of e^x may be off by, of the value. */
+/* Bound of the relative error of the quick e^x. */
 #define PART 0x1p-60
-/* That of e^x - 1, of 2^k T r. */
+/* Bound of the error of the quick e^x - 1, relative to 2^j T r (see quick_less_one). */
 #define REST_PART 0x1.5p-60
 
+/* k as a double; in *k as an integer modulo 2^32 at least. */
 static inline double steps_of(double x, uint64_t *k)
 {
     const double turned = x * OCTAVE_STEPS[0] + 0x1.8p52;
@@ -20,7 +22,8 @@ static inline double steps_of(double x, uint64_t *k)
     return turned - 0x1.8p52;
 }
 
-/* e^r - 1 = r (1 + r/2! + ... ), x = k ln 2 / 128 + r: |r|^12 / 12! = 2^-131. */
+/* e^r - 1 = r (1 + r/2! + ...) in double-double, x = k ln 2 / 128 + r; the first omitted term is
+ * |r|^12 / 12! = 2^-131. */
 static struct dd rest_dd(struct dd x, uint64_t *k)
 {
     const double n = steps_of(x.h, k);
@@ -46,7 +49,7 @@ struct dd el_exp_dd(struct dd x, int *k)
     return dd_add(power, dd_mul(power, p));
 }
 
-/* e^x - 1, |x| < 600. */
+/* e^x - 1 in double-double, |x| < 600. */
 static struct dd expm1_dd(struct dd x)
 {
     uint64_t n;
@@ -59,7 +62,8 @@ static struct dd expm1_dd(struct dd x)
     return dd_add_to(-1.0, dd_times(e, dd_power(k)));
 }
 
-/* e^(x + more); error is a share of it. */
+/* The quick way: e^(x + more), whose relative error is below `error`. False if the rounding is not
+ * certain. */
 static inline bool quick(double x, double more, double error, double *y)
 {
     uint64_t k;
@@ -95,15 +99,16 @@ double el_exp(double x)
     return dd_rounded(e, k);
 }
 
-/* A value and the bound of what it is off by. */
+/* A value and the bound of its absolute error. */
 struct about {
     struct dd m;
     double error;
 };
 
-/* e^x - 1 = 2^k T - 1 + 2^k T (e^r - 1), |x| < 100. r has two parts; T r is a product of 24 bits by
- * 24, exact, and what is 2^-24 of it. What is left of T (e^r - 1) is T r^2 / 2 and less: 2^-9.53 of
- * T r, in seven roundings: 2^-59.72; the polynomial 2^-66; r is off by 2^-97 k. All of T r. */
+/* e^x - 1 = 2^j T - 1 + 2^j T (e^r - 1), j = floor(k / 128), T = 2^((k mod 128) / 128), |x| < 100.
+ * r has two parts; T r is an exact product of 24 bits by 24 and a rest that is 2^-24 of it. The
+ * other terms of T (e^r - 1), from T r^2 / 2 on, are 2^-9.53 of T r and have seven roundings:
+ * 2^-59.72 of T r; the polynomial adds 2^-66; the error of r is 2^-97 k. */
 static inline struct about quick_less_one(double x)
 {
     uint64_t k;
@@ -135,7 +140,7 @@ double el_expm1(double x)
     return dd_settled(e.m.h, e.m.l, e.error, &y) ? y : dd_rounded(expm1_dd(dd_of(x, 0.0)), 0);
 }
 
-/* (m + m / (1 + m)) / 2, m = e^x - 1; off by no larger share than m. */
+/* sinh x = (m + m / (1 + m)) / 2, m = e^x - 1; its relative error is at most that of m. */
 double el_sinh(double x)
 {
     const double a = fabs(x);
@@ -143,7 +148,7 @@ double el_sinh(double x)
     if (!(a >= 0x1p-26) || isinf(x)) {
         return x;
     }
-    if (a >= 40.0) { /* the other half is less than 2^-115 of it */
+    if (a >= 40.0) { /* e^-a is less than 2^-115 of e^a */
         const struct dd e = el_exp_dd(dd_of(el_min(a, 800.0), 0.0), &k);
         return copysign(dd_rounded(e, k - 1), x);
     }
@@ -158,7 +163,7 @@ double el_sinh(double x)
     return copysign(dd_rounded(both, -1), x);
 }
 
-/* (e + 1 / e) / 2, e = e^x; off by less than e. */
+/* cosh x = (e + 1 / e) / 2, e = e^x; its error is below that of e. */
 double el_cosh(double x)
 {
     const double a = fabs(x);
@@ -183,7 +188,7 @@ double el_cosh(double x)
     return dd_rounded(e, k - 1);
 }
 
-/* m / (2 + m), m = e^2x - 1; off by no larger share than m. */
+/* tanh x = m / (2 + m), m = e^(2 x) - 1; its relative error is at most that of m. */
 double el_tanh(double x)
 {
     const double a = fabs(x);

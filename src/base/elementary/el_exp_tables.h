@@ -1,23 +1,24 @@
-/* Made by tests/elementary/tables.py, which computes every number. */
+/* el_exp_tables - constants of the exponential function, for the files of this core.
+ * Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_EXP_TABLES_H
 #define EL_EXP_TABLES_H
 
-/* 128 / ln 2 */
+/* steps in a unit of x: 128 / ln 2 */
 static const double OCTAVE_STEPS[1] = { 0x1.71547652b82fep+7 };
 
-/* ln 2 / 128: 35 bits, 35 bits, the rest */
+/* the step ln 2 / 128 as a sum: 35 bits, 35 bits, the rest */
 static const double OCTAVE_STEP[3] = { 0x1.62e42fefcp-8, -0x1.c610ca86cp-44,
                                        -0x1.c4c67fc0d0951p-83 };
 
-/* (exp r - 1 - r) / r^2 in r */
+/* coefficients of (e^r - 1 - r) / r^2, ascending powers of r */
 static const double EXP_REST[4] = { 0x1.fffffffffff58p-2, 0x1.5555555555525p-3,
                                     0x1.55555accc11b8p-5, 0x1.11111430bc5c6p-7 };
 
-/* (exp r - 1 - r - r^2 / 2) / r^3 in r */
+/* coefficients of (e^r - 1 - r - r^2 / 2) / r^3, ascending powers of r */
 static const double LESS_REST[4] = { 0x1.5555555555525p-3, 0x1.555555555553dp-5,
                                      0x1.11111430bc5c6p-7, 0x1.6c16c48bc20bdp-10 };
 
-/* 2^(k / 128) */
+/* row k: 2^(k / 128) as a sum of two doubles */
 static const double POWERS[128][2] = { { 0x1p+0, 0.0 },
                                        { 0x1.0163da9fb3335p+0, 0x1.b61299ab8cdb7p-54 },
                                        { 0x1.02c9a3e778061p+0, -0x1.19083535b085dp-56 },

@@ -1,19 +1,22 @@
-/* The logarithm: x = 2^k m, with m from 0.707 to 1.414 and c near 1/m: log x = k ln 2 - log c +
- * log(1 + r), r = m c - 1. Around 1, c = 1 and k = 0, so that r alone is left. */
+/* Natural logarithm. With x = 2^k m, m from 0.707 to 1.414, and c near 1/m from a table,
+ *
+ *     log x = k ln 2 - log c + log(1 + r),   r = m c - 1.
+ *
+ * Around x = 1, c = 1 and k = 0, so that only log(1 + r) is left. */
 #include "elementary.h"
 #include "el_log.h"
 #include "el_log_tables.h"
 
-/* Bits of the least m, 181 / 256. */
+/* Bits of the smallest m, 181 / 256 = 0.707. */
 #define LOWEST 0x3fe6a00000000000
-/* What the quick way may be off by, of the value. */
+/* Bound of the quick way's relative error. */
 #define PART 0x1.8p-61
 
-/* x = 2^k m. */
+/* x = 2^k m and what the table has for m. */
 struct split {
     double k;
-    const double *row;
-    double high, low; /* r, exact: c has 10 bits, so that c times the halves of m are */
+    const double *row; /* of LOGARITHMS: c; -log c in three parts */
+    double high, low;  /* r = high + low exactly: c has 10 bits, each half of m 24 to 29 */
 };
 
 static inline struct split split_of(double x)
@@ -25,13 +28,14 @@ static inline struct split split_of(double x)
     return (struct split){ (double)k, row, row[0] * half - 1.0, row[0] * (m - half) };
 }
 
+/* x, if it is subnormal scaled to a normal number by 2^54; *k is the exponent to be added. */
 static inline double normal(double x, double *k)
 {
     *k = x < 0x1p-1022 ? -54.0 : 0.0;
     return x < 0x1p-1022 ? x * 0x1p54 : x;
 }
 
-/* log(1 + r) = r - r^2/2 + ...: to r^15, |r| <= 2^-7. */
+/* In double-double, with log(1 + r) = r - r^2/2 + ... up to r^15, |r| <= 2^-7. */
 struct dd el_log_dd(double x)
 {
     double k;
@@ -52,9 +56,9 @@ struct dd el_log_dd(double x)
     return dd_add_to(k * LN2[0] + s.row[1], dd_add(low, sum));
 }
 
-/* r as a + b with a of 24 bits: a^2 / 2 is exact, the rest of r^2 2^-23 of it. The polynomial is
- * off by 2^-71 at 2^-7, r^3 / 3 and sums of it have nine roundings: 2^-72.4. Around 1 both go with
- * r^3. */
+/* r = a + b with a of 24 bits, so that a^2 / 2 is exact and the rest of r^2 is 2^-23 of it. The
+ * polynomial's error is 2^-71 at r = 2^-7; r^3 / 3 and its sums have nine roundings: 2^-72.4.
+ * Around x = 1 both errors shrink as r^3. */
 struct dd el_log_quick(double x, double *error)
 {
     const struct split s = split_of(x);

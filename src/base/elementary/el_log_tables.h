@@ -1,16 +1,17 @@
-/* Made by tests/elementary/tables.py, which computes every number. */
+/* el_log_tables - constants of the logarithm, for the files of this core.
+ * Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_LOG_TABLES_H
 #define EL_LOG_TABLES_H
 
-/* ln 2 on a grid of 2^-41, and rests */
+/* ln 2 as a sum: a multiple of 2^-41, two rests */
 static const double LN2[3] = { 0x1.62e42fefa4p-1, -0x1.8432a1b0e2634p-43, 0x1.f97b57a079a19p-103 };
 
-/* (log(1 + r) - r + r^2 / 2) / r^3 in r */
+/* coefficients of (log(1 + r) - r + r^2 / 2) / r^3, ascending powers of r */
 static const double LOG_REST[6] = { 0x1.5555555555564p-2, -0x1.000000000000dp-2,
                                     0x1.999999919973cp-3, -0x1.5555554e21ff7p-3,
                                     0x1.24979e8d8acaep-3, -0x1.0004ccdecd0bbp-3 };
 
-/* c, near 1/m; -log c on a grid of 2^-41, and rests */
+/* for each interval of m: c near 1/m; -log c as a multiple of 2^-41 and two rests */
 static const double LOGARITHMS[128][4] = {
     { 0x1.69p+0, -0x1.5ff3070a7ap-2, 0x1.8586f183bebf2p-43, -0x1.091dd7f35571dp-97 },
     { 0x1.67p+0, -0x1.5a42ab0f4cp-2, -0x1.fc338a1a4108bp-43, -0x1.70d6f95d595ccp-98 },
@@ -142,7 +143,7 @@ static const double LOGARITHMS[128][4] = {
     { 0x1.6bp-1, 0x1.602d08af0ap-2, -0x1.c282dd1241813p-43, -0x1.b9f972adc1a98p-97 }
 };
 
-/* 1 / n */
+/* row n: 1 / n as a sum of two doubles */
 static const double INVERSES[16][2] = { { 0.0, 0.0 },
                                         { 0x1p+0, 0.0 },
                                         { 0x1p-1, 0.0 },

@@ -1,4 +1,4 @@
-/* x^y = e^(y log x): quick, or to 90 bits or more. */
+/* x^y = e^(y log x): a quick way, and a slow one to 90 bits or more. */
 #include "elementary.h"
 #include "el_exp.h"
 #include "el_log.h"
@@ -13,7 +13,8 @@ static double limit(double x, double y, bool odd)
     return copysign((a == 0.0) == (y > 0.0) ? 0.0 : INFINITY, odd ? x : 1.0);
 }
 
-/* y log x from 2^-50 to 700. */
+/* The quick way, for |y log x| from 2^-50 to 700. False if it does not apply or the rounding is not
+ * certain. */
 static inline bool quick(double x, double y, double *result)
 {
     double error;
@@ -50,7 +51,7 @@ double el_pow(double x, double y)
         return copysign(1.0, sign);
     }
     const struct dd l = el_log_dd(a);
-    const double size = l.h * y; /* e^+-800 is infinite, or 0 */
+    const double size = l.h * y; /* beyond +-800 the result is infinite or 0 */
     if (fabs(size) > 800.0) {
         return copysign(size > 0.0 ? INFINITY : 0.0, sign);
     }

@@ -1,12 +1,12 @@
-/* The length of a right triangle's long side, and the cube root: a first value, and its correction
- * from what it lacks, which is computed without rounding where that counts. A float has 24 bits, so
- * that products of two are exact. */
+/* Hypotenuse and cube root: a first approximation and its correction by the residual, which is
+ * computed without rounding where that matters. dd_half gives numbers of 24 bits, whose products
+ * are exact. */
 #include "elementary.h"
 #include "double_double.h"
 #include "el_cbrt_tables.h"
 
-/* x >= y >= 0, 2^-100 < x < 2^100. With h the rounded root and d = h - x, which is exact, it lacks
- * y^2 - 2 x d - d^2 over 2 h. */
+/* sqrt(x^2 + y^2), x >= y >= 0, 2^-100 < x < 2^100. With h the rounded root and d = h - x, which is
+ * exact, the correction is (y^2 - 2 x d - d^2) / (2 h). */
 static inline double long_side(double x, double y)
 {
     const double h = sqrt(x * x + y * y), d = h - x;

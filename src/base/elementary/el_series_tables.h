@@ -1,8 +1,9 @@
-/* Made by tests/elementary/tables.py, which computes every number. */
+/* el_series_tables - constants of the slow ways' power series, for the files of this core.
+ * Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_SERIES_TABLES_H
 #define EL_SERIES_TABLES_H
 
-/* 1 / n! */
+/* row n: 1 / n! as a sum of two doubles */
 static const double FACTORIALS[31][2] = { { 0x1p+0, 0.0 },
                                           { 0x1p+0, 0.0 },
                                           { 0x1p-1, 0.0 },

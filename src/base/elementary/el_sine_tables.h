@@ -1,23 +1,24 @@
-/* Made by tests/elementary/tables.py, which computes every number. */
+/* el_sine_tables - constants of sine, cosine and tangent, for the files of this core.
+ * Made by tests/elementary/tables.py, which computes every number. */
 #ifndef EL_SINE_TABLES_H
 #define EL_SINE_TABLES_H
 
 #include <stdint.h>
 
-/* 256 / 2 pi */
+/* steps in a radian: 256 / (2 pi) */
 static const double TURN_STEPS[1] = { 0x1.45f306dc9c883p+5 };
 
-/* 2 pi / 256: 30 bits, 30 bits, the rest */
+/* the step 2 pi / 256 as a sum: 30 bits, 30 bits, the rest */
 static const double TURN_STEP[3] = { 0x1.921fb548p-6, -0x1.de973dc8p-37, -0x1.9d9cceba3f91fp-68 };
 
-/* (sin r - r) / r^3 in r^2 */
+/* coefficients of (sin r - r) / r^3, ascending powers of r^2 */
 static const double SINE_REST[3] = { -0x1.5555555555555p-3, 0x1.111111110c1e7p-7,
                                      -0x1.a019ac116cf99p-13 };
 
-/* (cos r - 1) / r^2 in r^2 */
+/* coefficients of (cos r - 1) / r^2, ascending powers of r^2 */
 static const double COSINE_REST[3] = { -0x1p-1, 0x1.555555554a337p-5, -0x1.6c16612b96411p-10 };
 
-/* sin(2 pi k / 256): 26 bits, the rest, the nearest double */
+/* row k: sin(2 pi k / 256) as 26 bits and the rest; the nearest double */
 static const double SINES[256][3] = {
     { 0.0, 0.0, 0.0 },
     { 0x1.92155f8p-6, -0x1.7266081b1d631p-36, 0x1.92155f7a3667ep-6 },
@@ -277,10 +278,10 @@ static const double SINES[256][3] = {
     { -0x1.92155f8p-6, 0x1.7266081b1d631p-36, -0x1.92155f7a3667ep-6 }
 };
 
-/* pi / 2 */
+/* pi / 2 as a sum of two doubles */
 static const double QUARTER[2] = { 0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54 };
 
-/* 2 / pi, in words behind the point */
+/* fractional bits of 2 / pi, in words of 32 bits, the first one first */
 static const uint32_t WORDS[40] = {
     0xa2f9836e, 0x4e441529, 0xfc2757d1, 0xf534ddc0, 0xdb629599, 0x3c439041, 0xfe5163ab, 0xdebbc561,
     0xb7246e3a, 0x424dd2e0, 0x06492eea, 0x09d1921c, 0xfe1deb1c, 0xb129a73e, 0xe88235f5, 0x2ebb4484,

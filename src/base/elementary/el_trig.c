@@ -1,25 +1,26 @@
-/* Sine, cosine, tangent. With k the nearest step of 2 pi / 256 and r what is left of x,
+/* Sine, cosine, tangent. With k the nearest multiple of the step 2 pi / 256 and r = x - k steps,
  *
  *     sin x = S + C r + (S (cos r - 1) + C (sin r - r)),  S = sin(2 pi k / 256),  C its cosine,
  *
- * where S and C have 26 bits and r 27, so that S + C r is exact as a sum of two doubles; what these
- * lack goes into the bracket, which is 2^-13 of the result. */
+ * where S and C are rounded to 26 bits and r to 27, so that S + C r is exact as a sum of two
+ * doubles; the rounding errors of S, C and r go into the bracket, which is 2^-13 of the result. */
 #include "elementary.h"
 #include "double_double.h"
 #include "el_lanes.h"
 #include "el_series_tables.h"
 #include "el_sine_tables.h"
 
-/* Exponents of the quick way: below 2^-27 sin x = x and cos x = 1; from 2^17 on k is too long. */
+/* Biased exponents of x for the quick way: for |x| < 2^-27 sin x = x and cos x = 1; for |x| >= 2^17
+ * k has too many bits. */
 enum { LEAST = 1023 - 27, MOST = 1023 + 17 };
-/* What the quick way may be off by: a share of the value, and what l <= 2^-34 is rounded by. */
+/* Bound of the quick way's error: relative to the value, plus the rounding of l <= 2^-34. */
 #define PART 0x1.2p-64
 #define REST 0x1p-87
 
-/* x = k 2 pi / 256 + h + l; and of r = h + l: sin r - h, cos r - 1. */
+/* x = k 2 pi / 256 + r with r = h + l. */
 struct rest {
     unsigned k;
-    double h, sine, cosine;
+    double h, sine, cosine; /* h, sin r - h, cos r - 1 */
 };
 
 static inline bool is_quick(double x)
@@ -54,9 +55,10 @@ static inline bool settled(struct dd a, double *y)
     return dd_settled(a.h, a.l, fabs(a.h) * PART + REST, y);
 }
 
-/* x = quarter pi / 2 + r, |r| <= pi / 4, for any finite x: of x 2 / pi with x = m 2^e only words
- * that do not make whole turns, and of these nine: 288 bits, of which x takes 53, the quarter 34,
- * and a zero of sine or cosine next to a double 62 at most. */
+/* Argument reduction (Payne and Hanek): x = quarter pi / 2 + r, |r| <= pi / 4, for any finite x =
+ * m 2^e. Of 2 / pi it takes nine words of 32 bits, from the first one whose product with x is not a
+ * multiple of whole turns: 288 bits, of which m takes 53, the quarter 34, and the closest double to
+ * a zero of sine or cosine cancels 62 at most. */
 static struct dd turned(double x, unsigned *quarter)
 {
     enum { TAKEN = 9, LIMBS = TAKEN + 2 };
@@ -79,7 +81,7 @@ static struct dd turned(double x, unsigned *quarter)
         limb[TAKEN + part] = (uint32_t)carry;
     }
     const int behind = 32 * (first + TAKEN) - e; /* bits behind the point, 223 to 341 */
-    uint32_t part[8];                            /* of these the first 256 */
+    uint32_t part[8];                            /* the first 256 of these bits */
     for (int i = 0; i < 8; i++) {
         const int bit = behind - 32 * (i + 1);
         uint64_t two = 0;
@@ -108,8 +110,8 @@ static struct dd turned(double x, unsigned *quarter)
     return back ? dd_minus(r) : r;
 }
 
-/* sin r, first = 1, or cos r, first = 0: the sum of +-r^n / n! from n = first on in steps of 2, to
- * n = 29 (pi / 4)^29 / 29! = 2^-113. */
+/* sin r (first = 1) or cos r (first = 0): the sum of +-r^n / n!, n = first, first + 2, ... up to
+ * 29, where (pi / 4)^29 / 29! = 2^-113. */
 static struct dd series(struct dd r, int first)
 {
     const struct dd u = dd_minus(dd_mul(r, r));
@@ -120,7 +122,7 @@ static struct dd series(struct dd r, int first)
     return first ? dd_mul(sum, r) : sum;
 }
 
-/* sin(x + more pi / 2), 2^-27 <= |x|. */
+/* sin(x + more pi / 2) in double-double, |x| >= 2^-27. */
 static struct dd exact(double x, unsigned more)
 {
     unsigned quarter;
@@ -204,7 +206,8 @@ EL_AVX2 static inline four size_of(four x)
     return (four)((four_bits)x & INT64_MAX);
 }
 
-/* What el_sincos does in its quick way; the lanes in which that is not enough. */
+/* The quick way of el_sincos in four lanes. Returns the lanes in which the rounding is not
+ * certain. */
 EL_AVX2 static inline four_bits quick_four(four x, four *sine, four *cosine)
 {
     const four_bits size = (four_bits)size_of(x), tiny = size < (int64_t)LEAST << 52;

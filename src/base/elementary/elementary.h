@@ -1,23 +1,24 @@
-/* The elementary functions, with the same bits on every platform: from + - * / and sqrt alone.
+/* elementary - the elementary functions with the same bits on every platform, made of + - * / and
+ * sqrt alone. All cores use these instead of the C library's.
  *
- * Each gives the double nearest to the true value, which is unique (what is computed is off by less
- * than a 2^-20th of a unit in the last place before it is rounded, in most functions 2^-40th); so
- * they are monotone, odd and even where the function is. Special values are those of C11, Annex F;
- * no function sets errno or promises a flag. */
+ * Each returns the double nearest to the true value (correctly rounded): the error before the final
+ * rounding is below 2^-20 of a unit in the last place, in most functions below 2^-40. So a function
+ * is monotone, odd or even where the mathematical one is. Special values are those of C11, Annex F;
+ * no function sets errno or promises a floating-point exception flag. */
 #ifndef ELEMENTARY_H
 #define ELEMENTARY_H
 
-/* x [rad], any size. */
+/* Of an angle x [rad] of any magnitude. */
 double el_sin(double x);
 double el_cos(double x);
 double el_tan(double x);
-/* Both at once, the same bits. */
+/* Sine and cosine at once, with the same bits as el_sin and el_cos. */
 struct el_turn {
     double sine, cosine;
 };
 struct el_turn el_sincos(double x);
 
-/* [rad] */
+/* Angles [rad]. */
 double el_asin(double x);
 double el_acos(double x);
 double el_atan(double x);

@@ -25,7 +25,7 @@ void fpga_slot_pack(int32_t word[FPGA_SLOT_WORDS], const int32_t pulses[FPGA_SLO
     }
 }
 
-/* Pulses of a byte; more than any slot holds if it is none. */
+/* Signed pulses that a byte stands for; if it is not valid, a number larger than any slot holds. */
 static int32_t byte_pulses(uint8_t byte, enum fpga_format format)
 {
     if (format == FPGA_COUNTS)
@@ -54,8 +54,8 @@ int32_t fpga_slot_clock(int32_t j, int32_t n, int32_t slot_clocks)
     return (2 * j + 1) * slot_clocks / (2 * n);
 }
 
-/* (2 j + 1) S / (2 n) < clock + 1, so 2 j + 1 < x = 2 n (clock + 1) / S: floor(ceil(x) / 2) of the
- * odd numbers are below x. */
+/* With S = slot_clocks, pulse j has come if (2 j + 1) S / (2 n) < clock + 1, that is if 2 j + 1 < x
+ * = 2 n (clock + 1) / S. There are floor(ceil(x) / 2) odd numbers 2 j + 1 below x. */
 int32_t fpga_slot_played(int32_t n, int32_t clock, int32_t slot_clocks)
 {
     const int32_t x = (2 * n * (clock + 1) + slot_clocks - 1) / slot_clocks;

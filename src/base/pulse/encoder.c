@@ -23,7 +23,7 @@ void encoder_reset(struct encoder *e, const struct encoder_config *c)
     encoder_decode(e);
 }
 
-/* The pins as they stand are what is seen. */
+/* Let the filter see the levels at the pins at once, without counting. */
 static void settle(struct encoder *e)
 {
     e->pins.quarter = e->seen = e->pins.end;
@@ -65,7 +65,8 @@ static int64_t least(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Without a filter: in one go as far as nothing can happen, then an edge that may matter. */
+/* Count without a filter. Edges before the next index or compare event are counted in one go; the
+ * edge that may bring an event is counted by itself, at its clock. */
 static int run_plain(struct encoder *e, int way, int64_t until)
 {
     int events = 0;
@@ -88,7 +89,8 @@ static int run_plain(struct encoder *e, int way, int64_t until)
     return events;
 }
 
-/* More than an edge a clock: the count is kept; index and compare are looked at in the end only. */
+/* Count without a filter at more than one edge per clock: the count stays right, but index and
+ * comparator are evaluated only once, at `until`. */
 static int run_aliased(struct encoder *e, int way, int64_t until)
 {
     int64_t n = quadrature_until(&e->pins, way, until);

@@ -19,7 +19,7 @@ bool encoder_index_high(const struct encoder *e, int64_t quarter)
     return modulo(quarter, 4 * (int64_t)e->config.index_lines) == 0;
 }
 
-/* Lines A and B at the counter, bit 0 and 1. */
+/* Levels of the lines at the counter, behind the wiring: A in bit 0, B in bit 1. */
 static int wired(uint32_t wiring, int quarter)
 {
     struct lines l = lines_wired(lines_of_quarter(quarter), wiring);

@@ -2,21 +2,23 @@
 
 #include <math.h>
 
-/* A line is seen `filter` clocks after its edge if it has not changed again before. A and B change
- * at alternate edges, so all edges pass while two quarters take `filter` clocks or more. */
+/* The filter passes a line's edge `filter` clocks later if the line has not changed again before. A
+ * and B change at alternate edges, so all edges pass while two quarters of a line period take
+ * `filter` clocks or more. */
 
 static int64_t least(int64_t a, int64_t b)
 {
     return a < b ? a : b;
 }
 
-/* A pin changes. If the change before was not seen yet, it never will be. */
+/* A pin changes. If the filter has not passed the change before yet, it never will. */
 static void pin_edge(struct encoder_line *l, int64_t clock)
 {
     l->pin = !l->pin;
     l->edge = clock;
 }
 
+/* The next edge at the pins, before the filter. */
 static void raw_edge(struct encoder *e, int way, int64_t clock)
 {
     int64_t upper = way > 0 ? e->pins.quarter + 1 : e->pins.quarter;
@@ -27,13 +29,14 @@ static void raw_edge(struct encoder *e, int way, int64_t clock)
         pin_edge(&e->index, clock);
 }
 
-/* [clock] at which a line's latest edge is seen; INT64_MAX if there is nothing to see. */
+/* [clock] at which the filter passes a line's latest edge; INT64_MAX if it has passed already. */
 static int64_t sight(const struct encoder *e, const struct encoder_line *l)
 {
     return l->pin != l->level ? l->edge + e->config.filter : INT64_MAX;
 }
 
-/* Lines change behind the filter at `clock`. Both at once is no step of the code: no count. */
+/* The lines whose filter time ends at `clock` change behind the filter. If A and B change at once,
+ * that is no step of the quadrature code and does not count. */
 static int see(struct encoder *e, int64_t clock)
 {
     bool a = sight(e, &e->a) == clock, b = sight(e, &e->b) == clock;
@@ -62,13 +65,14 @@ static int see(struct encoder *e, int64_t clock)
     return events;
 }
 
-/* Many like edges in a row need not be walked: either all are seen or none. Whole line periods are
- * skipped, up to a few edges before the end or before one that means something if it is seen. */
+/* At a constant speed the filter passes either all edges or none, so edges need not be walked one
+ * by one. Skip whole line periods, up to a few edges before the end of the `left` edges or before
+ * an index or compare event. */
 static void skip(struct encoder *e, int way, int64_t left)
 {
     enum { MARGIN = 8, SETTLED = 4 };
     if (e->walked < SETTLED || e->index.pin || e->index.level)
-        return; /* what came before may still stand in the filter */
+        return; /* edges at another speed may still wait in the filter */
     const struct quadrature *q = &e->pins;
     double half = 0.5 * (double)(q->clock - q->from_clock) / fabs(q->to - q->from); /* [clocks] */
     bool all = half >= e->config.filter;
@@ -87,7 +91,7 @@ static void skip(struct encoder *e, int way, int64_t left)
         struct encoder_line *l = upper & 1 ? &e->b : &e->a;
         l->edge = quadrature_clock(&e->pins, upper);
         if (all)
-            l->level = !l->pin; /* both still to be seen */
+            l->level = !l->pin; /* both edges are still in the filter */
     }
     if (all)
         e->seen += way * (many + waiting - 2);
@@ -98,7 +102,8 @@ static void skip(struct encoder *e, int way, int64_t left)
     e->walked = 0;
 }
 
-/* More than an edge a clock: nothing stands long enough to be seen, and the pins start anew. */
+/* At more than one edge per clock no level lasts long enough to pass; at `until` the filter times
+ * of all lines start anew. */
 int encoder_run_blind(struct encoder *e, int way, int64_t until)
 {
     int64_t n = quadrature_until(&e->pins, way, until);
@@ -115,7 +120,8 @@ int encoder_run_blind(struct encoder *e, int way, int64_t until)
     return 0;
 }
 
-/* At most one edge of A and one of B wait to be seen: with three behind, a line period is lost. */
+/* At most one edge of A and one of B can be in the filter: if the counter is three edges behind the
+ * pins, a line period is lost. */
 static void note_loss(struct encoder *e)
 {
     int64_t behind = e->pins.quarter - e->seen - e->lost;

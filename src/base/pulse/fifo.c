@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Place of the n-th entry, n = 0 for the oldest. */
+/* Index of the n-th entry, n = 0 for the oldest. */
 static int32_t place(const struct fifo *f, int32_t n)
 {
     int32_t p = f->head + n;
@@ -12,7 +12,7 @@ static int32_t place(const struct fifo *f, int32_t n)
 
 void fifo_reset(struct fifo *f, int32_t depth)
 {
-    memset(f, 0, sizeof *f); /* padding, too: equal states are equal bytes */
+    memset(f, 0, sizeof *f); /* clears the padding, too, so that equal states have equal bytes */
     f->depth = depth;
 }
 

@@ -1,5 +1,6 @@
-/* FIFO of the commands of a channel, with the minimum-stock comparator. The commands stand in an
- * array of the caller's, `depth` long. */
+/* fifo - ring buffer of the commands that wait in a card's channel, with the minimum-stock
+ * comparator that asks the host for more. The entries are in an array of the caller's, `depth`
+ * long, which each function gets beside the FIFO's state. */
 #ifndef FIFO_H
 #define FIFO_H
 
@@ -8,12 +9,12 @@
 
 struct fifo {
     int32_t depth; /* entries it can hold */
-    int32_t head;  /* place of the oldest entry */
-    int32_t stock; /* entries held */
-    bool high;     /* comparator: stock was above the minimum at the last look */
+    int32_t head;  /* index of the oldest entry */
+    int32_t stock; /* number of entries held */
+    bool high;     /* comparator: the stock was above the minimum at the latest fifo_fell */
 };
 
-/* Empty, of this depth. */
+/* An empty FIFO of this depth. */
 void fifo_reset(struct fifo *f, int32_t depth);
 
 /* Append a command; false, and nothing changed, if the FIFO is full (overflow). */
@@ -22,10 +23,10 @@ bool fifo_push(struct fifo *f, int32_t *entry, int32_t command);
 /* Take the oldest command; false, and *command untouched, if the FIFO is empty (underflow). */
 bool fifo_pop(struct fifo *f, const int32_t *entry, int32_t *command);
 
-/* Take back the newest commands, at most n; returns how many. */
+/* Remove the n newest commands, or all if there are fewer; returns the number removed. */
 int32_t fifo_erase_last(struct fifo *f, int32_t n);
 
-/* Empty the FIFO. */
+/* Remove all commands. */
 void fifo_clear(struct fifo *f);
 
 /* Largest |command| in stock [pulses]. */

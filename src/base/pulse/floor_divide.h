@@ -1,4 +1,5 @@
-/* Division of whole numbers, rounded down; b is positive. */
+/* floor_divide - floor(a / b) of whole numbers, b > 0, where C's a / b rounds toward zero: counts
+ * and positions below 0 need it. */
 #ifndef FLOOR_DIVIDE_H
 #define FLOOR_DIVIDE_H
 

@@ -3,20 +3,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* divider 4, width 3 or more; a pulse less than there are ticks, forward, whose last lies on the
- * boundary, and then as many backward; one column is one clock
+/* Example with divider 4 and width 3 or more: ticks - 1 pulses forward, the last of which is on the
+ * boundary, and then as many backward. One column is one clock.
  *
  *     boundary            |
  *     A         __/`\_/`\_/`\_/`\_/`    high for half of 4 clocks
  *     B         ____________/```````    backward, once that pulse has ended
  *
- * Only such a pulse reaches over the boundary: one that comes x clocks before, x a multiple of the
- * divider, is high for (x + divider) / 2 <= x clocks at most.
+ * Only a pulse on the boundary is high beyond it: one that comes x clocks earlier, x a multiple of
+ * the divider, is high for (x + divider) / 2 <= x clocks at most.
  */
 
 /* A pulse on its line. */
 struct high {
-    int64_t fall; /* [clock] it ends */
+    int64_t fall; /* [clock] at which it ends */
     bool backward;
 };
 
@@ -29,7 +29,7 @@ enum pulse_status pulse_check(const struct pulse_config *c, int32_t widest)
     return c->width < 1 || c->width > widest ? PULSE_BAD_WIDTH : PULSE_OK;
 }
 
-/* [clocks] a pulse is high whose next one comes `distance` clocks later. */
+/* [clocks] that a pulse is high if the next one comes `distance` clocks later. */
 static int32_t high_time(const struct pulse_config *c, int64_t distance)
 {
     int64_t half = distance < 2 ? 1 : distance / 2;
@@ -42,7 +42,7 @@ static int64_t edge(const struct dda *d, int channel, int32_t j)
     return d->start + d->divider * dda_edge_tick(d->command[channel], d->ticks, j);
 }
 
-/* Pulses of the DDA time in progress up to and including `clock`. */
+/* Number of pulses of the DDA time in progress up to and including `clock`. */
 static int32_t pulses_until(const struct dda *d, int channel, int64_t clock)
 {
     int64_t tick = ((d->run ? clock : d->stop) - d->start) / d->divider;
@@ -51,7 +51,7 @@ static int32_t pulses_until(const struct dda *d, int channel, int64_t clock)
 
 void pulse_reset(struct pulse *p)
 {
-    memset(p, 0, sizeof *p); /* padding, too: equal states are equal bytes */
+    memset(p, 0, sizeof *p); /* clears the padding, too, so that equal states have equal bytes */
     p->last = -1;
 }
 
@@ -65,8 +65,8 @@ void pulse_boundary(const struct pulse_config *c, struct pulse *p, const struct 
     p->backward = command < 0;
 }
 
-/* The n-th pulse of the DDA time in progress; n = 0: the one on its first clock, or else one
- * that is over: fall = start. */
+/* The n-th pulse of the DDA time in progress. n = 0: the pulse that the DDA time before put on the
+ * boundary; if there was none, one that has ended already, fall = start. */
 static struct high nth_pulse(const struct pulse_config *c, const struct pulse *p,
                              const struct dda *d, int channel, int32_t n)
 {

@@ -11,16 +11,16 @@ enum quadrature_status quadrature_check(const struct quadrature *q, double phase
     return fast ? QUADRATURE_TOO_FAST : QUADRATURE_OK;
 }
 
-/* The phase moves on a straight line from `from` at clock 0 to `to` at clock `span`: first clock,
- * in 1 .. span, at which it has passed `edge`, which lies between them. Going up the edge itself
- * belongs to the quarter above; going down it must be left behind. */
+/* First clock, in 1 .. span, at which a phase that moves on a straight line from `from` at clock 0
+ * to `to` at clock `span` has passed `edge`, a phase between them. Going up, the edge itself
+ * belongs to the quarter above; going down, it must be left behind. */
 static int64_t passed(double from, double to, int64_t span, double edge)
 {
     /* Compare products, not quotients: (to - from) n against (edge - from) span. */
     const double way = fabs(to - from);
     const double need = fabs(edge - from) * (double)span;
     const bool up = to > from;
-    int64_t n = (int64_t)(need / way); /* never beyond: rounding can only reach the next whole */
+    int64_t n = (int64_t)(need / way); /* rounding can at most reach the next whole number */
     while (up ? way * (double)n < need : way * (double)n <= need)
         n++;
     return n < 1 ? 1 : n > span ? span : n;

@@ -23,7 +23,7 @@ void cyclic_wake(struct cyclic *s, int task, int64_t due, int64_t ready)
     t->ready = ready;
 }
 
-/* The timers whose cycle begins now. */
+/* Release runs of the timers whose cycle begins now, and count the deadlines missed by that. */
 static void ask(struct cyclic *s)
 {
     for (int i = 0; i < s->processor.tasks; i++) {
@@ -40,8 +40,8 @@ static void ask(struct cyclic *s)
     }
 }
 
-/* The runs that wait and may begin now can have the processor; those of this clock's interrupts
- * too? Returns true if such a one is left out. */
+/* Make the runs ready that wait and may begin now; with `interrupts` also those that an event woke
+ * for this very clock. Returns true if one of these was left out. */
 static bool release(struct cyclic *s, bool interrupts)
 {
     const int64_t clock = s->processor.clock;
@@ -64,7 +64,7 @@ static bool release(struct cyclic *s, bool interrupts)
     return out;
 }
 
-/* The processor works up to the next clock at which something may happen. */
+/* Let the processor work up to the next clock at which a run may become ready, at most `until`. */
 static void pass(struct cyclic *s, int64_t until)
 {
     for (int i = 0; i < s->processor.tasks; i++) {
@@ -111,7 +111,7 @@ void cyclic_begin(struct cyclic *s, int task, int64_t due, int64_t clocks)
     t->active = true;
     t->event = t->woken;
     t->from = due;
-    s->processor.task[task].turn = INT64_MIN; /* before its equals from now on */
+    s->processor.task[task].turn = INT64_MIN; /* from now on before tasks of equal priority */
     processor_compute(&s->processor, task, clocks);
     at_least(&t->use.latency, s->processor.clock - due);
 }

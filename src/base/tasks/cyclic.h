@@ -1,95 +1,102 @@
-/* cyclic - tasks with a cycle or woken by events on that processor: who runs when.
+/* cyclic - cyclic tasks on one processor (processor.h): which task runs when, its latency, response
+ * and missed deadlines. A task has a timer, at offset + k cycle, or is woken by events.
  *
- * Fixed priorities, the lowest number first; a more urgent task interrupts a less urgent one at
- * once. A task is asked to run by its timer, at offset + k cycle, or is woken for a clock. At one
- * clock runs end first, then timers ask and what is most urgent begins; then interrupts are seen.
- * So a task whose timer and an interrupt fall on one clock has begun when the interrupt comes.
- * Among equal priorities what has begun goes on, then what was due first, then the lower number.
+ * Priorities are fixed, the lowest number first; a more urgent task preempts a less urgent one at
+ * once. At one clock runs end first, then timers release runs and the most urgent one begins; then
+ * interrupts are seen. So a task whose timer and an interrupt fall on one clock has begun when the
+ * interrupt comes. Among equal priorities a run that has begun goes on, then the one that was due
+ * first runs, then the one with the lower number.
  *
- * One run waits while the task is busy; its timer asking once more is lost. A cycle that begins
- * while a run of the task is not finished is a missed deadline, that of the unfinished run, if
- * its timer asked for that: a run that an event woke has none. A cycle that begins while such a run
- * waits is one with it.
+ * While a run of a task is in progress one more run of it can wait; what its timer releases beyond
+ * that is lost. A run has missed its deadline if the timer's next cycle begins before it has ended.
+ * Runs that an event woke have no deadline. A cycle that begins while such a run waits is served by
+ * that run.
  *
- * The time of a run is what the caller says: cyclic_next tells that a run begins or that its time
- * is over, and the caller answers before it asks again.
+ * The caller says how long a run takes: cyclic_next tells that a run begins or that its time is
+ * over, and the caller answers before it calls cyclic_next again.
  */
 #ifndef CYCLIC_H
 #define CYCLIC_H
 
 #include "processor.h"
 
-enum { CYCLIC_TASKS = 8 }; /* at most */
+enum { CYCLIC_TASKS = 8 }; /* largest number of tasks */
 
-/* Longest time, offset, cycle, and last clock: more than a thousand years. */
+/* Largest clock, time, offset and cycle [clocks]: more than a thousand years at 25 ns. */
 #define CYCLIC_LONGEST ((int64_t)1 << 61)
 
 struct cyclic_config {
-    int32_t tasks; /* the first so many are there */
-    int32_t priority[CYCLIC_TASKS];
-    int64_t cycle[CYCLIC_TASKS];  /* [clocks]; 0: woken only */
-    int64_t offset[CYCLIC_TASKS]; /* [clocks] of the first cycle */
+    int32_t tasks;                  /* number of tasks; the arrays' other elements are unused */
+    int32_t priority[CYCLIC_TASKS]; /* the lowest number first */
+    int64_t cycle[CYCLIC_TASKS];    /* [clocks] 0: no timer, only events wake the task */
+    int64_t offset[CYCLIC_TASKS];   /* [clock] at which the first cycle begins */
 };
 
-/* What a task has had so far. */
+/* Statistics of a task since the start. */
 struct cyclic_use {
-    int32_t runs;     /* ended */
-    int32_t missed;   /* deadlines */
-    int64_t latency;  /* [clocks] longest, due to begin */
-    int64_t response; /* [clocks] longest, due to end */
-    int64_t busy;     /* [clocks] it has had the processor */
+    int32_t runs;     /* runs that have ended */
+    int32_t missed;   /* missed deadlines */
+    int64_t latency;  /* [clocks] longest time from due to begin of a run */
+    int64_t response; /* [clocks] longest time from due to end of a run */
+    int64_t busy;     /* [clocks] for which it has had the processor */
 };
 
 struct cyclic_task {
-    int64_t cycle;         /* [clocks] */
-    int64_t next;          /* [clock] its timer asks again; INT64_MAX without a cycle */
-    bool asked;            /* a run waits */
-    bool woken;            /* not by its timer */
-    int64_t ready;         /* [clock] at which the run that waits may begin, */
-    int64_t due;           /* [clock] and from which its latency counts */
-    bool active;           /* a run has begun, not ended */
-    bool event;            /* that run was woken */
-    int64_t from;          /* [clock] that run was due */
-    struct cyclic_use use; /* but for `busy`, which the processor knows */
+    int64_t cycle;         /* [clocks] cycle of its timer; 0 none */
+    int64_t next;          /* [clock] of its next cycle; INT64_MAX without a timer */
+    bool asked;            /* a run waits for its begin */
+    bool woken;            /* an event woke the latest run that waited, not the timer */
+    int64_t ready;         /* [clock] at which the run that waits may begin */
+    int64_t due;           /* [clock] from which the latency of the run that waits counts */
+    bool active;           /* a run has begun and not ended */
+    bool event;            /* an event woke the run that has begun */
+    int64_t from;          /* [clock] at which the run that has begun was due */
+    struct cyclic_use use; /* all but `busy`, which the processor counts */
 };
 
 struct cyclic {
     struct processor processor; /* everything before its clock is done */
-    int running;                /* task that had the clock before; -1 none */
+    int running;                /* task that ran up to the processor's clock; -1 none */
     struct cyclic_task task[CYCLIC_TASKS];
 };
 
-enum cyclic_what { CYCLIC_NONE, CYCLIC_BEGIN, CYCLIC_END };
+enum cyclic_what {
+    CYCLIC_NONE,  /* no event before `until` */
+    CYCLIC_BEGIN, /* a run of the task begins */
+    CYCLIC_END    /* the time of the task's run is over */
+};
 
 struct cyclic_event {
     enum cyclic_what what;
-    int task;
+    int task; /* -1 with CYCLIC_NONE */
 };
 
+/* Start at clock 0, with no run in progress or waiting. */
 void cyclic_start(struct cyclic *s, const struct cyclic_config *config);
 
-/* Ask for a run that was due at a clock and may begin at `ready`; takes the place of one that
- * waits. */
+/* An event wakes a task: a run that was due at the clock `due` may begin at the clock `ready`. It
+ * replaces a run that waits already. */
 void cyclic_wake(struct cyclic *s, int task, int64_t due, int64_t ready);
 
-/* Let time pass to the next event before `until`; CYCLIC_NONE: none, the clock is there. */
+/* Let time pass to the next event before the clock `until`, or else to `until` itself, which
+ * returns CYCLIC_NONE. */
 struct cyclic_event cyclic_next(struct cyclic *s, int64_t until);
 
-/* Answer to CYCLIC_BEGIN: the run was due at this clock and needs so many clocks. */
+/* Answer to CYCLIC_BEGIN: the run was due at the clock `due` and needs `clocks`. */
 void cyclic_begin(struct cyclic *s, int task, int64_t due, int64_t clocks);
 
-/* Answers to CYCLIC_END: the run needs more clocks; it has ended. */
+/* Answers to CYCLIC_END: the run needs more clocks; the run has ended. */
 void cyclic_more(struct cyclic *s, int task, int64_t clocks);
 void cyclic_end(struct cyclic *s, int task);
 
-/* What there is to tell at a clock. */
 struct cyclic_report {
-    int64_t clock;
-    int running;
-    struct cyclic_use task[CYCLIC_TASKS];
-    struct cyclic_use all; /* sums; the longest latency and response */
+    int64_t clock;                        /* the processor's */
+    int running;                          /* task that ran up to this clock; -1 none */
+    struct cyclic_use task[CYCLIC_TASKS]; /* statistics of each task */
+    struct cyclic_use all;                /* their sums; the longest latency and response of all */
 };
 
+/* Fill in the report. */
 void cyclic_tell(const struct cyclic *s, struct cyclic_report *r);
 
 #endif

@@ -37,7 +37,7 @@ static bool valid(const struct kernel_config *c)
     return ok;
 }
 
-/* The kernel needs so much time before anything goes on. */
+/* The kernel itself takes the processor for a time: overhead. */
 static void spend(struct kernel *k, int64_t time)
 {
     if (time > 0) {
@@ -46,7 +46,7 @@ static void spend(struct kernel *k, int64_t time)
     }
 }
 
-/* Another task than before gets the processor. */
+/* Give the processor to another task. */
 static void switch_to(struct kernel *k, int task)
 {
     if (k->current >= 0) {
@@ -60,7 +60,7 @@ static void switch_to(struct kernel *k, int task)
     }
 }
 
-/* All tasks are ready, the idle one behind them; the last of the most urgent ones is the first. */
+/* Make all tasks ready, the idle one behind them. The last of the most urgent tasks runs first. */
 static void start_tasks(struct kernel *k)
 {
     int first = KERNEL_IDLE;
@@ -148,7 +148,7 @@ static bool in_interrupt(const struct kernel *k)
     return first >= KERNEL_TASKS && first < SELF;
 }
 
-/* The interrupt to begin now: pending, and more urgent than what is served; -1 none. */
+/* The interrupt to begin now: pending, and more urgent than the one that is served; -1 none. */
 static int due_interrupt(const struct kernel *k)
 {
     const int served = processor_first(&k->processor);
@@ -174,7 +174,7 @@ static void begin_interrupt(struct kernel *k, int interrupt)
     spend(k, k->config.entry_time);
 }
 
-/* The delayed task to be woken next; -1 none. */
+/* The task to be woken next at this tick, whose delay or wait is over; -1 none. */
 static int due_task(const struct kernel *k)
 {
     int first = -1;
@@ -213,13 +213,14 @@ static void choose(struct kernel *k)
     }
 }
 
-/* What begins at this clock beside the tasks; false: nothing. */
+/* Begin what is due at this clock before tasks go on: an interrupt, the choice of a task or the
+ * tick. Returns false if nothing is due. */
 static bool begin(struct kernel *k)
 {
     if (k->processor.task[SELF].ready) {
         return false;
     }
-    if (k->first >= 0) { /* interrupts are masked until then */
+    if (k->first >= 0) { /* interrupts are masked until the first task runs */
         switch_to(k, k->first);
         k->first = -1;
         return true;
@@ -247,7 +248,7 @@ static bool begin(struct kernel *k)
     return false;
 }
 
-/* The next clock at which something may begin, up to `until`. */
+/* The next clock at which an interrupt or the tick may begin, at most `until`. */
 static int64_t horizon(const struct kernel *k, int64_t until)
 {
     const int64_t clock = k->processor.clock;

@@ -1,6 +1,6 @@
 #include "kernel_parts.h"
 
-/* The hand of a priority's ring; -1: it is before the first. */
+/* The ready task of this priority that the kernel has chosen last; -1 none: the first is next. */
 static int hand(const struct kernel *k, int32_t priority)
 {
     for (int i = 0; i <= KERNEL_IDLE; i++) {
@@ -33,7 +33,7 @@ void kernel_unready(struct kernel *k, int task)
     struct kernel_task *t = &k->task[task];
     struct kernel_task *before = NULL;
 
-    for (int i = 0; t->chosen && i <= KERNEL_IDLE; i++) { /* the hand goes back by one */
+    for (int i = 0; t->chosen && i <= KERNEL_IDLE; i++) { /* the one before is chosen */
         struct kernel_task *o = &k->task[i];
         if (o->ready && o->priority == t->priority && o->turn < t->turn
             && (!before || o->turn > before->turn)) {
@@ -115,7 +115,7 @@ int kernel_first_waiting(const struct kernel *k, int queue, bool sends)
 void kernel_wait(struct kernel *k)
 {
     struct kernel_task *t = &k->task[k->current];
-    int behind = -1; /* the first with a lower rank */
+    int behind = -1; /* the first waiting task with a lower rank: this one goes before it */
 
     for (int i = 0; i < k->config.tasks; i++) {
         const struct kernel_task *o = &k->task[i];

@@ -1,7 +1,7 @@
-/* Notifications: a value of each task that others change, and that it can wait for. */
+/* Notifications: each task has a value that other contexts change and for which it can wait. */
 #include "kernel_parts.h"
 
-/* What a notification does to the value. Returns false if one is there that must stay. */
+/* Change a task's value by a notification. Returns false if KERNEL_WRITES_FIRST finds one there. */
 static bool change(struct kernel_task *t, enum kernel_notify what, uint32_t value)
 {
     switch (what) {
@@ -52,7 +52,7 @@ void kernel_notify_end(struct kernel_task *t)
     t->call = KERNEL_NO_CALL;
 }
 
-/* The task that is asked waits for a notification, if `there` is none. */
+/* The task that is asked waits for a notification, unless it is `there` already. */
 static enum kernel_status wait(struct kernel *k, enum kernel_call call, uint32_t clears, bool there,
                                int64_t ticks)
 {

@@ -1,4 +1,5 @@
-/* kernel_parts - what the kernel's files share. */
+/* kernel_parts - functions that the kernel's own files share: its log, the order of ready and of
+ * waiting tasks, and what every call checks and does at its end. Not for the kernel's users. */
 #ifndef KERNEL_PARTS_H
 #define KERNEL_PARTS_H
 
@@ -8,40 +9,43 @@
 
 enum { KERNEL_PRIORITY_MAX = 1000, KERNEL_IDLE = KERNEL_TASKS };
 
+/* Append an event to the log. */
 void kernel_note(struct kernel *k, enum kernel_what what, int32_t number, int32_t value);
 
-/* The kernel chooses anew as soon as no interrupt is served. */
+/* Let the kernel choose a task as soon as no interrupt is served. */
 void kernel_yield(struct kernel *k);
 
-/* The end of a call that kept the kernel from choosing: what is owed is done. Was it? */
+/* At the end of a call: yield if a more urgent task is ready (`owed`). Returns whether it did. */
 bool kernel_pay(struct kernel *k);
 
-/* --- Ready tasks: a ring for each priority, whose hand is at the chosen one; waiting tasks. --- */
+/* --- Ready tasks: a ring for each priority, in which the kernel remembers the task that it has
+ * chosen last; waiting tasks. --- */
 
-/* At the end of its equals, as seen from the hand; no longer; the next one behind the hand. */
+/* Put a task into its ring, where its turn comes last; take it out; choose the next task of the
+ * highest priority. */
 void kernel_ready(struct kernel *k, int task);
 void kernel_unready(struct kernel *k, int task);
 int kernel_choose(struct kernel *k);
 
-/* Tasks of this priority that are ready. */
+/* Number of ready tasks of this priority, the idle one included. */
 int kernel_equals(const struct kernel *k, int32_t priority);
 
-/* The current task is no longer ready, for so many ticks. */
+/* Block the current task for so many ticks, or until it is woken. */
 void kernel_block(struct kernel *k, int64_t ticks);
 
-/* The most urgent one that waits for a queue, to send or else to get something; -1 nobody. */
+/* The first task that waits for a queue, to send or else to take or receive; -1 none. */
 int kernel_first_waiting(const struct kernel *k, int queue, bool sends);
 
-/* The current task waits there, by its rank. */
+/* Put the current task, by its rank, among those that wait for the queue of its call. */
 void kernel_wait(struct kernel *k);
 
-/* A blocked task is ready. True: it is more urgent than the current one. */
+/* Make a blocked task ready. Returns whether it is more urgent than the current one. */
 bool kernel_wake(struct kernel *k, int task);
 
-/* Its priority is another one. */
+/* Set a task's priority in force. */
 void kernel_change(struct kernel *k, int task, int32_t priority);
 
-/* The current one's index among the tasks: the idle one has one here. */
+/* Index of the current task in `task`; here the idle task has one, too. */
 static inline int kernel_current(const struct kernel *k)
 {
     return k->current < 0 ? KERNEL_IDLE : k->current;
@@ -49,19 +53,20 @@ static inline int kernel_current(const struct kernel *k)
 
 /* --- Calls. --- */
 
+/* Whether a task has to answer, and not an interrupt or nobody. */
 static inline bool kernel_task_asked(const struct kernel *k)
 {
     return k->asked >= 0 && k->asked < KERNEL_TASKS;
 }
 
-/* The question is answered. */
+/* The context that was asked has answered. */
 static inline enum kernel_status kernel_answered(struct kernel *k)
 {
     k->asked = -1;
     return KERNEL_OK;
 }
 
-/* May the context that is asked call, with this time to wait? */
+/* Whether the context that is asked may call the kernel with this time to wait [ticks]. */
 static inline enum kernel_status kernel_may_call(const struct kernel *k, int64_t ticks)
 {
     if (k->asked < 0
@@ -72,7 +77,8 @@ static inline enum kernel_status kernel_may_call(const struct kernel *k, int64_t
     return ticks < 0 ? KERNEL_RANGE : KERNEL_OK;
 }
 
-/* The context that is asked has woken a task: it yields, an interrupt keeps that for its end. */
+/* The context that is asked has woken a task; if that is urgent, a task yields to it at once, while
+ * an interrupt leaves that to its end. */
 static inline void kernel_woke(struct kernel *k, bool urgent)
 {
     k->owed = k->owed || urgent;
@@ -83,8 +89,9 @@ static inline void kernel_woke(struct kernel *k, bool urgent)
     }
 }
 
-/* The call of a task that has the processor goes on. */
-void kernel_go_on(struct kernel *k, int task); /* kernel_waits.c */
-void kernel_notify_end(struct kernel_task *t); /* kernel_notify.c */
+/* A task that was blocked in a call has the processor again: go on with that call (kernel_waits.c);
+ * end the call if it waited for a notification (kernel_notify.c). */
+void kernel_go_on(struct kernel *k, int task);
+void kernel_notify_end(struct kernel_task *t);
 
 #endif

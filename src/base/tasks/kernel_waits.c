@@ -1,4 +1,4 @@
-/* Semaphores, mutexes and queues: calls that may wait. */
+/* Semaphores, mutexes and queues: the calls that may wait. */
 #include "kernel_parts.h"
 
 static bool is(const struct kernel *k, int queue, enum kernel_kind kind)
@@ -6,7 +6,7 @@ static bool is(const struct kernel *k, int queue, enum kernel_kind kind)
     return k->config.queue[queue].kind == kind;
 }
 
-/* One that waits there is ready; is anyone? */
+/* Wake the first task that waits for a queue, to send or to take. Returns whether there is one. */
 static bool release(struct kernel *k, int queue, bool sends)
 {
     const int task = kernel_first_waiting(k, queue, sends);
@@ -41,7 +41,7 @@ static int32_t get(struct kernel *k, int queue)
     return value;
 }
 
-/* The call's work, if it can be done now. */
+/* Do what the call asks for if that is possible now: there is room, or something to take. */
 static bool attempt(struct kernel *k, struct kernel_task *t)
 {
     struct kernel_queue *q = &k->queue[t->queue];
@@ -66,7 +66,7 @@ static bool attempt(struct kernel *k, struct kernel_task *t)
     return true;
 }
 
-/* Its time is over; or what is left of it from now on. */
+/* Whether the time to wait is over; if not, what is left of it counts from now on. */
 static bool expired(const struct kernel *k, struct kernel_task *t)
 {
     const int64_t passed = k->ticks - t->since;
@@ -80,7 +80,8 @@ static bool expired(const struct kernel *k, struct kernel_task *t)
     return false;
 }
 
-/* Before a task waits for a mutex. Does the holder have its priority, or has had it? */
+/* Before a task waits for a mutex: raise the holder to its priority. Returns whether the holder has
+ * a lent priority that may have to be taken back. */
 static bool lend(struct kernel *k, int holder)
 {
     const int32_t priority = k->task[k->asked].priority;
@@ -96,8 +97,8 @@ static bool lend(struct kernel *k, int holder)
     return k->task[holder].base < priority;
 }
 
-/* A task has waited in vain: the holder has the priority of the next that waits, if that was the
- * only mutex. */
+/* A task has waited for a mutex in vain: if the holder has only this mutex, its priority becomes
+ * its own or that of the next waiting task, whichever is higher. */
 static void take_back(struct kernel *k, int queue)
 {
     const int holder = k->queue[queue].holder, next = kernel_first_waiting(k, queue, false);
@@ -119,7 +120,8 @@ static void end(struct kernel_task *t, enum kernel_status result)
     t->result = result;
 }
 
-/* The call is done, or blocks, or lets others run before it looks a last time. */
+/* One attempt of a call: it ends, or blocks, or lets a more urgent task run before its last
+ * attempt. */
 static void look(struct kernel *k, struct kernel_task *t)
 {
     const bool sends = t->call == KERNEL_SENDS;
@@ -159,7 +161,7 @@ void kernel_go_on(struct kernel *k, int task)
     k->asked = -1;
 }
 
-/* The task that is asked calls. */
+/* Begin a call of the task that is asked. */
 static enum kernel_status call(struct kernel *k, enum kernel_call what, int queue, int32_t value,
                                int64_t ticks)
 {
@@ -177,7 +179,7 @@ static enum kernel_status call(struct kernel *k, enum kernel_call what, int queu
     return (enum kernel_status)t->result;
 }
 
-/* A mutex's holder gives it: has it its own priority again? */
+/* The holder gives a mutex. Returns whether it loses a lent priority by that. */
 static bool give_back(struct kernel *k, int mutex)
 {
     struct kernel_task *t = &k->task[k->asked];

@@ -1,11 +1,12 @@
-/* latency - how long a PC lets an interrupt wait.
+/* latency - random interrupt latency of a PC: the time from an interrupt to the first instruction
+ * of its routine. It is drawn from a mixture of two distributions:
  *
- *     least + exponential of a mean      mostly
- *     uniform between least and most     rarely: somebody keeps the interrupts off, a graphics
- *                                        driver for one
+ *     least + exponential with a mean    mostly
+ *     uniform between least and most     rarely: a driver, of graphics for instance, keeps
+ *                                        interrupts disabled
  *
- * The figures of ordinary PCs that such a law fits are those of LatencyMon reports. Numbers come
- * from a seeded state (splitmix64), so that a run can be repeated.
+ * Such a mixture fits the figures of ordinary PCs in LatencyMon reports. Numbers come from a seeded
+ * generator (splitmix64), so that a run can be repeated.
  */
 #ifndef LATENCY_H
 #define LATENCY_H
@@ -13,14 +14,14 @@
 #include <stdint.h>
 
 struct latency {
-    double least, mean, most; /* [clocks]; mean is that of what is added to least */
-    double rare;              /* probability of the second line, 0..1 */
+    double least, mean, most; /* [clocks] mean is that of the exponential part alone */
+    double rare;              /* probability of the uniform distribution, 0 .. 1 */
 };
 
-/* Uniform in [0, 1). */
+/* A random number, uniform in [0, 1); `random` is the generator's state. */
 double latency_uniform(uint64_t *random);
 
-/* One interrupt's wait. [clocks] Two numbers are drawn whatever the law. */
+/* Latency of one interrupt [clocks]. It always draws two random numbers, whichever distribution. */
 int64_t latency_draw(const struct latency *l, uint64_t *random);
 
 #endif

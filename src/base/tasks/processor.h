@@ -1,14 +1,14 @@
-/* processor - one processor and its tasks: the most urgent one that is ready has it.
+/* processor - one processor shared by tasks of fixed priority: the most urgent ready task runs.
  *
- *   priority ^        .--B--.                A task is ready or not, and has some time of the
- *            |        |     |                processor left for what it does. When that is over it
- *            |   --A--'     '--A--           is asked what comes next: more time, or nothing until
- *            +----------------------> t      it is woken again.
+ *   priority ^        .--B--.                A task is ready or not, and needs the processor for
+ *            |        |     |                some more time. When that is over its owner says what
+ *            |   --A--'     '--A--           comes next: more time, or nothing until it is woken
+ *            +----------------------> t      again.
  *
- * Among equal priorities the one of the lowest turn has it: a number of the caller's, who may
- * change it. Time is whole units of the caller's clock. Nothing happens by itself: processor_pass
- * lets time go by and stops where the running task's is over, so that the caller decides what comes
- * before what at one clock.
+ * Among tasks of equal priority the one with the lowest turn runs, a number that the caller chooses
+ * and may change. Time is an integer in units of the caller's clock. Nothing happens by itself:
+ * processor_pass lets time pass and stops when the running task's time is over, so that the caller
+ * decides the order of events at one clock. kernel.h and cyclic.h are built on it.
  */
 #ifndef PROCESSOR_H
 #define PROCESSOR_H
@@ -21,23 +21,24 @@ enum { PROCESSOR_TASKS = 28 };
 struct processor_task {
     bool ready;
     int32_t priority; /* the highest number first */
-    int64_t turn;     /* among equals the lowest first */
-    int64_t left;     /* time it still needs for what it does */
-    int64_t busy;     /* time it has had the processor */
+    int64_t turn;     /* among equal priorities the lowest number first */
+    int64_t left;     /* [clocks] for which it still needs the processor */
+    int64_t busy;     /* [clocks] for which it has had the processor */
 };
 
 struct processor {
-    int tasks; /* the first so many are there */
+    int tasks; /* number of tasks */
     struct processor_task task[PROCESSOR_TASKS];
-    int64_t clock;
-    int64_t idle; /* time that nobody had it */
-    int running;  /* that has the processor; -1 none */
+    int64_t clock; /* present time */
+    int64_t idle;  /* [clocks] for which no task had the processor */
+    int running;   /* task that has the processor; -1 none */
 };
 
-/* So many tasks, at most PROCESSOR_TASKS; nothing is ready, clock 0. */
+/* Start at clock 0 with a number of tasks, at most PROCESSOR_TASKS; none is ready. */
 void processor_start(struct processor *p, int tasks);
 
-/* A task becomes ready, or no longer is. What is woken has its time over: it is to be asked. */
+/* Make a task ready, with a turn; make it not ready. A woken task needs no time yet: processor_over
+ * returns it as soon as it has the processor. */
 static inline void processor_wake(struct processor *p, int task, int64_t turn)
 {
     struct processor_task *t = &p->task[task];
@@ -52,7 +53,7 @@ static inline void processor_block(struct processor *p, int task)
     p->task[task].ready = false;
 }
 
-/* Answer of a task: it needs so much time. */
+/* A task needs the processor for so many clocks. */
 static inline void processor_compute(struct processor *p, int task, int64_t time)
 {
     p->task[task].left = time;
@@ -68,10 +69,11 @@ static inline int processor_over(const struct processor *p)
 /* The most urgent task that is ready; -1 none. */
 int processor_first(const struct processor *p);
 
-/* That one has the processor from now on. Returns it if it is to be asked; else -1. */
+/* Give the processor to the most urgent ready task. Returns it if its time is over; else -1. */
 int processor_dispatch(struct processor *p);
 
-/* Let time pass up to a clock, or to where the running task's time is over. */
+/* Let time pass up to the clock `until`, or to the clock at which the running task's time is
+ * over. */
 void processor_pass(struct processor *p, int64_t until);
 
 #endif

@@ -11,7 +11,7 @@ static uint64_t next(uint64_t *state)
     return z ^ z >> 31;
 }
 
-/* Schedule the next edge, at the earliest one clock behind `from`. */
+/* Schedule a channel's next edge, one pause after the clock `from`. */
 static void schedule(struct analyser *a, int i, int64_t from)
 {
     struct analyser_channel *c = &a->channel[i];
@@ -40,7 +40,8 @@ static void measure(struct analyser_channel *c, int64_t reaction)
     c->responses++;
 }
 
-/* Is the edge that waits done with? */
+/* Whether the edge that waits is answered or timed out at this instant; then *event is filled
+ * in. */
 static bool done(struct analyser *a, int i, int64_t instant, bool response, double clock,
                  struct analyser_event *event)
 {

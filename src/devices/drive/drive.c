@@ -33,7 +33,8 @@ static void velocity_loop(const struct drive_config *c, struct drive_state *s, d
     out->saturated = excess != 0.0;
 }
 
-/* Speed command of the mode [rpm]; sets the following error. `pulses` came since last sample. */
+/* Speed command [rpm] in velocity or position mode; position mode sets the following error, too.
+ * `pulses` came since the latest sample. */
 static double speed_command(const struct drive_config *c, struct drive_state *s,
                             const struct drive_input *in, int32_t pulses, struct drive_output *out)
 {
@@ -51,8 +52,8 @@ static double speed_command(const struct drive_config *c, struct drive_state *s,
     return clamp(turns_per_s * RPM_PER_TURN_PER_S, c->speed_limit);
 }
 
-/* A load that the torque limit does not bear keeps the torque there; a ramp does so for less than
- * the time allowed, and what is below the limit counts back. */
+/* Overload alarm: the torque has been at its limit for longer than overload_time; samples below the
+ * limit count back. A load beyond the torque limit keeps the torque there, a ramp for less time. */
 static bool overloaded(const struct drive_config *c, struct drive_state *s, bool saturated)
 {
     if (!(c->overload_time > 0.0))
@@ -61,8 +62,8 @@ static bool overloaded(const struct drive_config *c, struct drive_state *s, bool
     return (double)s->load * c->period > c->overload_time;
 }
 
-/* Off: no torque but that of the holding brake, which is what brings the motor to rest and keeps it
- * there, up to what the brake bears. */
+/* The drive is off: no torque but that of the holding brake, the torque that brings the motor to
+ * rest and keeps it there, limited to brake_torque. */
 static void stand(const struct drive_config *c, struct drive_state *s, struct drive_output *out)
 {
     s->on = out->ready = false;
@@ -73,7 +74,7 @@ static void stand(const struct drive_config *c, struct drive_state *s, struct dr
         s->integral = clamp(s->integral, c->brake_torque);
         velocity_loop(&brake, s, -out->speed * RAD_PER_S_PER_RPM, false, out);
     }
-    out->saturated = false; /* of the drive, which gives no torque */
+    out->saturated = false; /* the drive gives no torque */
 }
 
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,

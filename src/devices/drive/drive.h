@@ -1,5 +1,6 @@
-/* Digital servo drive of one motor: velocity or position mode, velocity PI, torque limit, alarms.
- * One drive_tick() per sampling period; fmus/servo_drives/README.md has the equations. */
+/* drive - digital servo drive of one motor: velocity or position mode, a PI velocity loop with
+ * torque limit, alarms and holding brake. Call drive_tick() once per sampling period;
+ * fmus/servo_drives/README.md has the equations. */
 #ifndef DRIVE_H
 #define DRIVE_H
 
@@ -15,8 +16,8 @@ enum drive_alarm {
 };
 enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
 
-/* Overspeed alarm at this multiple of the speed limit: the usual factory setting, above what a
- * velocity loop overshoots. */
+/* The overspeed alarm comes at this multiple of the speed limit: a usual factory setting, above the
+ * overshoot of a velocity loop. */
 #define DRIVE_OVERSPEED_RATIO 1.2
 
 /* Largest position whose counts are whole numbers in a double, 2^53 [counts]. */
@@ -28,18 +29,18 @@ struct drive_config {
     double speed_per_volt;    /* [rpm/V] velocity mode */
     double volt_offset;       /* [V] added to the command voltage */
     int32_t encoder_lines;    /* [line periods/turn] */
-    int32_t encoder_counts;   /* [counts/turn] the drive resolves */
-    int32_t pulses_per_turn;  /* [pulses/turn] position mode */
-    double velocity_gain;     /* [N.m.s/rad] */
+    int32_t encoder_counts;   /* [counts/turn] resolution of the drive's position */
+    int32_t pulses_per_turn;  /* [pulses/turn] of the command, position mode */
+    double velocity_gain;     /* [N.m.s/rad] of the velocity loop */
     double velocity_time;     /* [s] integral time; 0: no integral */
     double position_gain;     /* [1/s] */
-    double feed_forward;      /* share of the command speed, 0 .. 1 */
-    double feed_forward_time; /* [s] its filter; 0: none */
+    double feed_forward;      /* share of the command speed that is fed forward, 0 .. 1 */
+    double feed_forward_time; /* [s] time constant of its filter; 0: none */
     double torque_limit;      /* [N.m] */
     double speed_limit;       /* [rpm] */
     double error_limit;       /* [turns] following error that raises the alarm */
-    double overload_time;     /* [s] torque at its limit that raises the alarm; 0: none */
-    double brake_torque;      /* [N.m] of the motor's holding brake; 0: none */
+    double overload_time;     /* [s] with the torque at its limit that raises the alarm; 0: none */
+    double brake_torque;      /* [N.m] holding torque of the motor's brake; 0: no brake */
 };
 
 struct drive_input {
@@ -51,7 +52,7 @@ struct drive_input {
 };
 
 struct drive_state {
-    bool primed;     /* there was a first sample */
+    bool primed;     /* the first sample has come */
     bool on;         /* the loops ran at the latest sample */
     bool reset;      /* alarm_reset at the latest sample */
     int32_t alarm;   /* enum drive_alarm */
@@ -59,22 +60,23 @@ struct drive_state {
     int64_t zero;    /* [counts] position at which the loops were switched on */
     int32_t pulses;  /* [pulses] input at the latest sample */
     int64_t command; /* [pulses] received since the loops were switched on */
-    double integral; /* [N.m] of the velocity loop */
-    double forward;  /* [turns/s] command speed behind its filter */
-    int64_t load;    /* samples with the torque at its limit less those without, >= 0 */
+    double integral; /* [N.m] integral part of the velocity loop */
+    double forward;  /* [turns/s] command speed behind the feed-forward filter */
+    int64_t load;    /* number of samples with the torque at its limit minus those without, >= 0 */
 };
 
 struct drive_output {
-    double torque;          /* [N.m] */
+    double torque;          /* [N.m] of the motor, or of the brake while the drive is off */
     double speed;           /* [rpm] measured */
-    double speed_command;   /* [rpm] */
+    double speed_command;   /* [rpm] command of the velocity loop */
     double following_error; /* [turns] position mode */
     bool ready;             /* enabled and without alarm */
     bool saturated;         /* torque at its limit */
     int32_t alarm;          /* enum drive_alarm */
 };
 
-/* One sampling instant. A phase that is no number or too large changes nothing. */
+/* One sampling instant. DRIVE_BAD_PHASE, and nothing changed, if the phase is not a number or
+ * beyond DRIVE_COUNTS_MAX. */
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
                              const struct drive_input *in, struct drive_output *out);
 

@@ -44,13 +44,13 @@ int32_t adc_code(const struct adc_config *c, enum adc_range range, double volts)
         return 0;
     int32_t codes = 1 << c->bits;
     int32_t low = range == ADC_BIPOLAR ? -codes / 2 : 0, high = low + codes - 1;
-    /* one rounding only: times 2^bits is exact, and so is the part behind the point */
+    /* rounded only once, by the division: the product with 2^bits and the fraction are exact */
     double exact = volts * codes / (ADC_VOLTS_MAX - volts_min(range));
     if (!(exact > low && exact < high))
         return exact > low ? high : low;
     int32_t code = (int32_t)exact;
     double rest = exact - code;
-    return code + (rest >= 0.5) - (rest <= -0.5); /* round(), but no library call */
+    return code + (rest >= 0.5) - (rest <= -0.5); /* as round(), without a library call */
 }
 
 double adc_volts(const struct adc_config *c, enum adc_range range, int32_t code)

@@ -1,4 +1,4 @@
-/* block_status - what the statuses of the blocks of the card mean. */
+/* block_status - texts for the statuses of the card's blocks: pulses, encoders, ADC, I/O, timer. */
 #include "registers.h"
 
 static const char *pulse_text(int status)

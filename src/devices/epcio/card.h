@@ -1,4 +1,5 @@
-/* What both generations of the card have: clock, axes, range of the DDA time. */
+/* card - constants of both generations of the motion card (EPCIO and single buffer): clock, number
+ * of axes, range of the DDA time. */
 #ifndef CARD_H
 #define CARD_H
 

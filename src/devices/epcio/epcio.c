@@ -119,7 +119,7 @@ static void boundary(struct epcio *card)
 static void arrive(struct epcio *card)
 {
     struct bus_write w = bus_take(&card->bus);
-    bool refused = false; /* what follows a refused frame is refused: nothing overtakes */
+    bool refused = false; /* frames behind a refused one are refused, too: nothing overtakes */
     for (int k = 0; k < w.count; k++) {
         refused = refused || epcio_write_frame(card, w.frame[k]) != EPCIO_OK;
         if (refused)
@@ -138,7 +138,7 @@ static void count_timer(struct epcio *card)
         epcio_clear(card);
 }
 
-/* Bits `first` .. `first` + 1 are latch triggers of a source pair. */
+/* Note the latch triggers `source` and `source` + 1, whose events are bits 0 and 1 of `bits`. */
 static void note_pair(struct epcio *card, int source, uint32_t bits)
 {
     for (int i = 0; i < 2; i++)
@@ -165,7 +165,7 @@ static void exchange(struct epcio *card, int set)
     analog_fire(&card->analog, (events & 0xF) << (set == 0 ? ANALOG_BY_R0DI : ANALOG_BY_R1DI));
 }
 
-/* Timer, watchdog, ADC, remote I/O: whatever is due at this clock. */
+/* Do what is due at this clock of timer, watchdog, ADC and remote I/O. */
 static void slow_events(struct epcio *card)
 {
     if (watchdog_due(&card->watchdog) <= card->clock)
@@ -217,7 +217,8 @@ static bool counts(const struct epcio *card, int encoder)
     return encoder >= EPCIO_AXES || card->config.active[encoder];
 }
 
-/* Index pulses that latch counters must be known before any counter has moved on. */
+/* Find the index pulses of this sampling period that latch counters, before any counter moves on:
+ * each counter that they latch must be run to their clocks. */
 static void foresee_indices(struct epcio *card, uint32_t sources)
 {
     for (int i = 0; i < EPCIO_ENCODERS; i++) {
@@ -290,7 +291,7 @@ enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lin
     return EPCIO_OK;
 }
 
-/* The seventh error counter: what the host commands, less the counts of counter 7. */
+/* The seventh error counter: command of the host minus counts of encoder counter 7. */
 static void watch_command(struct epcio *card)
 {
     const int i = EPCIO_LOOPS - 1;

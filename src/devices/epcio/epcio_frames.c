@@ -1,4 +1,4 @@
-/* Frames into the FIFOs, and out of them at an emergency stop. */
+/* Writing frames of commands into the FIFOs, and emptying these at an emergency stop. */
 #include "epcio.h"
 
 static enum epcio_status refuse(struct epcio *card, enum epcio_status status, int axis,

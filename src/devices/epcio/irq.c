@@ -24,7 +24,7 @@ void irq_raise(struct irq *q, enum irq_page page, uint32_t bits, int64_t clock)
     if (!q->line)
         drive_line(q, clock);
     else if (clock < q->clock)
-        q->clock = clock; /* told later, but it was first */
+        q->clock = clock; /* raised later, but it happened first */
 }
 
 void irq_set_mask(struct irq *q, const uint32_t mask[IRQ_PAGES], int64_t clock)

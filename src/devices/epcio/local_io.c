@@ -25,7 +25,7 @@ enum local_io_status local_io_check_control(const struct local_io_control *set)
     return set->servo_on >> LOCAL_IO_AXES != 0 ? LOCAL_IO_BAD_SERVO_ON : LOCAL_IO_OK;
 }
 
-/* Member by member, so that padding of the state stays what it was. */
+/* Copy member by member, so that the padding of the state does not change. */
 static void keep(struct local_io_lines *seen, const struct local_io_lines *lines)
 {
     seen->ldi = low_bits(lines->ldi, LOCAL_IO_LDIS);
@@ -44,7 +44,7 @@ static uint32_t inputs_of(const struct local_io_lines *seen, uint32_t dedicated)
     return seen->ldi << LOCAL_IO_EVENT_LDI | dfi << LOCAL_IO_EVENT_DFI;
 }
 
-/* Inputs that fire when they change to the level `to`. */
+/* Mask of the inputs whose edge type lets them fire when they change to the level `to`. */
 static uint32_t firing(const struct local_io_control *set, bool to)
 {
     enum local_io_edge other = to ? LOCAL_IO_FALL : LOCAL_IO_RISE;

@@ -1,4 +1,5 @@
-/* mailbox - what a card of either generation takes of the link once for each number. */
+/* mailbox - mailboxes of the link (link.h) for cards of both generations: the sequence numbers that
+ * a card has taken, so that it does each thing once, and the transaction of frames. */
 #ifndef MAILBOX_H
 #define MAILBOX_H
 
@@ -6,19 +7,20 @@
 #include "irq.h"
 #include "link.h"
 
-/* Numbers taken last. */
+/* Sequence numbers taken last. */
 struct mailbox {
     int32_t ack_seq, cmd_seq, clear_seq;
     int32_t latch_seq[LINK_AXES];
 };
 
-/* Pages of the link, as the card has them. */
+/* Interrupt pages of the link in the card's type. */
 static inline const uint32_t *mailbox_pages(const int32_t pages[LINK_PAGES])
 {
     return (const uint32_t *)pages;
 }
 
-/* True with the transaction if there is a new one. It counts as taken when its number is kept. */
+/* If the mailbox of frames has a new number, fill in the transaction and return true. The caller
+ * keeps the number in m->cmd_seq when it has taken the transaction. */
 bool mailbox_write(const struct mailbox *m, const struct link_host *link, struct bus_write *w);
 
 #endif

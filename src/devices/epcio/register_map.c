@@ -4,10 +4,11 @@
 
 #include "registers.h"
 
-/* Largest whole value that any register takes: 32 bits. */
+/* Largest value that any register takes: 32 bits. */
 #define VALUE_MAX 4294967295.0
 
-/* A register is a place in a block's settings: copy them, change the place, write them all. */
+/* A register is one member of a block's settings: the functions copy the settings, change the
+ * member and set them all by registers.h, which checks them. */
 
 static enum epcio_status write_fifo_erase(struct epcio *card, int i, double value)
 {
@@ -22,7 +23,7 @@ static enum epcio_status write_fifo_shift_out(struct epcio *card, int i)
     return epcio_shift_out(card, i, &command);
 }
 
-/* Outside the range of any integer setting; the block refuses it. */
+/* The value as int32_t; one that does not fit becomes INT32_MIN, which every block refuses. */
 static int32_t small(double value)
 {
     return fabs(value) <= INT32_MAX ? (int32_t)value : INT32_MIN;

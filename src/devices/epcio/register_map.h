@@ -1,13 +1,14 @@
-/* Registers by number, for a host that has only a bus. The numbers are ours: the chip's register
- * map is not public. Each takes one value; a fractional one only where a voltage is meant. */
+/* register_map - the card's registers by address, for a host that has only bus writes; registers.h
+ * has the same as functions. The addresses are ours, because the chip's register map is not public.
+ * Each register takes one value, an integer except where it is a voltage. */
 #ifndef REGISTER_MAP_H
 #define REGISTER_MAP_H
 
 #include "epcio.h"
 
-/* X(address of the first, name, how many): what it writes. */
+/* X(address of the first register, name, number of registers): meaning of the value. */
 #define EPCIO_REGISTERS(X) \
-    X(0x010, FIFO_ERASE, 6)         /* take back the newest commands: how many */ \
+    X(0x010, FIFO_ERASE, 6)         /* number of the newest commands to be taken back */ \
     X(0x018, FIFO_SHIFT_OUT, 6)     /* any value: shift the oldest command out */ \
     X(0x100, ENC_FORMAT, 9)         /* 0 A/B, 1 CW/CCW, 2 pulse/direction, 3 none */ \
     X(0x110, ENC_RATE, 9)           /* 0, 1, 2, 4 */ \
@@ -17,10 +18,10 @@
     X(0x150, ENC_COMPARE, 9)        /* [counts] */ \
     X(0x160, ENC_COMPARE_ON, 9)     /* 0, 1 */ \
     X(0x170, ENC_LATCH_LAST, 9)     /* 0 first trigger only, 1 every trigger */ \
-    X(0x180, ENC_LATCH, 9)          /* source bits; arms */ \
+    X(0x180, ENC_LATCH, 9)          /* source bits (latch.h); arms the latch */ \
     X(0x200, PCL_CLEAR, 7)          /* any value: error counter to zero */ \
     X(0x300, DAC_TRIGGER_VOLTS, 8)  /* [V] */ \
-    X(0x310, DAC_TRIGGER, 8)        /* source bits; arms; 0 gives the channel back */ \
+    X(0x310, DAC_TRIGGER, 8)        /* source bits (analog.h); arms; 0 gives the channel back */ \
     X(0x400, ADC_MODE, 1)           /* 0 single, 1 free run */ \
     X(0x401, ADC_CHANNEL, 1)        /* of single mode, 0 .. 7 */ \
     X(0x402, ADC_ENABLED, 1)        /* channel bits of free run */ \
@@ -55,8 +56,8 @@ enum epcio_register {
 #undef EPCIO_REGISTER
 };
 
-/* Write a register of the map. EPCIO_BAD_REGISTER if there is none at that address,
- * EPCIO_BAD_VALUE if the value is no number or fractional, else what the block says. */
+/* Write a register of the map. EPCIO_BAD_REGISTER if there is none at that address, EPCIO_BAD_VALUE
+ * if the value is not a number, fractional or too large, else the status of the block. */
 enum epcio_status epcio_write(struct epcio *card, int32_t address, double value);
 
 #endif

@@ -310,7 +310,7 @@ enum epcio_status epcio_reset_module(struct epcio *card, enum epcio_module modul
     }
     const struct irq silent = { .seq = card->irq.seq, .clock = card->irq.clock };
     if (module == EPCIO_RESET_ALL)
-        card->irq = silent; /* emptying the FIFOs pulls nothing */
+        card->irq = silent; /* emptying the FIFOs must not pull the line */
     for (int i = first; i <= last; i++)
         reset_one(card, (enum epcio_module)i);
     if (module == EPCIO_RESET_ALL)

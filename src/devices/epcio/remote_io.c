@@ -33,7 +33,7 @@ const char *remote_io_status_text(enum remote_io_status status)
     }
 }
 
-/* Next slave of the scan above `after`, wrapping around to `after` itself; the scan has one. */
+/* Next slave of the scan above `after`, wrapping around to `after`; the scan must not be empty. */
 static int next_slave(uint32_t scanned, int after)
 {
     int i = after;
@@ -83,7 +83,7 @@ int64_t remote_io_due(const struct remote_io *io)
     return io->busy ? io->due : INT64_MAX;
 }
 
-/* Inputs that fire, bit k for input k. */
+/* Inputs that fire when they change from `before` to `now`, bit k for input k. */
 static uint32_t fired(const enum remote_io_edge edge[REMOTE_IO_EDGES], uint32_t before,
                       uint32_t now)
 {

@@ -12,7 +12,7 @@ void single_buffer_reset(struct single_buffer *card, const struct single_buffer_
     dda_reset(&card->dda, EPCIO_AXES, 1 << EPCIO_RESET_LENGTH, EPCIO_RESET_DIVIDER);
 }
 
-/* FIFO bits of the active axes. */
+/* Interrupt bits "FIFO at minimum stock" of the active axes. */
 static uint32_t fifo_bits(const struct single_buffer *card)
 {
     uint32_t bits = 0;
@@ -22,13 +22,13 @@ static uint32_t fifo_bits(const struct single_buffer *card)
     return bits;
 }
 
-/* The time of the DDA, which stands while it is off [clock]. */
+/* Time of the DDA [clock], which stands still while it is off. */
 static int64_t dda_clock(const struct single_buffer *card)
 {
     return card->dda.run ? card->clock : card->dda.stop;
 }
 
-/* A direct card has waited so long for a command [clocks]. */
+/* Time that a direct card has waited for a command so far [clocks]; 0 if it does not wait. */
 static int64_t waited(const struct single_buffer *card)
 {
     return card->config.latched || card->running ? 0 : dda_clock(card) - card->dda.start;
@@ -39,7 +39,7 @@ int32_t single_buffer_underflows(const struct single_buffer *card, int axis)
     return card->underflows[axis] + (waited(card) > 0 && card->last[axis] != 0 ? 1 : 0);
 }
 
-/* A command goes into the DDA. */
+/* Put a command into the DDA and account for the standstill before it. */
 static void take(struct single_buffer *card, const int32_t command[EPCIO_AXES])
 {
     for (int i = 0; i < EPCIO_AXES; i++) {
@@ -60,11 +60,12 @@ static void start(struct single_buffer *card, const int32_t command[EPCIO_AXES])
     for (int i = 0; i < EPCIO_AXES; i++)
         card->underflows[i] = single_buffer_underflows(card, i);
     card->stood = waited(card);
-    d->start = dda_clock(card) - dda_time(d->ticks, d->divider); /* as if one ended now */
+    d->start = dda_clock(card) - dda_time(d->ticks, d->divider); /* as if a DDA time ended now */
     take(card, command);
 }
 
-/* Direct: the command is complete, the DDA waits for the next. Returns the sources that fire. */
+/* Direct: the command is complete, the DDA waits for the next one. Returns the interrupt sources
+ * that fire. */
 static uint32_t end_direct(struct single_buffer *card)
 {
     card->running = false;
@@ -72,7 +73,8 @@ static uint32_t end_direct(struct single_buffer *card)
     return fifo_bits(card);
 }
 
-/* Latched: the waiting command goes into the DDA, or the axes stand for a DDA time. */
+/* Latched: the waiting command goes into the DDA; without one the axes stand still for a DDA time.
+ * Returns the interrupt sources that fire. */
 static uint32_t end_latched(struct single_buffer *card)
 {
     struct dda *d = &card->dda;
@@ -99,7 +101,7 @@ static void boundary(struct single_buffer *card)
 static void arrive(struct single_buffer *card)
 {
     struct bus_write w = bus_take(&card->bus);
-    bool refused = false; /* what follows a refused frame is refused: nothing overtakes */
+    bool refused = false; /* frames behind a refused one are refused, too: nothing overtakes */
     for (int k = 0; k < w.count; k++) {
         refused = refused || single_buffer_write_frame(card, w.frame[k]) != EPCIO_OK;
         if (refused)
@@ -170,7 +172,7 @@ enum epcio_status single_buffer_write_frame(struct single_buffer *card,
                                             const int32_t frame[EPCIO_AXES])
 {
     int32_t largest = dda_largest(card->dda.next_ticks);
-    int first = -1; /* active axis */
+    int first = -1; /* first active axis, which a refusal names */
     for (int i = 0; i < EPCIO_AXES; i++) {
         if (!card->config.active[i] && frame[i] != 0)
             return refuse(card, EPCIO_AXIS_UNUSED, i, frame[i]);

@@ -2,7 +2,7 @@
 
 #include "bus.h"
 
-/* The texts themselves, not pointers to them, which would not be constant in a shared library. */
+/* A table of the texts themselves; pointers to them would need relocation in a shared library. */
 #define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[EPCIO_STATUS_COUNT][65] = { EPCIO_STATUS_TEXTS(ROW) };

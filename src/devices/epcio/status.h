@@ -1,10 +1,11 @@
-/* What a refused call of the card says. */
+/* status - statuses that the functions of the card return, why a call is refused, with a text for
+ * each. */
 #ifndef STATUS_H
 #define STATUS_H
 
 #include <stdint.h>
 
-/* What a call of the card says, each status with its text. */
+/* Each status of the card itself with its text. */
 #define EPCIO_STATUS_TEXTS(X) \
     X(EPCIO_OK, "ok") \
     X(EPCIO_FIFO_FULL, "the FIFO holds 63 commands already") \
@@ -38,8 +39,8 @@
 
 #define EPCIO_STATUS_ENTRY(name, text) name,
 
-/* The status of a block is its own enum on top of the block's base: EPCIO_ENCODER +
- * ENCODER_BAD_RATE. */
+/* A status of one of the card's blocks is the block's own enum added to its base, for example
+ * EPCIO_ENCODER + ENCODER_BAD_RATE. */
 enum epcio_status {
     EPCIO_STATUS_TEXTS(EPCIO_STATUS_ENTRY) EPCIO_STATUS_COUNT,
     EPCIO_PULSE = 0x100,
@@ -48,17 +49,17 @@ enum epcio_status {
     EPCIO_LOCAL_IO = 0x400,
     EPCIO_REMOTE_IO = 0x500,
     EPCIO_TIMER = 0x600,
-    EPCIO_STATUS_LAST = 0x6ff /* behind a block's number comes its own status */
+    EPCIO_STATUS_LAST = 0x6ff /* largest value, so that the enum holds every sum */
 };
 
-/* Why the latest refused frame was refused. */
+/* The latest frame that was refused: why, and which command of it. */
 struct epcio_refusal {
     enum epcio_status status;
     int32_t axis;    /* 0 .. 5 */
     int32_t command; /* [pulses] */
 };
 
-/* What a status of the card itself, of no block, means, for messages. */
+/* Text for a status of the card itself, for messages; "unknown status" for one of a block. */
 const char *card_status_text(enum epcio_status status);
 
 #endif

@@ -1,11 +1,12 @@
-/* Timer of the local I/O: free running, periods of the card's clock; and the watchdog it drives. */
+/* timer - the card's timer, which interrupts periodically, and the watchdog, which it drives: the
+ * watchdog resets the outputs if the host does not refresh it within a number of timer periods. */
 #ifndef TIMER_H
 #define TIMER_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Longest period of timer and reset: 32-bit registers [clocks], 107 s. */
+/* Longest period of timer and reset [clocks]: 32-bit registers, 107 s. */
 #define TIMER_PERIOD_MAX INT64_C(4294967295)
 
 enum { WATCHDOG_VALUE_MAX = 65535 }; /* 16-bit register */
@@ -14,18 +15,18 @@ enum { WATCHDOG_VALUE_MAX = 65535 }; /* 16-bit register */
 struct timer {
     bool on;
     int64_t period; /* [clocks] */
-    int64_t start;  /* [clock] of the latest firing or, before the first, of the start */
-    int64_t count;  /* firings since power on */
+    int64_t start;  /* [clock] of the latest firing; before the first one, of the start */
+    int64_t count;  /* number of firings since power on */
 };
 
 /* All zero is the state after power on: off. */
 struct watchdog {
     bool on;
-    bool expired;         /* until the host refreshes it or switches it off */
-    bool resetting;       /* expired, and the reset period runs */
-    int32_t value;        /* [timer firings] without a refresh that let it expire */
-    int32_t count;        /* [timer firings] since the refresh; stops at `value` */
-    int64_t reset_period; /* [clocks] */
+    bool expired;         /* it has expired; until the host refreshes it or switches it off */
+    bool resetting;       /* it has expired and the reset period runs */
+    int32_t value;        /* [timer firings] without a refresh after which it expires */
+    int32_t count;        /* [timer firings] since the latest refresh; stops at `value` */
+    int64_t reset_period; /* [clocks] duration of the reset */
     int64_t end;          /* [clock] of the end of the reset period, if resetting */
 };
 
@@ -59,20 +60,20 @@ void timer_fire(struct timer *t);
  * bad is refused, also with `on` false, and nothing changes. */
 enum timer_status watchdog_set(struct watchdog *w, bool on, int32_t value, int64_t reset_period);
 
-/* The host refreshes: count anew, and `expired` ends. In the reset period it does nothing and must
- * come again after it; at the clock of its end it counts. While the timer runs undisturbed, expiry
- * comes more than value - 1 and at most `value` timer periods after a refresh. A refresh at the
- * very clock of expiry is late, for the firing is first. */
+/* The host refreshes the watchdog: it counts anew, and `expired` ends. A refresh in the reset
+ * period does nothing and must be repeated after it; one at the clock of its end acts. While the
+ * timer runs undisturbed, expiry comes more than value - 1 and at most `value` timer periods after
+ * a refresh. A refresh at the very clock of expiry is late, because the firing comes first. */
 void watchdog_refresh(struct watchdog *w);
 
 /* The timer fired at `clock`: count it. True if the watchdog expires now; the reset period begins.
  * Off or expired already: false, nothing counted. */
 bool watchdog_timer_fired(struct watchdog *w, int64_t clock);
 
-/* Clock at which the reset period ends: that of expiry + reset period; INT64_MAX if none runs. */
+/* Clock at which the reset period ends, reset_period after expiry; INT64_MAX if none runs. */
 int64_t watchdog_due(const struct watchdog *w);
 
-/* At the clock watchdog_due(): the reset period is over, `expired` stays. */
+/* End the reset period; call it at the clock watchdog_due(). `expired` stays. */
 void watchdog_end(struct watchdog *w);
 
 #endif

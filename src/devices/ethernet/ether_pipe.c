@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* Uniform in 0 .. most (xorshift64). */
+/* A random number, uniform in 0 .. most (xorshift64). */
 static int64_t draw(uint64_t *random, int64_t most)
 {
     *random ^= *random << 13;

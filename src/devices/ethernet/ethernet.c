@@ -28,8 +28,8 @@ static void cut(struct ethernet *e, int64_t now)
     disconnect(e, now);
 }
 
-/* Is a cut due: a time since the latest instant, or the bytes of an end? A cut behind bytes comes
- * an instant behind them, so that the end has seen the last one. */
+/* Whether a cut is due: its time has come since the latest instant, or an end has received its
+ * number of bytes. The latter comes an instant later, so that the end has seen the last byte. */
 static bool cut_is_due(const struct ethernet *e, int64_t now)
 {
     const struct ethernet_config *c = &e->config;
@@ -44,7 +44,7 @@ static bool cut_is_due(const struct ethernet *e, int64_t now)
     return false;
 }
 
-/* Bytes that may still go to this end before a cut. */
+/* Number of bytes that may still go to this end before a cut. */
 static size_t before_cut(const struct ethernet *e, int end)
 {
     int64_t most = BYTE_RING_BYTES;
@@ -55,7 +55,7 @@ static size_t before_cut(const struct ethernet *e, int end)
     return (size_t)most;
 }
 
-/* From an end into the pipe to the other one, as much as that has room for. */
+/* Take bytes from an end into the pipe to the other one, as many as there is room for. */
 static void take(struct ethernet *e, int end, const struct ethernet_seen *seen)
 {
     struct ethernet_shown *shown = &e->shown[end];
@@ -98,7 +98,7 @@ static bool counts_hold(const struct ethernet *e, const struct ethernet_seen *se
     return true;
 }
 
-/* Both ends want a connection, and have let go of the one before. */
+/* Whether both ends want a connection and have reset their counts after the one before. */
 static bool both_ready(const struct ethernet_seen seen[ETHERNET_ENDS])
 {
     bool ready = true;

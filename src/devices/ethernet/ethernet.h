@@ -1,8 +1,8 @@
-/* ethernet - the link between a card and its host: a connection of two streams that comes about
- * when both want it, and is cut at times or behind bytes.
+/* ethernet - the network between a card and its host: a TCP connection of two byte streams, which
+ * is established when both ends want it and is cut at given times or after given numbers of bytes.
  *
- * Each end shows words and counts as byte_ring.h has it, all 0 while there is no connection. A cut
- * takes what is on its way; the next connection comes once both ends show counts of 0 again.
+ * Each end shows words and counts of byte_ring.h, all 0 while there is no connection. A cut drops
+ * the bytes on their way; the next connection can come once both ends show counts of 0 again.
  */
 #ifndef ETHERNET_H
 #define ETHERNET_H
@@ -15,41 +15,44 @@ enum ethernet_end { ETHERNET_CARD, ETHERNET_HOST };
 
 struct ethernet_config {
     struct ether_config pipe;
-    uint64_t seed;
-    int64_t connect;                                  /* [ns] for a connection to come about */
-    int64_t away;                                     /* [ns] none comes about after a cut */
-    int64_t cut_at[ETHERNET_CUTS];                    /* [ns] 0: none */
-    int64_t cut_behind[ETHERNET_ENDS][ETHERNET_CUTS]; /* [byte] that this end got; 0: none */
+    uint64_t seed;                                    /* of jitter and losses */
+    int64_t connect;                                  /* [ns] time to establish a connection */
+    int64_t away;                                     /* [ns] time after a cut without one */
+    int64_t cut_at[ETHERNET_CUTS];                    /* [ns] times of cuts; 0: none */
+    int64_t cut_behind[ETHERNET_ENDS][ETHERNET_CUTS]; /* [byte] received by this end until a cut,
+                                                       * over all connections; 0: none */
 };
 
-/* What an end shows. */
+/* What an end shows to the network. */
 struct ethernet_seen {
-    int32_t tx_words[BYTE_RING_WORDS];
-    int32_t tx_count, rx_taken;
-    bool wants; /* a connection */
+    int32_t tx_words[BYTE_RING_WORDS]; /* ring of the bytes that it sends */
+    int32_t tx_count, rx_taken;        /* counts of bytes put in there; taken from the network */
+    bool wants;                        /* it wants a connection */
 };
 
-/* What it is shown. */
+/* What the network shows to an end. */
 struct ethernet_shown {
-    int32_t rx_words[BYTE_RING_WORDS];
-    int32_t rx_count, tx_taken;
+    int32_t rx_words[BYTE_RING_WORDS]; /* ring of the bytes that it receives */
+    int32_t rx_count, tx_taken;        /* counts of bytes put in there; taken from the end */
 };
 
 struct ethernet {
     struct ethernet_config config;
-    int32_t connection; /* number; 0 none */
-    int32_t connections;
-    int64_t wanted;                        /* [ns] since when both ends want one; -1 not */
-    int64_t blocked;                       /* [ns] end of the latest cut */
-    int64_t instant;                       /* [ns] latest one; -1 before the first */
-    uint32_t cuts, faults;                 /* faults: an end showed counts that cannot be */
-    struct ether_pipe pipe[ETHERNET_ENDS]; /* to this end */
+    int32_t connection;                    /* number of the connection; 0 none */
+    int32_t connections;                   /* number of connections so far */
+    int64_t wanted;                        /* [ns] time since which both ends want one; -1 */
+    int64_t blocked;                       /* [ns] time until which none comes after a cut */
+    int64_t instant;                       /* [ns] latest instant; -1 before the first */
+    uint32_t cuts, faults;                 /* faults: an end showed counts that contradict */
+    struct ether_pipe pipe[ETHERNET_ENDS]; /* the pipe to each end */
     struct ethernet_shown shown[ETHERNET_ENDS];
 };
 
+/* Start without a connection. */
 void ethernet_start(struct ethernet *e, const struct ethernet_config *c);
 
-/* An instant at which both ends are read; the next one is at `next` [ns]. */
+/* At the instant `now` [ns]: read both ends, connect, disconnect or cut, and carry bytes. The next
+ * instant is at `next` [ns]. */
 void ethernet_instant(struct ethernet *e, int64_t now, int64_t next,
                       const struct ethernet_seen seen[ETHERNET_ENDS]);
 

@@ -29,7 +29,7 @@ void fpga_reset(struct fpga *f, const struct fpga_config *config)
     f->playing = -1;
     f->timer = config->irq_every;
     f->inputs.first = INT64_MAX;
-    f->pending = true; /* the first exchange looks at the pins as they were found */
+    f->pending = true; /* the first exchange reads the pins as they are then */
 }
 
 static void exchange_inputs(struct fpga *f)
@@ -101,7 +101,7 @@ static void exchange_stop(struct fpga *f)
     f->servo = f->stopped && c->stop_servo_off ? 0 : f->host_servo;
 }
 
-/* First exchange behind the card's clock that has something to do. */
+/* Clock of the first exchange behind the card's clock that has something to do. */
 static int64_t due(const struct fpga *f)
 {
     const int64_t next = fpga_next_exchange(f);
@@ -138,7 +138,7 @@ enum fpga_status fpga_refuse(struct fpga *f, enum fpga_status s)
     return s;
 }
 
-/* Take the write that was sent first. */
+/* The oldest write on its way arrives: take it or refuse it. */
 static void arrive(struct fpga *f)
 {
     const struct fpga_write *w = &f->writes[0];
@@ -188,7 +188,7 @@ enum fpga_status fpga_post_write(struct fpga *f, const struct fpga_write *w)
         return fpga_refuse(f, FPGA_NO_SLOTS);
     if (f->writing == FPGA_WRITES)
         return fpga_refuse(f, FPGA_ON_THE_WAY);
-    /* In time unless a switch, or an exchange that waited for a mark, lies behind its clock. */
+    /* It is late if a switch, or an exchange that waited for a mark, has passed since its clock. */
     const int64_t latest =
         f->playing >= 0 ? f->start : fpga_next_exchange(f) - f->config.slot_clocks;
     f->late += w->clock > 0 && w->clock < latest;

@@ -4,7 +4,7 @@
 
 #include "el_extremes.h"
 
-/* 16 bit of +-10 V: -32768 .. 32767 steps of 10 V / 2^15. What lies beyond is at the end. */
+/* Voltage quantised to 16 bits for +-10 V: -32768 .. 32767 steps of 10 V / 2^15, saturated. */
 static double quantised(double volts)
 {
     const double steps = 32768.0, range = 10.0; /* [V] */
@@ -12,7 +12,7 @@ static double quantised(double volts)
     return el_max(-steps, el_min(code, steps - 1.0)) * range / steps;
 }
 
-/* Was an exchange meant that has happened already? */
+/* Count a post as late if the exchange that its clock meant has happened already. */
 static void count_late(struct fpga *f, int64_t clock)
 {
     f->late += clock > 0 && fpga_exchange_of(f, clock) <= f->clock;
@@ -66,7 +66,7 @@ void fpga_change_input(struct fpga *f, int channel, int64_t clock)
     const bool was_coming = in->coming & bit;
     in->coming &= ~bit;
     if (was_coming && in->clock[channel] > f->clock)
-        return; /* what was to come does not */
+        return; /* the change that was to come is cancelled */
     if (was_coming)
         in->level ^= bit;
     count_late(f, clock);

@@ -8,7 +8,7 @@ static void raise(struct fpga *f)
     memcpy(f->irq.ai, f->ai, sizeof f->irq.ai);
 }
 
-/* Nothing plays any more. */
+/* No memory plays any more. */
 static void idle(struct fpga *f)
 {
     f->playing = -1;
@@ -27,7 +27,7 @@ static void begin(struct fpga *f, int32_t memory)
     raise(f);
 }
 
-/* The memory that plays has put out its pulses up to the card's clock, and is free. */
+/* Add the pulses of the memory that plays, up to the card's clock, to `base` and free it. */
 static void leave(struct fpga *f)
 {
     fpga_pulses(f, f->base);
@@ -51,7 +51,7 @@ void fpga_play_stop(struct fpga *f)
     idle(f);
 }
 
-/* The full memory that was marked first, -1 if none is. */
+/* The full memory that was marked first; -1 if none is full. */
 static int32_t first_full(const struct fpga *f)
 {
     const struct slot_memory *m = f->memory;

@@ -43,7 +43,7 @@ static void accept(struct msp430 *m)
     }
 }
 
-/* What the routine does at this clock. */
+/* The action of the interrupt routine at this clock. */
 static void work(struct msp430 *m)
 {
     if (m->routine == MSP430_PORT) {

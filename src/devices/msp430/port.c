@@ -3,7 +3,8 @@
 static const uint8_t FLAG[PORT_SOURCES] = { PORT_A_UP, PORT_A_DOWN, PORT_B_UP, PORT_B_DOWN,
                                             PORT_HOME };
 
-/* A constant of 1, 4 or 8 comes from the constant generator: a cycle less than from memory. */
+/* Cycles of instructions. A constant of 1, 4 or 8 comes from the constant generator, which saves
+ * the cycle for reading it from memory. */
 enum { TEST_CYCLES = 4, LITERAL = 1, JUMP = 2, MEMORY = 4, RETI = 5 };
 
 static bool generated(int constant)
@@ -16,7 +17,7 @@ static int bit_cycles(int constant)
     return TEST_CYCLES + (generated(constant) ? 0 : LITERAL);
 }
 
-/* False if the flag is up already. */
+/* Set the flag of a source; false if it was set already. */
 static bool raise_flag(struct port *p, int source)
 {
     const bool free = !(p->flags & FLAG[source]);
@@ -57,7 +58,7 @@ static int leave(struct port *p)
     return p->clear == PORT_CLEAR_ALL ? go_to(p, PORT_WIPE, MEMORY) : go_to(p, PORT_RETURN, RETI);
 }
 
-/* Behind the test of a flag, or behind clearing it. */
+/* Begin to serve a source, after its flag was tested or cleared. */
 static int serve(struct port *p)
 {
     if (FLAG[p->source] == PORT_HOME)
@@ -79,8 +80,8 @@ static int test(struct port *p)
     return JUMP + leave(p);
 }
 
-/* The four tables of the listing. Where jz is not taken, a jmp follows, but for the last: it falls
- * into DECCounter. */
+/* The listing's four decisions by the level of the other line. Where jz is not taken, a jmp
+ * follows, except in the last one, which falls through into DECCounter. */
 static int decode(struct port *p, bool line_a, bool line_b)
 {
     static const int LOW[] = { 1, -1, -1, 1 };

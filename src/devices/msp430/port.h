@@ -1,8 +1,8 @@
-/* Port 1 interrupt routine of the listing, instruction by instruction: quadrature decoding by four
- * edge interrupts, and the home input.
+/* port - the positioner's port 1 interrupt routine as in the article's listing, instruction by
+ * instruction: quadrature decoding of the scale by four edge interrupts, and the home input.
  *
- * What an instruction reads or writes it does in its last clock. An edge at clock c is seen by what
- * is done at c or later. README.md has the instructions with their cycles. */
+ * An instruction reads and writes in its last clock. An edge at clock c is visible to what is done
+ * at c or later. README.md has the instructions with their cycles. */
 #ifndef PORT_H
 #define PORT_H
 
@@ -18,58 +18,60 @@ enum {
     PORT_B_DOWN = 0x20, /* P1.5 */
 };
 
-enum { PORT_SOURCES = 5 }; /* in the order of the listing, home behind them */
+enum { PORT_SOURCES = 5 }; /* tested in the order of the listing, then home */
 
 enum port_clear {
-    PORT_CLEAR_ALL = 0, /* mov.b #0,&P1IFG before reti, as written: every flag */
-    PORT_CLEAR_ONE = 1, /* bic.b of the flag that is served, before the level is read */
+    PORT_CLEAR_ALL = 0, /* as written: mov.b #0,&P1IFG before reti clears every flag */
+    PORT_CLEAR_ONE = 1, /* repaired: bic.b of the served flag before the level is read */
 };
 
 /* Cycles from the acceptance of an interrupt to its first instruction. */
 enum { PORT_LATENCY = 6 };
 
+/* The next action of the routine. */
 enum port_place {
-    PORT_IDLE,
-    PORT_TEST,
-    PORT_DROP,
-    PORT_LEVEL,
-    PORT_COUNT,
-    PORT_COUNT_2,
-    PORT_ZERO,
-    PORT_MARK,
-    PORT_WIPE,
-    PORT_RETURN,
+    PORT_IDLE,    /* the routine is not in progress */
+    PORT_TEST,    /* test the flag of a source */
+    PORT_DROP,    /* clear this flag */
+    PORT_LEVEL,   /* read the level of the other line, which gives the direction */
+    PORT_COUNT,   /* change wMCounter */
+    PORT_COUNT_2, /* change wSt */
+    PORT_ZERO,    /* home: clear wMCounter */
+    PORT_MARK,    /* home: set the mark for the timer */
+    PORT_WIPE,    /* clear all flags */
+    PORT_RETURN,  /* reti */
 };
 
 struct port {
     enum port_clear clear;
     uint8_t flags;            /* P1IFG */
-    int8_t way[PORT_SOURCES]; /* true direction of the edge behind each flag */
-    enum port_place place;    /* what is done next */
-    int source;               /* being tested or served */
-    int step;                 /* +1 or -1, as decoded */
-    int moved;                /* +1 or -1, what it should be */
-    uint16_t counter;         /* wMCounter */
-    uint16_t counter_2;       /* wSt */
-    int64_t served;           /* encoder edges counted, either way */
-    int latest;               /* number of the latest interrupt served, 1 .. 5; 0: none yet */
-    int64_t lost;             /* edges whose flag was up already, or was cleared unserved */
-    int64_t turned;           /* edges counted the wrong way round */
-    int64_t zeroed;           /* home edges served */
-    int64_t home_lost;        /* home edges whose flag was cleared unserved */
+    int8_t way[PORT_SOURCES]; /* true direction, +1 or -1, of the edge that set each flag */
+    enum port_place place;    /* next action */
+    int source;               /* source that is tested or served, 0 .. 4; -1 none was set */
+    int step;                 /* +1 or -1, direction as decoded */
+    int moved;                /* +1 or -1, true direction */
+    uint16_t counter;         /* wMCounter [counts] */
+    uint16_t counter_2;       /* wSt [counts] */
+    int64_t served;           /* number of encoder edges counted, either way */
+    int latest;               /* number of the latest source served, 1 .. 5; 0: none yet */
+    int64_t lost;             /* number of edges whose flag was set already or cleared unserved */
+    int64_t turned;           /* number of edges counted in the wrong direction */
+    int64_t zeroed;           /* number of home edges served */
+    int64_t home_lost;        /* number of home edges lost likewise */
 };
 
-/* The scale's line A or B has changed to `high`, moving `way`: the pin behind the inverter sets the
- * flag of its edge. */
+/* The scale's line A or B has changed to `high` in the direction `way`, +1 or -1: the pin behind
+ * the inverter sets the flag of its edge. */
 void port_edge(struct port *p, bool line_b, bool high, int way);
 
 /* The home input rises. */
 void port_home(struct port *p);
 
-/* An interrupt is accepted; cycles to what is done first. */
+/* The interrupt is accepted. Returns the cycles to the routine's first action. */
 int port_begin(struct port *p);
 
-/* Do what is next, with the scale's lines as they are; cycles to the next, 0 after reti. */
+/* Do the next action, with the present levels of the scale's lines. Returns the cycles to the one
+ * after it; 0 after reti. */
 int port_go(struct port *p, bool line_a, bool line_b);
 
 #endif

@@ -28,14 +28,14 @@ void pwm_reset(struct pwm *p, const struct pwm_config *c, double filtered, int32
     p->least = p->most = pwm_voltage(p, c);
 }
 
-/* Integral of a straight piece of an exponential from x to y over `time`, of which the asymptote is
- * `end`: Vc = end + (x - end) e^(-t/tau). */
+/* Integral of the output voltage [V clocks] over `time` while Vc goes from x to y by the
+ * exponential Vc = end + (x - end) e^(-t/tau), not limited. */
 static double piece(const struct pwm_config *c, double end, double x, double y, double time)
 {
     return c->gain * ((end - c->offset) * time + c->tau * (x - y));
 }
 
-/* [clocks] until the exponential from x is at `there`, within 0 .. time. */
+/* Time [clocks] until the exponential that starts at x reaches `there`, limited to 0 .. time. */
 static double crossing(double tau, double end, double x, double there, double time)
 {
     const double share = (end - there) / (end - x);
@@ -44,7 +44,7 @@ static double crossing(double tau, double end, double x, double there, double ti
     return el_min(-tau * el_log(share), time);
 }
 
-/* Vc runs towards `end` for `time`; the voltage's integral, cut off at the limit. */
+/* Let Vc run towards `end` for `time`, and add to the integral of the voltage, which is limited. */
 static void charge(struct pwm *p, const struct pwm_config *c, double end, double time)
 {
     const double from = p->filtered;
@@ -60,7 +60,8 @@ static void charge(struct pwm *p, const struct pwm_config *c, double end, double
         p->area += piece(c, end, from, to, time);
         return;
     }
-    /* Rising it is below first, then between, then above; falling the other way round. */
+    /* A rising voltage is below the limits first, then between them, then above; falling
+     * reversed. */
     const double first = to > from ? low : high, last = to > from ? high : low;
     const double enter = crossing(c->tau, end, from, first, time);
     const double leave = el_max(crossing(c->tau, end, from, last, time), enter);

@@ -11,7 +11,7 @@ void sequence_reset(struct sequence *s, bool homed)
                             .state = homed ? SEQUENCE_READY : SEQUENCE_UNHOMED };
 }
 
-/* True in the tick in which the button is pressed. */
+/* Debounce a button; true in the tick in which it is pressed. */
 static bool pressed(struct sequence_button *b, bool pin, int32_t debounce)
 {
     b->ticks = pin == b->down ? 0 : b->ticks + 1;
@@ -46,7 +46,7 @@ static void fail(struct sequence *s, enum sequence_code code)
     trapezoid_freeze(&s->track);
 }
 
-/* The loop closes where the axis stands; TRACK keeps the upper word it had. */
+/* Close the position loop where the axis is; TRACK keeps its word above the counter's 16 bits. */
 static void close_loop(struct sequence *s, const struct sequence_input *in)
 {
     const int64_t counts = trapezoid_counts(&s->track);
@@ -120,8 +120,9 @@ static void press_2(const struct sequence_config *c, struct sequence *s,
     s->state = SEQUENCE_ACCELERATE;
 }
 
-/* wMCounter was cleared since the last tick: wSt was not, so their difference tells by how much.
- * TRACK goes with it, the error stays; a move under way keeps its target. */
+/* The home interrupt has cleared wMCounter since the last tick; wSt was not cleared, so their
+ * difference tells by how much it jumped. TRACK is shifted with it, so that the error stays; a move
+ * under way keeps its target. */
 static void follow_clear(struct sequence *s, const struct sequence_input *in)
 {
     const uint16_t difference = (uint16_t)(in->counter - in->counter_2);
@@ -153,7 +154,7 @@ static void home(const struct sequence_config *c, struct sequence *s,
     }
 }
 
-/* A motion of TRACK that has come to rest. */
+/* TRACK has come to rest: the next state. */
 static void arrive(const struct sequence_config *c, struct sequence *s,
                    const struct sequence_input *in)
 {
@@ -195,7 +196,8 @@ static void move(const struct sequence_config *c, struct sequence *s,
     }
 }
 
-/* No edge although the valve is open: the scale is unplugged, or the axis stands against a stop. */
+/* Whether there has been no edge for scale_ticks although the valve is open: the scale is unplugged
+ * or the axis is against a stop. */
 static bool scale_silent(const struct sequence_config *c, struct sequence *s,
                          const struct sequence_input *in)
 {

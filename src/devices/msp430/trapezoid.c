@@ -51,8 +51,8 @@ static int32_t smaller(int32_t a, int32_t b)
     return a < b ? a : b;
 }
 
-/* Fastest speed from `slow` on with S <= left. From (n - 1) a to n a the slope of S is n: three
- * pieces at most, as the speed sought is within 2a. */
+/* Largest speed from `slow` on with S <= left. From (n - 1) a to n a the slope of S is n; the speed
+ * lies within 2 a, so the loop passes three such intervals at most. */
 static int32_t fit(int32_t slow, int64_t left, int32_t a)
 {
     int64_t best = slow, slack = left - trapezoid_brake(slow, a);
@@ -67,7 +67,7 @@ static int32_t fit(int32_t slow, int64_t left, int32_t a)
     return (int32_t)best;
 }
 
-/* Speed of the next tick, from v, with `left` to go. */
+/* Speed of the next tick, from the speed v, with the distance `left` to the target. */
 static int32_t choose(int32_t v, int64_t left, int32_t limit, int32_t a)
 {
     const int32_t slow = larger(v - a, 0);

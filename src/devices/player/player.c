@@ -16,7 +16,7 @@ int64_t player_phase(const struct player *p, int64_t clock)
     return clock > p->base ? p->phase + p->rate * (clock - p->base) : p->phase;
 }
 
-/* First clock at which the phase has come so far; the rate is not 0. */
+/* First clock at which the period's phase is at least `phase`; the rate is not 0. */
 static int64_t clock_of(const struct player *p, int64_t phase)
 {
     return p->base + (phase - p->phase + p->rate - 1) / p->rate;
@@ -152,8 +152,8 @@ void player_whole(struct player *p)
     p->whole = true;
 }
 
-/* Directions of the frame that begins; returns the clocks that it waits for them. Behind its first
- * tick a frame needs at least a clock a tick. */
+/* Set the directions of the frame that begins. Returns the dead clocks that it needs before it,
+ * from the clock of its first pulse at the full rate, the earliest possible. */
 static int64_t turn(struct player *p)
 {
     int64_t dead = 0;
@@ -221,7 +221,7 @@ void player_clear(struct player *p)
         }
     }
     for (int i = 0; i < FRAME_AXES; i++) {
-        if (p->turned[i] > p->clock) { /* a change of direction that has not come */
+        if (p->turned[i] > p->clock) { /* take back a change of direction that has not come */
             p->turned[i] = p->clock;
             p->backward[i] = !p->backward[i];
         }
@@ -243,7 +243,7 @@ bool player_power(struct player *p, const struct player_config *config)
     return true;
 }
 
-/* Clock of the period's end; INT64_MAX: it stands. */
+/* Clock of the period's end; INT64_MAX if no period is in progress or the rate is 0. */
 static int64_t boundary(const struct player *p)
 {
     return p->begun && p->rate > 0 ? clock_of(p, player_period_phase(p)) : INT64_MAX;

@@ -1,4 +1,4 @@
-/* The rate of a player: its bounds, its ramps, its target. */
+/* The rate of a player: bounds of its slope, ramps between 0 and 1, its target. */
 #include "player.h"
 
 #include <math.h>
@@ -9,8 +9,9 @@
 
 static const double CLOCK = 1e-9 * PLAYER_CLOCK_NS; /* [s] */
 
-/* Largest speeds of what is in the FIFO: in a frame of c pulses, which are rounded, an axis goes
- * no faster than (c + 1) / T and what its acceleration adds within the frame. */
+/* Largest speed of each axis in the frames of the FIFO. In a frame of c pulses, a rounded number,
+ * an axis is no faster than (c + 1) / T plus what its acceleration adds within the frame's time
+ * T. */
 static void look_ahead(struct player *p)
 {
     const double period = p->job.period * CLOCK;
@@ -40,7 +41,7 @@ static void begin_ramp(struct player *p)
     look_ahead(p);
     rate_ramp_make(&p->ramp, &p->bounds, from, to);
     if (!p->whole && rate_ramp_way(&p->ramp) > p->fifo.stock * p->job.period * CLOCK) {
-        for (int i = 0; i < FRAME_AXES; i++) { /* it goes beyond what is in stock */
+        for (int i = 0; i < FRAME_AXES; i++) { /* the ramp goes on beyond the frames in stock */
             if (p->bounds.speed[i] > 0.0 && p->job.speed[i] > 0.0) {
                 p->bounds.speed[i] = p->job.speed[i];
             }

@@ -1,4 +1,4 @@
-/* What a player shows at a clock. */
+/* Outputs of a player at a clock: counts, lines, next pulse, speed. */
 #include "player.h"
 
 #include <stdlib.h>

@@ -35,15 +35,15 @@ double rate_ramp_bend_most(const struct rate_bounds *b, double rate)
     return most;
 }
 
-/* Largest change of r'^2 over the piece behind node k, whose nodes have their rates. */
+/* Largest change of r'^2 between the nodes k and k + 1, whose rates are known. */
 static double change(const struct rate_ramp *r, const struct rate_bounds *b, int k)
 {
     return 2.0 * rate_ramp_bend_most(b, el_max(r->rate[k], r->rate[k + 1]))
            * fabs(r->rate[k + 1] - r->rate[k]);
 }
 
-/* Times and signs of the slopes, from the sizes of the slopes. On a piece r'^2 is linear in r, so
- * its mean slope is that of its ends. */
+/* Set the nodes' times and the slopes' signs from the sizes of the slopes. Between two nodes r'^2
+ * is linear in r, so the mean slope is the mean of the two. */
 static void run_through(struct rate_ramp *r)
 {
     const double sign = r->rate[r->pieces] < r->rate[0] ? -1.0 : 1.0;
@@ -66,12 +66,12 @@ void rate_ramp_make(struct rate_ramp *r, const struct rate_bounds *b, double fro
     memset(r, 0, sizeof *r);
     r->rate[0] = from;
     if (from == to || isinf(rate_ramp_slope_most(b, 1.0))) {
-        r->rate[0] = to; /* nothing moves: at once */
+        r->rate[0] = to; /* no axis limits the rate: it changes at once */
         return;
     }
     r->pieces = N;
     for (int k = 0; k <= N; k++) {
-        const double x = (double)k / N; /* short pieces at both ends, where most changes */
+        const double x = (double)k / N; /* finer at both ends, where r' changes most */
         r->rate[k] = k < N ? from + (to - from) * x * x * (3.0 - 2.0 * x) : to;
     }
     square[0] = 0.0;
@@ -90,7 +90,7 @@ void rate_ramp_make(struct rate_ramp *r, const struct rate_bounds *b, double fro
     run_through(r);
 }
 
-/* Node at or before a time. */
+/* Index of the latest node at or before a time [s]. */
 static int node(const struct rate_ramp *r, double time)
 {
     int k = 0;
@@ -153,7 +153,7 @@ double rate_ramp_way(const struct rate_ramp *r)
 {
     double way = 0.0;
 
-    for (int k = 0; k < r->pieces; k++) { /* of a parabola: Simpson's rule is exact */
+    for (int k = 0; k < r->pieces; k++) { /* Simpson's rule, exact for a parabola */
         double slope;
         const double t = r->time[k + 1] - r->time[k],
                      middle = rate_ramp_at(r, r->time[k] + 0.5 * t, &slope);

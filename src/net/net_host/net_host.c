@@ -79,7 +79,7 @@ bool net_host_accepts(const struct net_host *h)
     return !h->refused;
 }
 
-/* Commands that a card without its numbers will never answer. */
+/* Mark the commands as lost that a card after a power loss will never answer. */
 static void forget(struct net_host *h)
 {
     for (int i = 0; i < NET_HOST_ORDERS; i++) {
@@ -108,7 +108,8 @@ static bool greeted(struct net_host *h)
     return true;
 }
 
-/* Commands on their way go out again, with their numbers. */
+/* The card has proved that it has the key: the link is up. Commands without a result are sent
+ * again, with their numbers. */
 static bool proved(struct net_host *h, int64_t now)
 {
     const struct net_welcome welcome = { .interval = h->config.interval };
@@ -148,7 +149,7 @@ static bool greet(struct net_host *h, int64_t now)
     return h->phase == NET_HOST_CHALLENGED && type == NET_AUTH && proved(h, now);
 }
 
-/* The card has taken all up to this sequence: what is no longer on its way. */
+/* The card has taken all frames up to this sequence: their JOB_DATA are no longer on their way. */
 static void land(struct net_host *h, uint32_t sequence)
 {
     int32_t gone = 0;
@@ -175,8 +176,8 @@ static void acknowledged(struct net_host *h)
     h->upload = NET_HOST_SENDING;
 }
 
-/* A card that is busy is asked again later, and one that refuses a page once those behind it have
- * landed too. */
+/* NAK: a busy card is asked again later; one that refuses a page is asked which one it misses after
+ * the pages behind it have been answered, too. */
 static void not_taken(struct net_host *h, int64_t now)
 {
     struct net_nak nak;

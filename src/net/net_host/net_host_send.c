@@ -1,4 +1,4 @@
-/* What the server's end sends by itself: commands, pages, PING. */
+/* Messages that the server's end sends by itself: commands, pages, PING. */
 #include "net_host.h"
 
 static size_t order_bytes(const struct net_host_order *o, uint8_t payload[NET_BYTES_output])
@@ -33,7 +33,8 @@ static bool send_order(struct net_host *h, struct net_host_order *o, int64_t now
     return net_channel_put(&h->channel, o->type, payload, order_bytes(o, payload));
 }
 
-/* Those under way first, by number; then the earliest that is due, eight at most without result. */
+/* The command to be sent next: first those to be sent again, by number; then the earliest that is
+ * due, with NET_HOST_OPEN without a result at most. NULL if there is none. */
 static struct net_host_order *next_order(struct net_host *h, int64_t now)
 {
     struct net_host_order *again = NULL, *due = NULL;
@@ -74,7 +75,8 @@ static void send_end(struct net_host *h)
     }
 }
 
-/* Up to four pages, as many as the card can take behind those on their way; false if none. */
+/* Send up to four pages, as many as the card's credit allows behind those on their way. False if it
+ * sends none. */
 static bool send_pages(struct net_host *h, const uint8_t *job)
 {
     const uint32_t left = h->job.bytes / NET_PAGE_BYTES - h->page;

@@ -1,4 +1,5 @@
-/* job_bytes - little-endian numbers in bytes. */
+/* job_bytes - reading and writing little-endian integers of 1 to 8 bytes, as they are in the pages
+ * of a job file. */
 #ifndef JOB_BYTES_H
 #define JOB_BYTES_H
 

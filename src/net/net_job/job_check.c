@@ -19,7 +19,7 @@ enum job_fault job_check_start(struct job_check *c, const uint8_t header[JOB_PAG
     return set(c, fault);
 }
 
-/* May an axis step to and from rest with this command? */
+/* Whether all axes may start from rest, or stop, with the commands of this frame. */
 static bool slow(const struct job_check *c, const struct job_frame *f)
 {
     for (int i = 0; i < JOB_AXES; i++) {

@@ -1,5 +1,6 @@
-/* job_check - is a job whole? Page by page, or all at once: each page by itself, frame numbers and
- * positions in a row, the counts and the end of the header, rest at both ends. */
+/* job_check - checks a whole job file, page by page or all at once: each page by itself, frame
+ * numbers and positions from page to page, counts and end position of the header, and that it
+ * begins and ends at rest. */
 #ifndef JOB_CHECK_H
 #define JOB_CHECK_H
 
@@ -8,27 +9,28 @@
 
 struct job_check {
     struct job_header header;
-    uint32_t start_speed[JOB_AXES];        /* [pulses/s] */
-    enum job_fault fault;                  /* the first */
-    uint32_t page;                         /* of the file, the next; of a fault, where it is */
-    uint32_t frame;                        /* the next; of a fault, that or the first of its page */
-    int32_t position[JOB_AXES];            /* [pulses] there */
-    int32_t low[JOB_AXES], high[JOB_AXES]; /* [pulses] of all positions so far */
-    struct job_frame last;
+    uint32_t start_speed[JOB_AXES];        /* [pulses/s] speed that an axis reaches at once */
+    enum job_fault fault;                  /* the first fault found */
+    uint32_t page;                         /* next page of the file; that of the fault */
+    uint32_t frame;                        /* next frame; the first of the page of the fault */
+    int32_t position[JOB_AXES];            /* [pulses] at the begin of that frame */
+    int32_t low[JOB_AXES], high[JOB_AXES]; /* [pulses] extremes of the positions so far */
+    struct job_frame last;                 /* the latest frame */
 };
 
-/* Begin with the header. start_speed: an axis at rest may begin and end a job with it; a command
- * of whole pulses may be one more than it gives in a period. */
+/* Begin with the header page. At start_speed [pulses/s] an axis may start from rest and stop, so
+ * the first and the last command of a job may be its pulses in a period, rounded down, and one
+ * more. */
 enum job_fault job_check_start(struct job_check *c, const uint8_t header[JOB_PAGE_BYTES],
                                const uint32_t start_speed[JOB_AXES]);
 
-/* The next data page. A fault stays. */
+/* Check the next data page. Returns the first fault so far. */
 enum job_fault job_check_page(struct job_check *c, const uint8_t bytes[JOB_PAGE_BYTES]);
 
-/* Behind the last. */
+/* Check the end, after the last page. */
 enum job_fault job_check_end(struct job_check *c);
 
-/* All at once; c->page and c->frame tell where a fault is. */
+/* Check a whole file; c->page and c->frame tell where a fault is. */
 enum job_fault job_check(struct job_check *c, const uint8_t *job, size_t bytes,
                          const uint32_t start_speed[JOB_AXES]);
 

@@ -139,7 +139,7 @@ void job_header_write(const struct job_header *h, uint8_t page[JOB_PAGE_BYTES])
     job_page_seal(page);
 }
 
-/* The texts themselves, not pointers to them, which would not be constant in a shared library. */
+/* A table of the texts themselves; pointers to them would need relocation in a shared library. */
 #define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[JOB_FAULTS][50] = { JOB_FAULT_TEXTS(ROW) };

@@ -1,4 +1,5 @@
-/* job_header - first page of a job file: what the job is, with its table of output events.
+/* job_header - first page of a job file (.mcj): period, axes, counts, limits and end position of
+ * the job, with its table of output events; and the faults that a job file can have.
  *
  *     0 "MCJ1"   4 u16 version   6 u16 page bytes   8 u32 id   12 u32 period_ns   16 u8 axes
  *     17 u8 rest   20 u32 pages   24 u32 frames   28 u32 events   32 u32[4] pulses_per_m
@@ -17,18 +18,18 @@
 enum {
     JOB_AXES = 4,
     JOB_PAGE_BYTES = 256,
-    JOB_CRC_AT = 252, /* of each page, the CRC of the bytes before */
-    JOB_EVENTS = 11,
+    JOB_CRC_AT = 252, /* place in each page of the CRC of the bytes before */
+    JOB_EVENTS = 11,  /* size of the table of events */
     JOB_ORIGIN_BYTES = 32,
     JOB_VERSION = 1,
-    JOB_CLOCK_NS = 20, /* a period is a whole number of these */
+    JOB_CLOCK_NS = 20, /* clock of the card; a period is a whole number of clocks */
     JOB_PERIOD_MIN_NS = 250000,
     JOB_PERIOD_MAX_NS = 10000000,
-    JOB_WIDTH_MAX_US = 1000000, /* of the pulse of an event */
-    JOB_COMMAND_MAX = 32767,    /* a frame holds 16 bits an axis */
+    JOB_WIDTH_MAX_US = 1000000, /* longest pulse of an event */
+    JOB_COMMAND_MAX = 32767,    /* [pulses] a frame has 16 bits per axis */
 };
 
-/* What is wrong with a job, each fault with its text. */
+/* Faults of a job file, each with its text. */
 #define JOB_FAULT_TEXTS(X) \
     X(JOB_GOOD, "whole") \
     /* no whole number of pages, or not as many as the header says */ \
@@ -71,34 +72,36 @@ struct job_event {
 struct job_header {
     uint32_t id;        /* first four bytes of origin */
     uint32_t period_ns; /* [ns] of a frame */
-    uint32_t axes;      /* bit mask of those the frames hold */
-    uint32_t rest;      /* event when the job is given up; 0 none */
-    uint32_t pages;     /* data pages */
-    uint32_t frames;
-    uint32_t events;                  /* in use, numbers 1 .. events */
-    uint32_t pulses_per_m[JOB_AXES];  /* [pulses/m] */
-    uint32_t speed_max[JOB_AXES];     /* [pulses/s] planned */
-    uint32_t acc_max[JOB_AXES];       /* [pulses/s^2] for the card's own ramps */
-    uint64_t jerk_max[JOB_AXES];      /* [pulses/s^3] */
-    int32_t end[JOB_AXES];            /* [pulses] behind the last frame; the begin is 0 */
+    uint32_t axes;      /* bit mask of the axes that the frames contain */
+    uint32_t rest;      /* event to be done when the job is aborted; 0 none */
+    uint32_t pages;     /* number of data pages */
+    uint32_t frames;    /* number of frames */
+    uint32_t events;    /* number of events in the table, which are numbered 1 .. events */
+    uint32_t pulses_per_m[JOB_AXES];  /* [pulses/m] scale */
+    uint32_t speed_max[JOB_AXES];     /* [pulses/s] largest planned speed */
+    uint32_t acc_max[JOB_AXES];       /* [pulses/s^2] limit for the card's own ramps */
+    uint64_t jerk_max[JOB_AXES];      /* [pulses/s^3] limit for the card's own ramps */
+    int32_t end[JOB_AXES];            /* [pulses] position after the last frame; it begins at 0 */
     uint8_t origin[JOB_ORIGIN_BYTES]; /* SHA-256 of the drawing and the settings */
     struct job_event event[JOB_EVENTS];
 };
 
-/* Read a page. Not good: *h is all 0. */
+/* Read the header page. On a fault *h is all 0. */
 enum job_fault job_header_read(struct job_header *h, const uint8_t page[JOB_PAGE_BYTES]);
 
-/* Write the page, with its id; the other members as they are. */
+/* Write the header page. The id is taken from the origin; the other members are written as they
+ * are. */
 void job_header_write(const struct job_header *h, uint8_t page[JOB_PAGE_BYTES]);
 
-/* Largest command of an axis [pulses a frame]: half the clocks of a period, 32767 at most. */
+/* Largest command of an axis [pulses] in a frame: half the clocks of a period, at most
+ * JOB_COMMAND_MAX. */
 int32_t job_command_max(uint32_t period_ns);
 
-/* Has a page, of any kind, its CRC? Write it. */
+/* Whether a page, of either kind, has the right CRC; write its CRC. */
 bool job_page_whole(const uint8_t page[JOB_PAGE_BYTES]);
 void job_page_seal(uint8_t page[JOB_PAGE_BYTES]);
 
-/* In a few words. */
+/* Text for a fault, for messages. */
 const char *job_fault_text(enum job_fault fault);
 
 #endif

@@ -6,7 +6,7 @@
 
 enum { VARINT_BYTES = 3 }; /* 4 * 32767 zigzagged twice over: below 2^21 */
 
-/* What is left of a payload. */
+/* The part of a payload that has not been read yet. */
 struct stream {
     const uint8_t *at;
     int32_t left;
@@ -21,7 +21,7 @@ static bool read_varint(struct stream *s, uint32_t *value)
         if (byte < 0x80) {
             s->at += k + 1;
             s->left -= k + 1;
-            return byte || k == 0; /* else a shorter one would do */
+            return byte || k == 0; /* a last byte of 0 is not the shortest encoding */
         }
     }
     return false;
@@ -36,7 +36,7 @@ static int32_t write_varint(uint8_t *at, uint32_t value)
     return n;
 }
 
-/* 0, -1, 1, -2 ... are 0, 1, 2, 3 ... */
+/* Zigzag code: 0, -1, 1, -2 ... become 0, 1, 2, 3 ... */
 static uint32_t zigzag(int32_t difference)
 {
     return difference < 0 ? 2 * (uint32_t)-difference - 1 : 2 * (uint32_t)difference;

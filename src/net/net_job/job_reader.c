@@ -22,7 +22,7 @@ uint32_t job_reader_wants(const struct job_reader *r)
     return r->low + (r->high - r->low) / 2;
 }
 
-/* The page has the frame: it and those behind it are the next. */
+/* The page contains the next frame: read from there on. */
 static enum job_fault take(struct job_reader *r, const struct job_page *page, uint32_t number)
 {
     int32_t begin[JOB_AXES];
@@ -43,7 +43,7 @@ static enum job_fault take(struct job_reader *r, const struct job_page *page, ui
 enum job_fault job_reader_page(struct job_reader *r, const uint8_t bytes[JOB_PAGE_BYTES])
 {
     const uint32_t number = job_reader_wants(r);
-    struct job_page page = { 0 }; /* what has no frame is the same in every copy of a state */
+    struct job_page page = { 0 }; /* unused frames are 0, so that equal states have equal bytes */
     const enum job_fault fault = number ? job_page_read(&page, &r->header, bytes) : JOB_SIZE;
     if (fault)
         return fault;
@@ -55,7 +55,7 @@ enum job_fault job_reader_page(struct job_reader *r, const uint8_t bytes[JOB_PAG
     if (!before && !behind)
         return take(r, &page, number);
     if (before ? number == r->low : number == r->high)
-        return JOB_FRAMES; /* none of the pages has it */
+        return JOB_FRAMES; /* no page contains it */
     if (before)
         r->high = number - 1;
     else

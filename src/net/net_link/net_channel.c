@@ -27,7 +27,7 @@ static size_t check_bytes(const struct net_channel *c)
     return c->keyed ? NET_MAC : NET_CRC;
 }
 
-/* The check of n bytes that go in this direction. */
+/* CRC or MAC of the n bytes of a frame in this direction. */
 static void check_of(const struct net_channel *c, enum direction way, const uint8_t *bytes,
                      size_t n, uint8_t check[NET_MAC])
 {
@@ -169,7 +169,7 @@ size_t net_channel_out(struct net_channel *c, uint8_t *bytes, size_t most)
     return n;
 }
 
-/* The texts themselves, not pointers to them, which would not be constant in a shared library. */
+/* A table of the texts themselves; pointers to them would need relocation in a shared library. */
 #define ROW(name, text)  [name] = text,
 #define FITS(name, text) _Static_assert(sizeof text <= sizeof TEXT[0], #name " is too long");
 static const char TEXT[NET_FAULTS][35] = { NET_FAULT_TEXTS(ROW) };

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* CRC of what came before, 0 if nothing did, and n bytes behind it. */
+/* CRC of n bytes that follow others whose CRC is `before` (0 if there are none). */
 uint32_t net_crc(uint32_t before, const uint8_t *bytes, size_t n);
 
 #endif

@@ -1,6 +1,6 @@
 #include "net_message.h"
 
-/* n numbers of `size` bytes in the machine's order, as bytes from the low end. */
+/* Write n integers of `size` bytes each, low byte first, whatever the machine's byte order. */
 static uint8_t *put(uint8_t *to, const void *from, size_t size, size_t n)
 {
     for (size_t i = 0; i < n; i++) {

@@ -1,6 +1,7 @@
-/* net_message - the messages of the link, declared once: a list of type, name and elements for
- * each, from which come its struct, its bytes and its length. Bytes are little-endian, members
- * follow each other without gaps. Spare bytes are written 0 and not read.
+/* net_message - the messages between a network card and its server. Each is declared once, as a
+ * list of type, name and elements of its members, which makes its struct, its bytes and its length.
+ * Bytes are little-endian, members follow each other without gaps. Spare bytes are written 0 and
+ * not read.
  *
  *     card -> server   HELLO            AUTH            ACK NAK RESULT CONFIG STATUS   PING PONG
  *     server -> card         CHALLENGE       WELCOME    JOB_* commands CONFIG_GET/SET  PING PONG
@@ -16,13 +17,13 @@
 #include "net_sha.h"
 
 enum {
-    NET_PROTOCOL = 1, /* the only one there is */
-    NET_PAGE_BYTES = 256,
-    NET_PAGES = 4, /* most pages of a JOB_DATA */
-    NET_NONCE = 16,
+    NET_PROTOCOL = 1,     /* the only version of the protocol so far */
+    NET_PAGE_BYTES = 256, /* page of a job file */
+    NET_PAGES = 4,        /* most pages in a JOB_DATA */
+    NET_NONCE = 16,       /* [byte] */
     NET_AXES = 4,
-    NET_NO_PAGE = 0xFFFF,
-    NET_PAYLOAD = 4 + NET_PAGES * NET_PAGE_BYTES, /* longest payload */
+    NET_NO_PAGE = 0xFFFF,                         /* in ACK: no page is missing */
+    NET_PAYLOAD = 4 + NET_PAGES * NET_PAGE_BYTES, /* longest payload [byte] */
 };
 
 enum net_type {
@@ -51,19 +52,19 @@ enum net_type {
 };
 
 #define NET_HELLO_LIST(X) \
-    X(uint32_t, card, ) \
-    X(uint16_t, oldest, ) /* protocol */ \
+    X(uint32_t, card, )   /* number of the card */ \
+    X(uint16_t, oldest, ) /* oldest and newest protocol that it knows */ \
     X(uint16_t, newest, ) \
     X(uint8_t, nonce, [NET_NONCE]) \
     X(uint32_t, firmware, ) \
-    X(uint8_t, slots, ) \
-    X(uint8_t, axes, ) \
-    X(uint16_t, credit, )            /* [pages] */ \
-    X(uint32_t, last_command, )      /* highest number taken since power-up */ \
+    X(uint8_t, slots, )              /* slots for jobs in the flash */ \
+    X(uint8_t, axes, )               /* number of axes */ \
+    X(uint16_t, credit, )            /* [pages] that it can take */ \
+    X(uint32_t, last_command, )      /* highest command number taken since power-up */ \
     X(uint8_t, job, [NET_SHA_BYTES]) /* hash of the job in flash; 0 none */ \
     X(uint8_t, state, )              /* enum net_state */ \
     X(uint8_t, spare, ) \
-    X(uint16_t, life, ) /* drawn at power-up: another one, results are lost */
+    X(uint16_t, life, ) /* random number of this power-up; a new one: results are lost */
 #define NET_CHALLENGE_LIST(X) \
     X(uint16_t, protocol, ) \
     X(uint16_t, spare, ) \
@@ -71,37 +72,37 @@ enum net_type {
     X(uint8_t, proof, [NET_SHA_BYTES])
 #define NET_AUTH_LIST(X) X(uint8_t, proof, [NET_SHA_BYTES])
 #define NET_WELCOME_LIST(X) \
-    X(uint16_t, interval, ) /* [ms] of STATUS; 0 none */ \
+    X(uint16_t, interval, ) /* [ms] between two STATUS; 0 none */ \
     X(uint16_t, spare, )
 #define NET_JOB_BEGIN_LIST(X) \
     X(uint32_t, bytes, ) /* a multiple of 256 */ \
     X(uint8_t, hash, [NET_SHA_BYTES]) \
     X(uint32_t, crc, )
-/* JOB_DATA is page, count and count pages. */
+/* JOB_DATA: the number of the first page, the number of pages, and these pages. */
 #define NET_JOB_PAGES_LIST(X) \
     X(uint16_t, page, ) \
     X(uint16_t, count, )
 #define NET_JOB_END_LIST(X) X(uint32_t, crc, )
 #define NET_ACK_LIST(X) \
-    X(uint32_t, sequence, ) /* all up to it are taken */ \
-    X(uint16_t, credit, )   /* [pages] of frames behind it */ \
-    X(uint16_t, missing, )  /* first missing page, NET_NO_PAGE */
+    X(uint32_t, sequence, ) /* all frames up to it are taken */ \
+    X(uint16_t, credit, )   /* [pages] that may come in frames behind it */ \
+    X(uint16_t, missing, )  /* first missing page of the job, or NET_NO_PAGE */
 #define NET_NAK_LIST(X) \
     X(uint32_t, sequence, ) \
     X(uint16_t, code, ) /* enum net_code */ \
     X(uint16_t, detail, )
-/* START, PAUSE, STOP, RESET. */
+/* START, PAUSE, STOP and RESET have only the command's number. */
 #define NET_COMMAND_LIST(X) X(uint32_t, number, )
 #define NET_HOME_LIST(X) \
     X(uint32_t, number, ) \
-    X(uint8_t, axes, ) /* bits */ \
+    X(uint8_t, axes, ) /* axes to be homed, a bit each */ \
     X(uint8_t, spare, [3])
 #define NET_OUTPUT_LIST(X) \
     X(uint32_t, number, ) \
-    X(uint16_t, pins, )  /* bits */ \
+    X(uint16_t, pins, )  /* outputs, a bit each */ \
     X(uint8_t, mode, )   /* 0 level, 1 pulse */ \
-    X(uint8_t, level, )  /* 1 high active */ \
-    X(uint32_t, width, ) /* [us] */
+    X(uint8_t, level, )  /* 1 active high */ \
+    X(uint32_t, width, ) /* [us] of a pulse */
 #define NET_RESULT_LIST(X) \
     X(uint32_t, number, ) \
     X(uint16_t, code, ) \
@@ -123,18 +124,18 @@ enum net_type {
     X(uint8_t, error, ) \
     X(uint16_t, inputs, ) \
     X(uint16_t, outputs, ) \
-    X(uint16_t, stock, ) /* [frames] */ \
-    X(uint32_t, job, ) \
-    X(uint32_t, frame, ) \
+    X(uint16_t, stock, )             /* [frames] in the FIFO */ \
+    X(uint32_t, job, )               /* id of the job */ \
+    X(uint32_t, frame, )             /* number of the frame that plays */ \
     X(int32_t, position, [NET_AXES]) /* [pulses] */ \
     X(uint32_t, underflows, ) \
-    X(uint32_t, switches, ) /* limits, home, alarm */ \
-    X(uint16_t, load, [7])  /* [1/1000] six tasks, interrupts */ \
-    X(uint16_t, rate, )     /* [1/1000] */ \
-    X(uint32_t, wear, )     /* most erases of a sector */
+    X(uint32_t, switches, ) /* bits of limit switches, home switches, alarms */ \
+    X(uint16_t, load, [7])  /* [1/1000] processor load of six tasks and of interrupts */ \
+    X(uint16_t, rate, )     /* [1/1000] rate at which the job is played */ \
+    X(uint32_t, wear, )     /* most erases of a flash sector */
 #define NET_TOKEN_LIST(X) X(uint32_t, token, )
 
-/* struct, list: of each there are net_put_<struct> and net_get_<struct>. */
+/* X(struct, list of its members): each has the functions net_put_<struct> and net_get_<struct>. */
 #define NET_STRUCTS(X) \
     X(hello, NET_HELLO_LIST) \
     X(challenge, NET_CHALLENGE_LIST) \
@@ -167,14 +168,14 @@ enum net_type {
 /* net_put_x writes and net_get_x reads NET_BYTES_x bytes. */
 NET_STRUCTS(NET_DECLARE)
 
-/* May a message of the type have this payload? Types that are not known may have any. A JOB_DATA
- * must have as many pages as it says. */
+/* Whether the payload has the length of its type; unknown types may have any. A JOB_DATA must have
+ * as many pages as it says. */
 bool net_payload_fits(uint8_t type, const uint8_t *payload, size_t n);
 
-/* Is it a type that this end sends? */
+/* Whether a message of this type is sent by that end. */
 bool net_is_known(uint8_t type, bool from_card);
 
-/* Does it carry a command number, in its first four bytes? Its result is RESULT. */
+/* Whether the type is a command: its first four bytes are its number, its answer is RESULT. */
 bool net_is_command(uint8_t type);
 
 #endif

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* The first 32 bits behind the point of the cube roots of the first 64 primes. */
+/* The first 32 fractional bits of the cube roots of the first 64 primes. */
 static const uint32_t round_constant[64] = {
     0x428A2F98, 0x71374491, 0xB5C0FBCF, 0xE9B5DBA5, 0x3956C25B, 0x59F111F1, 0x923F82A4, 0xAB1C5ED5,
     0xD807AA98, 0x12835B01, 0x243185BE, 0x550C7DC3, 0x72BE5D74, 0x80DEB1FE, 0x9BDC06A7, 0xC19BF174,
@@ -13,7 +13,7 @@ static const uint32_t round_constant[64] = {
     0x19A4C116, 0x1E376C08, 0x2748774C, 0x34B0BCB5, 0x391C0CB3, 0x4ED8AA4A, 0x5B9CCA4F, 0x682E6FF3,
     0x748F82EE, 0x78A5636F, 0x84C87814, 0x8CC70208, 0x90BEFFFA, 0xA4506CEB, 0xBEF9A3F7, 0xC67178F2,
 };
-/* The same of the square roots of the first eight. */
+/* The first 32 fractional bits of the square roots of the first eight primes. */
 static const uint32_t first_hash[8] = {
     0x6A09E667, 0xBB67AE85, 0x3C6EF372, 0xA54FF53A, 0x510E527F, 0x9B05688C, 0x1F83D9AB, 0x5BE0CD19,
 };
@@ -41,7 +41,8 @@ static void compress(uint32_t hash[8], const uint8_t block[NET_SHA_BLOCK])
     }
     memcpy(v, hash, sizeof v);
     for (unsigned t = 0; t < 64; t++) {
-        /* The eight move up by one each round: the standard's a is where h was before. */
+        /* Instead of moving the eight variables each round, their indices turn: a is where h
+         * was. */
         uint32_t *h = &v[(7 - t) % 8];
         const uint32_t a = v[-t % 8], b = v[(1 - t) % 8], c = v[(2 - t) % 8], e = v[(4 - t) % 8];
         const uint32_t s1 = turn(e, 6) ^ turn(e, 11) ^ turn(e, 25);
@@ -78,7 +79,7 @@ void net_sha_add(struct net_sha *s, const uint8_t *bytes, size_t n)
 
 void net_sha_end(struct net_sha *s, uint8_t hash[NET_SHA_BYTES])
 {
-    enum { LENGTH_AT = NET_SHA_BLOCK - 8 }; /* of a block: the number of bits */
+    enum { LENGTH_AT = NET_SHA_BLOCK - 8 }; /* place of the number of bits in the last block */
     const uint64_t bits = s->bytes * 8;
     const uint8_t one = 0x80, zero = 0;
     uint8_t length[8];

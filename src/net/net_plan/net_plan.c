@@ -7,18 +7,18 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-/* Shorter ways are none. [mm] */
+/* A shorter distance [mm] counts as none. */
 static const double NONE = 1e-9;
 
 void net_plan_start(struct net_plan *p, const struct net_plan_config *config)
 {
     memset(p, 0, offsetof(struct net_plan, chain));
     p->config = *config;
-    p->lowered = true; /* not known: it is raised first */
+    p->lowered = true; /* the pen's state is not known, so it is raised first */
     p->chain.open = false;
 }
 
-/* What the reserve leaves of a limit. */
+/* The part of a limit that the plan may use, without the reserve. */
 static double planned(const struct net_plan *p, double limit)
 {
     return limit * (1.0 - p->config.reserve);
@@ -29,7 +29,7 @@ static double period(const struct net_plan *p)
     return 1e-9 * p->config.period_ns;
 }
 
-/* A line begins where all before it ends. */
+/* Begin a line at the latest vertex. */
 static void begin_line(struct net_plan *p)
 {
     struct pace_limits l;
@@ -88,7 +88,7 @@ void net_plan_end(struct net_plan *p)
     }
 }
 
-/* Straight to a place from rest to rest, each axis within its limits. */
+/* Begin a straight move from rest to rest, each axis within its limits. */
 static void slide(struct net_plan *p, const double to[JOB_AXES])
 {
     struct scurve_limits l = { p->config.rapid, INFINITY, INFINITY, INFINITY };
@@ -132,7 +132,7 @@ static void move_pen(struct net_plan *p, bool down, int32_t *event)
     }
 }
 
-/* From rest: begins what comes next, which may be nothing. False: there is nothing now. */
+/* At rest: begin the next motion, which may have no length. False if there is nothing to do now. */
 static bool choose(struct net_plan *p, int32_t *event)
 {
     if (p->lowered && (!p->told || p->moving || (p->over && !p->drawing))) {
@@ -155,7 +155,7 @@ static bool choose(struct net_plan *p, int32_t *event)
     return p->step != NET_PLAN_NOTHING;
 }
 
-/* A period of what is under way. */
+/* Plan one period of the motion under way. */
 static void advance(struct net_plan *p)
 {
     double s, v, a, j;

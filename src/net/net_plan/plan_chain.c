@@ -5,7 +5,8 @@
 
 #include "el_extremes.h"
 
-/* Ramps by which pieces would be driven if axes had no limits; they have. [mm/s^2] */
+/* Acceleration [mm/s^2] of a command without limits of its axes. It has no effect: all axes have
+ * limits. */
 static const double ANY = 1.0;
 
 void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
@@ -55,7 +56,7 @@ bool plan_chain_ready(const struct plan_chain *c)
     return c->full || !c->open;
 }
 
-/* Finished pieces to the pace, up to one with a rest at its end. */
+/* Give finished pieces of the shape to the pace, up to one with a rest at its end. */
 static void join(struct plan_chain *c)
 {
     while (!c->pace.closed && c->joined < shape_count(&c->shape)) {
@@ -68,7 +69,7 @@ static void join(struct plan_chain *c)
     }
 }
 
-/* The place of the motion; what it has passed is forgotten. */
+/* Compute the position of the motion and drop the pieces that it has passed. */
 static void look(struct plan_chain *c)
 {
     const double way = c->pace.at.way;
@@ -90,7 +91,7 @@ static void look(struct plan_chain *c)
     shape_drop_marks(&c->shape, shape_marks(&c->shape));
 }
 
-/* It rests where a piece says so, or at the end. */
+/* Whether the motion rests at the end of a piece with a rest, or at the end of the chain. */
 static bool rests(const struct plan_chain *c)
 {
     return c->pace.closed && pace_at_end(&c->pace);
@@ -101,7 +102,7 @@ double plan_chain_advance(struct plan_chain *c, double dt)
     join(c);
     dt = pace_advance(&c->pace, 1.0, dt);
     look(c);
-    while (rests(c)) { /* the next stretch begins at rest */
+    while (rests(c)) { /* the next piece begins at rest */
         shape_drop(&c->shape, c->joined);
         c->joined = 0;
         c->base = 0.0;

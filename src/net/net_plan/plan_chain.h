@@ -1,9 +1,10 @@
-/* plan_chain - a line of vertices as one smooth curve, driven as fast as the axes allow.
+/* plan_chain - a polyline as one smooth curve within a tolerance, driven as fast as the axes allow.
  *
  *     vertices ──> shape ──pieces──> pace ──way──> place
  *
- * The curve keeps within a tolerance of the line, both ways. Vertices come as there is room; what
- * is behind the tool is forgotten, so the size does not depend on how many there are.
+ * The curve stays within the tolerance of the polyline, and the polyline of the curve. Vertices are
+ * taken as there is room; those behind the tool are dropped, so the size does not depend on their
+ * number.
  */
 #ifndef PLAN_CHAIN_H
 #define PLAN_CHAIN_H
@@ -12,36 +13,37 @@
 #include "shape.h"
 
 struct plan_chain {
-    bool open;          /* vertices may come */
-    bool full;          /* none has room before the motion goes on */
-    int32_t stops;      /* rests before its end so far */
+    bool open;          /* more vertices may come */
+    bool full;          /* the latest vertex had no room; the motion must go on first */
+    int32_t stops;      /* number of rests before its end so far */
     double tolerance;   /* [mm] */
     double end[AXES];   /* [mm] the latest vertex */
-    int32_t joined;     /* pieces that the pace has, from the first that the shape keeps */
-    double base;        /* [mm] of the pace: start of the first piece that the shape keeps */
-    double place[AXES]; /* [mm] where the motion is */
+    int32_t joined;     /* number of pieces that the pace has, of those that the shape keeps */
+    double base;        /* [mm] path parameter at the start of the first piece kept */
+    double place[AXES]; /* [mm] position of the motion */
     struct pace_limits limits;
-    struct shape shape;
-    struct pace pace;
+    struct shape shape; /* the curve */
+    struct pace pace;   /* the speed along it */
 };
 
-/* A line begins there. */
+/* Begin a polyline at a place [mm], at rest. */
 void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
                       const struct pace_limits *l);
 
-/* On to a vertex at a speed of at most feed [mm/s]. False: no room, drive on first. */
+/* Append a vertex, reached at a speed of at most feed [mm/s]. False if there is no room: call
+ * plan_chain_advance first. */
 bool plan_chain_line(struct plan_chain *c, const double place[AXES], double feed);
 
 /* The latest vertex is the last. */
 void plan_chain_end(struct plan_chain *c);
 
-/* Whether it may be driven: all that can be seen ahead is there. */
+/* Whether it may be driven: the look-ahead is full or the last vertex is known. */
 bool plan_chain_ready(const struct plan_chain *c);
 
-/* Let up to dt pass [s]; returns what is left: above 0 only at its end. */
+/* Let up to dt [s] pass. Returns the time that is left; it is above 0 only at the end. */
 double plan_chain_advance(struct plan_chain *c, double dt);
 
-/* It is open no more, and the motion rests at its end. */
+/* Whether no more vertices come and the motion rests at the end. */
 bool plan_chain_done(const struct plan_chain *c);
 
 #endif

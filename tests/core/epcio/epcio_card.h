@@ -1,4 +1,5 @@
-/* epcio_card - a card on the bench: standard configuration, one mask for one page, one sample. */
+/* epcio_card - an EPCIO card for the tests: in standard configuration or with filled FIFOs, with
+ * short calls to acknowledge one interrupt page and to sample the encoders. */
 #ifndef EPCIO_CARD_H
 #define EPCIO_CARD_H
 
@@ -28,7 +29,7 @@ static inline struct epcio card_stocked(int stock, int minimum)
     return card;
 }
 
-/* Acknowledge flags of a page and leave a mask there, nothing elsewhere. */
+/* Acknowledge flags of a page and set its mask; the other pages get a mask of 0. */
 static inline void card_acknowledge(struct epcio *card, enum irq_page page, uint32_t flags,
                                     uint32_t mask)
 {
@@ -38,7 +39,7 @@ static inline void card_acknowledge(struct epcio *card, enum irq_page page, uint
     epcio_acknowledge(card, clear, open);
 }
 
-/* Sample encoder phases, all else at rest. */
+/* Sample encoder phases; all other inputs are 0. */
 static inline enum epcio_status card_sample(struct epcio *card, const double phase[EPCIO_ENCODERS],
                                             int *bad)
 {

@@ -1,5 +1,6 @@
-/* The single-buffer card taken literally: accumulators, one step per clock, axis 6 unused. Only its
- * interrupt latch is the card's, which has a test of its own. */
+/* single_buffer_literal - reference model of the single-buffer card for its tests: literal DDA
+ * accumulators, stepped clock by clock, axis 6 unused. It shares only the interrupt latch with the
+ * card, which has a test of its own. */
 #ifndef SINGLE_BUFFER_LITERAL_H
 #define SINGLE_BUFFER_LITERAL_H
 
@@ -14,7 +15,7 @@ struct literal {
     bool latched, run, running, waits, stopped;
     int64_t now;
     int32_t length, divider, next_length, next_divider;
-    int64_t elapsed; /* [clocks] of this DDA time, or of the wait */
+    int64_t elapsed; /* [clocks] since the begin of this DDA time, or of the wait */
     int32_t acc[AXES], command[AXES], waiting[AXES], last[AXES], underflows[AXES];
     int64_t out[AXES], gap[AXES], stood;
     struct irq irq;
@@ -59,7 +60,7 @@ static void literal_clock(struct literal *m)
     m->elapsed++;
     if (!m->running) {
         m->stood++;
-        for (int i = 0; i < AXES && !m->latched; i++) /* the first clock of the wait */
+        for (int i = 0; i < AXES && !m->latched; i++) /* at the first clock of the wait */
             m->underflows[i] += m->stood == 1 && m->last[i] != 0;
         if (!m->latched)
             return;

@@ -1,5 +1,5 @@
-/* Communication steps of any size: where the time inside is, by formulas that share nothing with
- * the layer's. Included by fmi_cases.h. */
+/* fmi_any_step - tests of communication steps of any size: the time inside the FMU must be that of
+ * formulas that are independent of the layer's. Included by fmi_cases.h. */
 #ifndef FMI_ANY_STEP_H
 #define FMI_ANY_STEP_H
 
@@ -18,8 +18,8 @@ static void *make_strict(double start)
     return c;
 }
 
-/* How importers come from one point to the next: k h; t + h; and both with the difference of two
- * points as the step. */
+/* Ways in which importers compute communication points: k h; t + h; and both with the difference of
+ * two points as the step size. */
 enum master { MULTIPLIES, ADDS, SUBTRACTS, ADDS_AND_SUBTRACTS, MASTERS };
 
 struct clock {
@@ -40,7 +40,7 @@ static void clock_go(struct clock *m, enum master kind)
     m->t = adds ? m->t + m->size : m->start + (double)m->k * m->size;
 }
 
-/* At every point the time inside is the nearest tick, and the model has been given just that. */
+/* At every point the time inside is the nearest tick, and the model was stepped to it. */
 static void check_near(double start, double size, int64_t count, enum master kind)
 {
     void *c = make_running(start, -1.0);
@@ -90,13 +90,14 @@ static void test_every_step_ends_at_the_nearest_tick(void)
         }
     }
     check_near(0.0, 1e-3 / 3.0, 10800000, ADDS); /* an hour */
-    for (int kind = 0; kind < MASTERS; kind++) { /* two digits beyond those of the clock */
+    for (int kind = 0; kind < MASTERS; kind++) { /* a step with two digits more than a tick has */
         check_near(1000.0, 1e-7 + 5e-13, 1000000, kind);
     }
 }
 
-/* Steps at random, whole ticks and others: the nearest tick always, and at points that are whole
- * ticks just that one, so a source is the same there as with any other steps. */
+/* Random steps, whole numbers of ticks and others: the time inside is always the nearest tick, and
+ * at points on a tick exactly that, so a source has the same value there as with any other
+ * steps. */
 static void test_steps_at_random(void)
 {
     void *c = make_running(0.0, -1.0);
@@ -123,8 +124,8 @@ static void test_steps_at_random(void)
     call_free(c);
 }
 
-/* Steps of whole ticks are those ticks, however far the importer's sum has gone astray; behind
- * 0.4 ticks of another step they stay as far off, and the rest of that tick brings them home. */
+/* Steps of whole ticks count as those ticks, however far the importer's sum has drifted. After a
+ * step of 0.4 ticks they keep that offset, and the rest of the tick removes it. */
 static void check_whole(double start, enum master kind)
 {
     void *c = make_running(start, -1.0);
@@ -156,7 +157,8 @@ static void test_whole_ticks_stay_whole(void)
     }
 }
 
-/* Less than half a tick: time stands and the model is not asked; what was left is not lost. */
+/* Steps below half a tick: the time inside stands, the model is not called, and the remainders are
+ * not lost. */
 static void test_a_step_below_half_a_tick(void)
 {
     void *c = make_running(1.0, -1.0);
@@ -174,7 +176,8 @@ static void test_a_step_below_half_a_tick(void)
     call_free(c);
 }
 
-/* The time that is told is the importer's between ticks, and that of the tick on one. */
+/* The time that an FMU reports is the importer's between ticks, and exactly that of the tick on
+ * one. */
 static void test_the_time_that_is_told(void)
 {
     void *c = make_running(0.0, -1.0);
@@ -184,7 +187,7 @@ static void test_the_time_that_is_told(void)
     call_free(c);
 }
 
-/* What is left over is part of a state, also of one that was bytes. */
+/* The remainder of a tick is part of an FMU state, also of a serialized one. */
 static void test_a_state_between_ticks(void)
 {
     const double h = 1e-3 / 3.0;
@@ -223,7 +226,7 @@ static void test_strict_steps(void)
     CHECK(y_of(c) == 2.0 && call_step(c, 10.0, 1e-3 + 1e-12) == 0 && inside(c) == 1000000);
     void *state = NULL, *copy = NULL;
     char bytes[4096];
-    for (int i = 1; i < 10000; i++) { /* a step that was typed badly: as ever */
+    for (int i = 1; i < 10000; i++) { /* a step with an error in its last decimal digits */
         CHECK(call_step(c, 10.0 + i * (1e-3 + 1e-12), 1e-3 + 1e-12) == 0);
     }
     CHECK(inside(c) == INT64_C(10000000000) && call_get_state(c, &state) == 0);
@@ -235,7 +238,7 @@ static void test_strict_steps(void)
     call_free(c);
 }
 
-/* Half a tick behind the stop time is not behind it. */
+/* A step that ends half a tick after the stop time is allowed. */
 static void test_any_step_and_the_stop_time(void)
 {
     const double h = 1e-3 / 3.0;
@@ -246,7 +249,7 @@ static void test_any_step_and_the_stop_time(void)
     call_free(c);
 }
 
-/* What an importer's clock has lost is its own affair until the reset: nothing of it is left. */
+/* A reset clears the drift of the importer's time. */
 static void test_reset_forgets_the_drift(void)
 {
     void *c = make_strict(0.0);

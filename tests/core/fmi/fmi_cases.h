@@ -1,5 +1,5 @@
-/* What the FMI layer must do, in words common to both standards. The including file defines the
- * call_ functions (0 is OK, 3 is Error) with the functions of its standard. */
+/* fmi_cases - tests of the FMI layer that are common to both standards. The including file defines
+ * the call_ functions (0 is OK, 3 is Error) by the functions of its standard. */
 #ifndef FMI_CASES_H
 #define FMI_CASES_H
 
@@ -17,7 +17,7 @@ static int failures;
         } \
     } while (0)
 
-/* Refused with these words in the message. */
+/* The call must be refused with these words in the message. */
 #define CHECK_REFUSED(call, words) \
     do { \
         said[0] = '\0'; \
@@ -47,8 +47,8 @@ static double y_of(void *c)
     return y[0];
 }
 
-/* Every sequence of calls: the layer must accept exactly what this table of the standards allows.
- * Rows: where the instance stands. */
+/* Random sequences of calls: the layer must accept exactly what this table allows, which is taken
+ * from the standards. Rows are the modes of the instance. */
 enum call {
     ENTER,
     EXIT,
@@ -172,7 +172,8 @@ static void test_values_are_refused_whole(void)
     call_free(c);
 }
 
-/* Outputs in Initialization Mode follow parameters and inputs; only parameters open anew. */
+/* Outputs in Initialization Mode follow parameters and inputs; only parameters call model_open
+ * again. */
 static void test_start_on_demand(void)
 {
     void *c = make();
@@ -198,7 +199,8 @@ static void test_start_on_demand(void)
     call_free(c);
 }
 
-/* The dummy looks at its memory at each start: behind steps, behind the state of another one. */
+/* At each start the model's memory is cleared: the dummy model checks it after steps and after a
+ * state of another instance. */
 static void test_a_start_finds_cleared_memory(void)
 {
     void *a = make_running(0.0, -1.0), *b = make(), *state = NULL;
@@ -235,7 +237,8 @@ static void test_steps(void)
     call_free(c);
 }
 
-/* An importer that adds up 0.1 ms for one hour is 2.7 us off at its end, and must get there. */
+/* An importer that adds up steps of 0.1 ms for one hour has an error of 2.7 us at the end and must
+ * still reach it. */
 static void test_an_hour_of_added_doubles(void)
 {
     void *c = make_running(0.0, -1.0);
@@ -306,7 +309,7 @@ static void test_states(void)
     call_free(b);
 }
 
-/* A tunable parameter is none that a blob is made of: with another value of it the blob stays. */
+/* A blob does not depend on tunable parameters: with another value of one the blob stays. */
 static void test_state_with_another_tunable(void)
 {
     void *c = make_running(0.0, -1.0), *state[2] = { NULL, NULL };
@@ -326,8 +329,8 @@ static void test_state_with_another_tunable(void)
     call_free(c);
 }
 
-/* Three added steps of 0.1 s end at 0.30000000000000004 s: that is no step beyond 0.3 s; nor are
- * half a clock more, but a whole one is. */
+/* Three added steps of 0.1 s end at 0.30000000000000004 s, which does not pass a stop time of 0.3
+ * s. Half a clock more does not either, but a whole clock does. */
 static void test_the_last_step(void)
 {
     void *c = make_running(0.0, 0.3);
@@ -347,7 +350,7 @@ static void test_the_last_step(void)
     call_free(c);
 }
 
-/* Refuse these bytes with one message; no state is made of them. */
+/* These bytes must be refused with one message, and no state is made. */
 static void check_damaged(void *c, const char *bytes, size_t size, const char *words)
 {
     void *state = NULL;
@@ -355,7 +358,7 @@ static void check_damaged(void *c, const char *bytes, size_t size, const char *w
     CHECK(state == NULL);
 }
 
-/* Any bit of them changed. */
+/* The same for a change of any single bit. */
 static void check_bits(void *c, char *bytes, size_t size)
 {
     for (size_t i = 0; i < 8 * size; i++) {
@@ -365,8 +368,8 @@ static void check_bits(void *c, char *bytes, size_t size)
     }
 }
 
-/* What a sum or a parity of the words would not see: two of them exchanged, the same bit of two
- * changed, one increased by what another is decreased. */
+/* Changes that a sum or a parity of the words would not detect: two words exchanged, the same bit
+ * of two words changed, one word increased by what another is decreased. */
 static void check_pairs(void *c, const char *bytes, size_t size)
 {
     const size_t words = size / sizeof(uint64_t);
@@ -388,7 +391,7 @@ static void check_pairs(void *c, const char *bytes, size_t size)
     }
 }
 
-/* Bytes as another build would have made them: another value of its own, the right hash. */
+/* Bytes as another build would make them: one value changed, with the right hash. */
 static void check_other(void *c, const char *bytes, size_t size, size_t at, char value,
                         const char *words)
 {
@@ -400,7 +403,7 @@ static void check_other(void *c, const char *bytes, size_t size, size_t at, char
     check_damaged(c, copy, size, words);
 }
 
-/* Nothing but what was handed out is a state; the instance stays as it was. */
+/* Only bytes that the FMU has written are a state; a refusal leaves the instance as it was. */
 static void test_damaged_states(void)
 {
     void *c = make_running(0.0, -1.0), *state = NULL;

@@ -1,5 +1,5 @@
-/* A small model for the tests of the FMI layer, with what the generator would write about it.
- * y integrates gain * u; the first letter of `name` chooses what fails. */
+/* fmi_dummy - a small model for the tests of the FMI layer, with the tables that the generator
+ * would write. y integrates gain * u; the first letter of `name` chooses which function fails. */
 #ifndef FMI_DUMMY_H
 #define FMI_DUMMY_H
 
@@ -79,8 +79,8 @@ struct model {
 #define MODEL_IN_USE FMU_RING(kept, first, used, 0)
 #include "fmi_model.h"
 
-static int blobs_open; /* those of the whole test: 0 at its end */
-static int opens;      /* calls of model_open */
+static int blobs_open; /* number of blobs open in the whole test; must be 0 at its end */
+static int opens;      /* number of calls of model_open */
 
 static int model_open(struct fmu *f)
 {

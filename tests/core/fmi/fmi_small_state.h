@@ -1,9 +1,9 @@
-/* Saved states without what is not in use: each fill of a ring, empty, full, wrapped round.
- * Included by fmi_cases.h. */
+/* fmi_small_state - tests that saved states leave out what is not in use and restore the rest: for
+ * every filling of a ring, empty, full and wrapped round. Included by fmi_cases.h. */
 #ifndef FMI_SMALL_STATE_H
 #define FMI_SMALL_STATE_H
 
-/* Equal values are equal bytes: nothing is left of a longer string. */
+/* Equal values give equal bytes: nothing remains of a longer string. */
 static void test_states_of_equal_values(void)
 {
     void *c[2] = { make(), make() }, *state[2] = { NULL, NULL };
@@ -29,7 +29,7 @@ static struct model *model_of(void *c)
     return &((struct fmi_instance *)c)->f.s.m;
 }
 
-/* Places of the ring in use get numbers of their own, the others nonsense. */
+/* Elements of the ring in use get different numbers, the others arbitrary ones. */
 static void fill(struct model *m, int32_t first, int32_t used, double number)
 {
     m->first = first;
@@ -62,7 +62,7 @@ static void check_fill(void *a, void *b, int32_t first, int32_t used)
     call_free_state(b, &copy);
 }
 
-/* A place for a state takes one of any size, again and again. */
+/* The same pointer may be used for states of different sizes, again and again. */
 static void check_one_place(void *a, void *b)
 {
     void *state = NULL;
@@ -86,7 +86,7 @@ static void test_small_states(void)
     check_one_place(a, b);
     call_free(a);
     call_free(b);
-    /* Before the start there is no model to be kept. */
+    /* Before the start a state contains no model. */
     void *state = NULL;
     a = make();
     CHECK(call_get_state(a, &state) == 0);

@@ -1,4 +1,4 @@
-/* A card for the C tests, and writes of equal slots. */
+/* fpga_rig - an FPGA card for the C tests, and writes of pulse memories with equal slots. */
 #ifndef FPGA_RIG_H
 #define FPGA_RIG_H
 
@@ -21,7 +21,7 @@ static inline struct fpga rig_card(void)
     return card;
 }
 
-/* A write of so many slots, each with n pulses of axis 0 and -n of axis 5. */
+/* A write of a memory with a number of slots, each with n pulses of axis 0 and -n of axis 5. */
 static inline struct fpga_write rig_write(int32_t memory, int32_t slots, int32_t n, int64_t clock)
 {
     static int32_t seq;

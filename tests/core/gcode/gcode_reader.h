@@ -1,4 +1,5 @@
-/* gcode_reader - a part program in memory and its commands one by one, for the tests. */
+/* gcode_reader - for the tests of the interpreter: reads a part program in memory command by
+ * command, and finds its faults. */
 #ifndef GCODE_READER_H
 #define GCODE_READER_H
 
@@ -35,7 +36,7 @@ static inline void begin(struct reader *x, const char *text)
     interpreter_start(&x->in, zero, x->machine.feed, origins);
 }
 
-/* The next command; its type, or -1 at the end, -2 for a fault. */
+/* Read the next command. Returns its type, -1 at the end, or -2 for a fault. */
 static inline int next(struct reader *x)
 {
     const enum interpreter_result got = interpreter_next(&x->in, &x->program, &x->c, &x->r);
@@ -49,7 +50,7 @@ static inline void expect_end(struct reader *x, double a, double b, double c)
     CHECK_NEAR(x->c.path.end[2], c, 1e-12);
 }
 
-/* The first fault of a text; true if it is this one, in this line, at this text. */
+/* Whether the first fault of a text is this one, in this line and at this part of it. */
 static inline bool fault_is(const char *text, int line, const char *at, enum fault fault)
 {
     struct reader x;

@@ -1,4 +1,5 @@
-/* A program with the points that its tests use. */
+/* inform_given - the points that the tests of the robot language use, and the reading of a program
+ * with them. */
 #ifndef INFORM_GIVEN_H
 #define INFORM_GIVEN_H
 
@@ -20,7 +21,7 @@ static struct inform_program program;
 static struct inform_report report;
 static char message[INFORM_MESSAGE_MAX];
 
-/* Read a program; what is said about it stands in `message`, empty if it is good. */
+/* Read a program. `message` is what is wrong with it, or empty. */
 static inline int read_program(const char *text)
 {
     message[0] = '\0';

@@ -1,4 +1,5 @@
-/* mcc_card - a brute-force card for the tests: one FIFO of frames, looked at clock by DDA clock. */
+/* mcc_card - a simple card for the tests of the motion library's PC: one FIFO of frames, advanced
+ * from one DDA boundary to the next, and the exchange of both over the bus. */
 #ifndef MCC_CARD_H
 #define MCC_CARD_H
 
@@ -6,15 +7,15 @@
 #include "pc.h"
 
 struct card {
-    const struct pcl *pcl; /* what serves it */
-    int64_t dda;           /* [clocks] */
-    int64_t now;           /* events up to here are done */
+    const struct pcl *pcl; /* position control that serves it */
+    int64_t dda;           /* [clocks] DDA time */
+    int64_t now;           /* [clock] events up to it are done */
     int32_t n;             /* minimum stock */
-    int32_t room;          /* commands the FIFO holds */
+    int32_t room;          /* number of commands that the FIFO holds */
     int32_t fifo[PCL_FIFO][AXES];
     int32_t stock;
-    int32_t sum[AXES]; /* [pulses] put out */
-    bool flag;         /* the FIFO's interrupt latch; its line */
+    int32_t sum[AXES]; /* [pulses] put out so far */
+    bool flag;         /* the FIFO's interrupt flag, which is also the line */
     struct pcl_card shows;
     int32_t last_ack_seq;
     bool moved; /* the latest DDA time had pulses */
@@ -36,7 +37,7 @@ static void card_begin(struct card *c, const struct pcl *pcl, int64_t dda, int32
     c->room = PCL_FIFO;
 }
 
-/* PC and card at clock 0. */
+/* Start PC and card at clock 0. */
 static void card_start(struct card *c, const struct machine *m, const struct pc_config *config,
                        bool program)
 {
@@ -66,7 +67,7 @@ static void card_boundary(struct card *c)
             c->irq_first = c->irqs++ ? c->irq_first : c->now;
         }
         c->flag = true;
-        c->shows.irq_flags[0] = 63; /* all channels fall together */
+        c->shows.irq_flags[0] = 63; /* the stocks of all channels fall together */
     }
 }
 
@@ -85,7 +86,8 @@ static void card_take(struct card *c)
     c->coming = false;
 }
 
-/* Up to a clock, boundaries and the transaction in their order (at one clock: write first). */
+/* Advance to a clock: DDA boundaries and the transaction in their order (at one clock: transaction
+ * first). */
 static void card_advance(struct card *c, int64_t to)
 {
     while (c->now < to) {
@@ -105,7 +107,7 @@ static void card_advance(struct card *c, int64_t to)
     }
 }
 
-/* At a bus instant: read what the PC published. */
+/* At an instant of the bus: the card reads what the PC has published. */
 static void card_read(struct card *c)
 {
     if (c->pcl->ack_seq != c->last_ack_seq) {
@@ -124,7 +126,7 @@ static void card_read(struct card *c)
     }
 }
 
-/* One bus period of both: the card reads what was published, the PC sees the card as it was. */
+/* One bus period: the card reads what the PC has published, the PC sees the card's state before. */
 static void card_period(struct card *c, int64_t at, const struct pc_panel *panel, const char *text)
 {
     c->shows.stock = c->stock;

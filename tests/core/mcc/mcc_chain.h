@@ -1,4 +1,5 @@
-/* mcc_chain - the limits of look-ahead, watched at every point, for the tests. */
+/* mcc_chain - for the tests of look-ahead: paths, and the distance, speed and acceleration of the
+ * tool, checked at every interpolation point. */
 #ifndef MCC_CHAIN_H
 #define MCC_CHAIN_H
 
@@ -11,7 +12,7 @@ static inline double norm3(const double a[3])
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-/* Distance of a point from a path, by sampling and then halving. */
+/* Distance of a point from a path [mm], by sampling and bisection. */
 static inline double distance(const struct path *p, const double at[AXES])
 {
     enum { SAMPLES = 60 };
@@ -32,7 +33,7 @@ static inline double distance(const struct path *p, const double at[AXES])
 
 enum { SIDES = 20 };
 
-/* Twenty lines of 5 mm, X and Y in turn. */
+/* Send a zigzag: twenty lines of 5 mm, in X and Y in turn. */
 static inline void send_zigzag(struct path side[SIDES])
 {
     double at[AXES] = { 0 };
@@ -47,7 +48,7 @@ static inline void send_zigzag(struct path side[SIDES])
     }
 }
 
-/* Distance of the latest point from them. */
+/* Distance of the latest point from the zigzag [mm]. */
 static inline double off_zigzag(const struct path side[SIDES], const struct record *r)
 {
     double d = INFINITY;
@@ -58,7 +59,8 @@ static inline double off_zigzag(const struct path side[SIDES], const struct reco
     return d;
 }
 
-/* A line of 100 mm in a thousand commands; the slowest feed between two times. [mm/s] */
+/* Drive a line of 100 mm in a thousand commands. Returns the lowest speed between two times
+ * [mm/s]. */
 static inline double drive_pieces(struct record *r, double from, double to)
 {
     double slowest = INFINITY;
@@ -87,7 +89,7 @@ static inline double way_of_tool(void)
     return m.mover.track.out_base + m.mover.track.out_s;
 }
 
-/* Another one for each chain: the index of its first command. */
+/* A number that is different for each chain: the index of its first command. */
 static inline int chain_number(void)
 {
     return m.mover.track.started;
@@ -97,7 +99,7 @@ struct limits {
     double speed, acc, jerk;
 };
 
-/* Stream of the tool's way, differentiated. */
+/* Positions of the tool along its path and their differences: speed and acceleration. */
 struct stream {
     double s[4];
     int n;

@@ -1,4 +1,4 @@
-/* mcc_check - a machine for the tests of the library. */
+/* mcc_check - the machine that the tests of the motion library use. */
 #ifndef MCC_CHECK_H
 #define MCC_CHECK_H
 

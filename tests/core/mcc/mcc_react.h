@@ -1,4 +1,5 @@
-/* mcc_react - the library with a card that puts out each point at once, for the tests. */
+/* mcc_react - for the tests: the motion library with a card that puts out each interpolation point
+ * at once. */
 #ifndef MCC_REACT_H
 #define MCC_REACT_H
 
@@ -21,7 +22,7 @@ enum { LONGEST = 100000 };
         CHECK(memcmp(&before, &m, sizeof m) == 0); \
     } while (0)
 
-/* What has been put out. */
+/* Record of the pulses put out. */
 struct run {
     int n;
     int32_t sum[AXES], change; /* [pulses] all, and the largest change from one to the next */
@@ -36,7 +37,7 @@ static inline struct machine one_ahead(void)
     return machine;
 }
 
-/* What the PC does with new signals. */
+/* Let the library react to new signals, as the PC does. */
 static inline void look(void)
 {
     manual_look(&m);
@@ -44,7 +45,7 @@ static inline void look(void)
     reaction_look(&m, &(struct reaction_look){ .clocks = BUS });
 }
 
-/* One DDA time; false if there was no point for it. */
+/* One DDA time. Returns false if there was no point for it. */
 static inline bool point(struct run *r)
 {
     look();
@@ -76,7 +77,7 @@ static inline void run(struct run *r)
     CHECK(r->n < LONGEST);
 }
 
-/* Points until n have been made. */
+/* DDA times until n points have been made. */
 static inline void points(struct run *r, int n)
 {
     while (r->n < n && point(r)) {

@@ -1,4 +1,5 @@
-/* mcc_record - one library and a recording of every point it makes, for the tests. */
+/* mcc_record - for the tests: a motion library and a record of every interpolation point that it
+ * makes. */
 #ifndef MCC_RECORD_H
 #define MCC_RECORD_H
 
@@ -9,7 +10,7 @@ static struct mcc m;                 /* 300 kB: not on the stack */
 static const struct source *program; /* NULL: calls of the API only */
 enum { LONGEST = 200000 };
 
-/* A recording of everything the task queues. */
+/* Record of the points that the interpolation puts into the queue. */
 struct record {
     int n;
     int32_t sum[AXES];
@@ -23,7 +24,8 @@ static void begin(struct machine machine)
     CHECK_EQ(MCC_init_motion(&m, &machine), MCC_NO_ERR);
 }
 
-/* One point; false if the axes rest. Each frame must be the way between half-pulse ideal points. */
+/* Make one point; false if the axes are at rest. Each frame must lead to within half a pulse of the
+ * ideal point. */
 static bool point(struct record *r)
 {
     task_run(&m, program);

@@ -1,4 +1,5 @@
-/* The chip on an ideal axis: its speed is the voltage times a constant. */
+/* msp430_rig - for the tests: the positioner with an ideal axis, whose speed is the voltage times a
+ * constant. */
 #ifndef MSP430_RIG_H
 #define MSP430_RIG_H
 
@@ -13,13 +14,13 @@ enum { RIG_PIN = 800, RIG_TICK = 8000, RIG_ONE = 1 << TRAPEZOID_POINT };
 struct rig {
     struct msp430 chip;
     struct msp430_pins pins;
-    double place;          /* [counts] true */
-    double home_at;        /* [counts] the switch is on from here downwards */
+    double place;          /* [counts] true position */
+    double home_at;        /* [counts] the home switch is on at this position and below */
     double speed_per_volt; /* [counts/s/V] */
-    bool unplugged, stuck; /* scale; home switch on always */
-    double phase;          /* as the scale last showed it */
+    bool unplugged, stuck; /* the scale is unplugged; the home switch is always on */
+    double phase;          /* [line periods] as the scale showed it last */
     int64_t clock;
-    int states; /* that were seen, a bit each */
+    int states; /* states that were seen, a bit each */
 };
 
 /* 8 MHz, 1 ms, 20 counts/tick, 0.1 counts/tick^2; Kp = 1 PWM count per count, 20/s. */
@@ -82,7 +83,7 @@ static inline void rig_press(struct rig *r, int button)
     rig_run(r, 0.02);
 }
 
-/* Homed, standing a little behind the switch. */
+/* A rig that has been homed and is at rest a little behind the switch. */
 static inline struct rig rig_homed(const struct msp430_config *c)
 {
     struct rig r = rig_start(c, 500.0);

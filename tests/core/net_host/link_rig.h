@@ -1,5 +1,5 @@
-/* Both ends of the link with what lies between: a store that programs a page a ms, and two streams
- * of bytes that can be slow, late, cut. */
+/* link_rig - for the tests: both ends of a network link, a store that programs one page per ms, and
+ * two byte streams between the ends that can be slow, late and cut. */
 #ifndef LINK_RIG_H
 #define LINK_RIG_H
 
@@ -13,30 +13,30 @@
 #define RIG_MS INT64_C(1000000)
 enum { RIG_PAGES = 64, RIG_CREDIT = 8, RIG_STREAM = 20000, RIG_NUMBERS = 64 };
 
-/* The card behind its session. */
+/* The card that a session serves: its job, transfer and commands. */
 struct rig_card {
     struct session session;
     uint8_t hash[NET_SHA_BYTES], flash[RIG_PAGES * NET_PAGE_BYTES];
-    uint32_t pages, received, programmed; /* of the transfer */
+    uint32_t pages, received, programmed; /* of the transfer: all pages, received, programmed */
     uint32_t crc;
-    int64_t erased, committed; /* [ns] end of what is under way; 0 none */
+    int64_t erased, committed; /* [ns] end of erasing, of committing; 0 none */
     uint8_t in_force[NET_SHA_BYTES];
     bool ended;
-    int twice, refused;         /* pages that were there; out of step */
-    int done[RIG_NUMBERS];      /* times a command number was done */
-    uint8_t order[RIG_NUMBERS]; /* types in the order in which they were done */
+    int twice, refused;         /* number of pages received twice; refused as out of order */
+    int done[RIG_NUMBERS];      /* how often each command number was done */
+    uint8_t order[RIG_NUMBERS]; /* types of the commands in the order in which they were done */
     int orders;
     uint32_t late_number; /* a HOME whose result comes later */
     int64_t late;
 };
 
-/* A stream one way: bytes, each with the time at which it is there. */
+/* A stream in one direction: bytes, each with the time of its arrival. */
 struct rig_stream {
     uint8_t byte[RIG_STREAM];
     int64_t at[RIG_STREAM];
     int first, count;
-    int64_t passed;    /* since the start of the rig */
-    int64_t cut_after; /* of `passed`; -1 never */
+    int64_t passed;    /* number of bytes since the start of the rig */
+    int64_t cut_after; /* value of `passed` at which it is cut; -1 never */
 };
 
 struct rig {
@@ -49,8 +49,8 @@ struct rig {
     bool connected;
     int cuts;
     uint64_t seed;
-    int64_t delay_most; /* [ns] */
-    int piece_most;     /* [byte] moved at a time */
+    int64_t delay_most; /* [ns] largest random delay */
+    int piece_most;     /* [byte] most that is moved at a time */
 };
 
 static void rig_start(struct rig *r, uint32_t pages, bool keyed, uint64_t seed)
@@ -139,7 +139,7 @@ static void rig_end(struct rig_card *c)
         c->ended = true;
 }
 
-/* What the store has done up to now. */
+/* Let the store work up to the time `now`. */
 static void rig_store(struct rig_card *c, int64_t now)
 {
     struct session *s = &c->session;
@@ -207,7 +207,7 @@ static void rig_push(struct rig *r, struct rig_stream *s, const uint8_t *bytes, 
     CHECK(s->count <= RIG_STREAM);
 }
 
-/* Bytes that are there, up to a cut; returns how many. */
+/* Bytes that have arrived, up to a cut. Returns their number. */
 static size_t rig_ready(const struct rig *r, const struct rig_stream *s, uint8_t *bytes,
                         size_t most)
 {
@@ -232,7 +232,7 @@ static size_t rig_piece(struct rig *r)
     return (size_t)(r->piece_most < NET_OUT ? check_random(&r->seed, 1, r->piece_most) : NET_OUT);
 }
 
-/* Bytes from each end to the other; a stream that has passed its bytes is cut. */
+/* Carry bytes from each end to the other; cut the connection when a stream has passed its bytes. */
 static void rig_carry(struct rig *r)
 {
     uint8_t bytes[NET_OUT];
@@ -291,7 +291,7 @@ static void rig_step(struct rig *r)
         rig_carry(r);
 }
 
-/* Have all commands an answer, and the card its job? */
+/* Whether all commands have a result and the card has its job. */
 static bool rig_is_done(const struct rig *r)
 {
     for (int i = 0; i < NET_HOST_ORDERS; i++) {
@@ -301,7 +301,7 @@ static bool rig_is_done(const struct rig *r)
     return r->host.upload == NET_HOST_STORED;
 }
 
-/* Steps until that; returns false if it does not come about in so many ms. */
+/* Run until rig_is_done; false if that takes more than `most` ms. */
 static inline bool rig_run(struct rig *r, int64_t most)
 {
     for (int64_t i = 0; i < most && !rig_is_done(r); i++)
@@ -309,7 +309,8 @@ static inline bool rig_run(struct rig *r, int64_t most)
     return rig_is_done(r);
 }
 
-/* Commands through the upload and behind it; a HOME among them is slow to answer. */
+/* Give commands during the upload and after it, among them a HOME whose result comes late. Returns
+ * their number. */
 static int rig_orders(struct rig *r)
 {
     static const uint8_t type[] = {
@@ -325,8 +326,8 @@ static int rig_orders(struct rig *r)
     return ORDERS;
 }
 
-/* The property: the job as it was sent, no page that the card had, each command once and in
- * order. */
+/* Check the properties: the job is the one that was sent, no page was sent that the card had, each
+ * command was done once and in order. */
 static void rig_check(const struct rig *r, int orders)
 {
     const struct rig_card *c = &r->card;

@@ -1,4 +1,4 @@
-/* Jobs at random, and their file. */
+/* job_make - for the tests: random jobs, and their job files. */
 #ifndef JOB_MAKE_H
 #define JOB_MAKE_H
 
@@ -37,7 +37,7 @@ static inline struct job_header make_header(uint32_t axes, uint32_t events)
     return h;
 }
 
-/* Frames of the job into its file. */
+/* Write the frames of a job into its file. */
 static inline void make_file(struct made *m)
 {
     struct job_writer w;
@@ -51,7 +51,7 @@ static inline void make_file(struct made *m)
     m->bytes = (size_t)(end + JOB_PAGE_BYTES - m->file);
 }
 
-/* Commands that wander by at most `step` a frame, at rest at both ends. */
+/* Make a job whose commands change at random by at most `step` per frame, at rest at both ends. */
 static inline void make_job(struct made *m, uint64_t *random, int32_t frames, int32_t step)
 {
     m->header = make_header((uint32_t)check_random(random, 1, 15),

@@ -1,4 +1,5 @@
-/* A card on a bench: jobs for it, and what a test asks of it. */
+/* card_bench - for the tests: a network card with a job, commands to it, and checks of its pulses
+ * and processor times. */
 #ifndef CARD_BENCH_H
 #define CARD_BENCH_H
 
@@ -16,12 +17,12 @@ enum { BENCH_JOB = 1 << 19, BENCH_FRAMES = 4096 };
 
 static uint8_t bench_job[BENCH_JOB]; /* file of the latest bench_make() */
 static uint32_t bench_bytes;
-static int64_t bench_end[CARD_AXES];        /* [pulses] where it ends */
-static int64_t bench_path[BENCH_FRAMES][2]; /* [pulses] X, Y where the first frames begin */
-static uint32_t bench_rest;                 /* the last event is for rest, in no frame */
+static int64_t bench_end[CARD_AXES];        /* [pulses] its end position */
+static int64_t bench_path[BENCH_FRAMES][2]; /* [pulses] X, Y at the begin of the first frames */
+static uint32_t bench_rest;                 /* the last event is that for rest and in no frame */
 
-/* A job of so many frames of 1 ms: axes X and Y up to `top` pulses a frame and back to rest, with
- * a sine on Y; events as the table says, event n in frame 100 n. */
+/* Make a job of frames of 1 ms: X and Y accelerate to `top` pulses per frame and back to rest, with
+ * a sine on Y; event n of the table is in frame 100 n. */
 static inline void bench_make(int32_t frames, int32_t top, const struct job_event *events, int n)
 {
     static struct job_writer w;
@@ -72,19 +73,19 @@ static inline struct netcard_config bench_config(void)
     return c;
 }
 
-/* A card with the latest job, at rest. */
+/* Start a card with the latest job, at rest. */
 static inline void bench_start(struct netcard *c, const struct netcard_config *config)
 {
     CHECK_EQ(netcard_start(c, config, bench_job, bench_bytes), NET_DONE);
 }
 
-/* Let so many ms pass. */
+/* Let a number of ms pass. */
 static inline void bench_pass(struct netcard *c, int64_t ms)
 {
     netcard_advance(c, c->now + ms * BENCH_MS);
 }
 
-/* Give a command and let the parser have it. */
+/* Give a command and let time pass until the parser has taken it. */
 static inline enum net_code bench_order(struct netcard *c, enum card_command command)
 {
     const int32_t before = c->result.count;
@@ -97,7 +98,7 @@ static inline enum net_code bench_order(struct netcard *c, enum card_command com
     return c->result.code;
 }
 
-/* Pulses put out. */
+/* Pulses of an axis so far. */
 static inline int64_t bench_count(const struct netcard *c, int axis)
 {
     int64_t counts[FRAME_AXES];
@@ -106,7 +107,7 @@ static inline int64_t bench_count(const struct netcard *c, int axis)
     return counts[axis];
 }
 
-/* Tasks, interrupts, kernel and idle time are all the time there was. */
+/* Check that the times of tasks, interrupts, kernel and idle add up to the whole time. */
 static inline void bench_times(const struct netcard *c)
 {
     int64_t all = kernel_idle(&c->kernel) + kernel_overhead(&c->kernel);
@@ -117,7 +118,7 @@ static inline void bench_times(const struct netcard *c)
     CHECK_EQ(all, c->now - c->boot);
 }
 
-/* The running task is the most urgent one that is ready. */
+/* Check that the running task is the most urgent ready one. */
 static inline void bench_urgent(const struct kernel *k)
 {
     const int r = k->processor.running;

@@ -1,4 +1,5 @@
-/* A card and the PC's end on one cable: each step of time carries what the line can. */
+/* card_cable - for the tests: a network card and the server's end on one cable, which carries a
+ * limited number of bytes in each step of time. */
 #ifndef CARD_CABLE_H
 #define CARD_CABLE_H
 
@@ -13,7 +14,7 @@ static struct {
     size_t count;
 } waiting; /* bytes that the card has not taken yet */
 
-/* Connect or cut as both ends and the cable want it. */
+/* Connect or disconnect, depending on both ends and on whether the cable is plugged in. */
 static inline void cable_plug(bool wants)
 {
     if (wants == linked) {
@@ -29,7 +30,7 @@ static inline void cable_plug(bool wants)
     }
 }
 
-/* To the PC, and what it does about its job. */
+/* Carry bytes to the server and let it send what is due of its job. */
 static inline void cable_up(const uint8_t *job, size_t line)
 {
     static uint8_t bytes[4096];
@@ -38,7 +39,7 @@ static inline void cable_up(const uint8_t *job, size_t line)
     net_host_tick(&host, job, c.now);
 }
 
-/* To the card; returns how many bytes it took. */
+/* Carry bytes to the card. Returns the number that it has taken. */
 static inline size_t cable_down(size_t line)
 {
     const size_t left = sizeof waiting.byte - waiting.count;

@@ -1,4 +1,5 @@
-/* What the tasks of a card under the literal rules do, as tokens from the log of its kernel.
+/* card_tokens - for the tests: tokens, made from the kernel's log, of what the tasks of a network
+ * card do under the literal rules of the source document.
  *
  * rN is unit N of work: a frame that run writes; p, s a turn of pause and stop, h a frame of
  * homing. !x an interrupt with packet x, !button one of an input; >t task t gets the processor;
@@ -72,7 +73,7 @@ static inline void pass(int64_t ns)
     bench_times(&c);
 }
 
-/* Up to so many units in all; the packet comes behind them, within the next. */
+/* Run until a number of units are done, then send a packet, within the next unit. */
 static inline void send_behind(int unit, enum card_command command)
 {
     while (units < unit && c.now < 1000 * BENCH_MS) {
@@ -116,7 +117,7 @@ static inline void begin(void)
     begin_with(bench_config());
 }
 
-/* What has been said so far is forgotten, units count anew. */
+/* Forget the tokens so far; units count from 0 again. */
 static inline void anew(void)
 {
     length = 0;
@@ -124,7 +125,7 @@ static inline void anew(void)
     text[0] = '\0';
 }
 
-/* Until the text has this, but not for ever. */
+/* Run until the text has this token, for a limited time. */
 static inline void until(const char *token)
 {
     for (int i = 0; i < 400 && !strstr(text, token); i++) {

@@ -1,4 +1,5 @@
-/* A flash chip with its store, a PC that sends jobs to it, and a knife for the power. */
+/* store_rig - for the tests: a flash chip with its job store, a sender of jobs, and a power cut at
+ * any moment of any flash operation. */
 #ifndef STORE_RIG_H
 #define STORE_RIG_H
 
@@ -19,9 +20,9 @@ struct rig {
     int64_t now;
     int32_t slots;
     uint32_t pages_sent;
-    uint32_t operations; /* begun so far */
-    uint32_t cut;        /* in this operation the power goes; 0: it does not, */
-    int32_t share;       /* [1/1000] of its time */
+    uint32_t operations; /* number of flash operations begun so far */
+    uint32_t cut;        /* number of the operation in which the power fails; 0: none */
+    int32_t share;       /* [1/1000] of its duration after which it does */
 };
 
 static inline struct sent sent_of(const struct made *file)
@@ -45,7 +46,7 @@ static inline void rig_start(struct rig *r, int32_t slots)
     rig_power(r);
 }
 
-/* Is the job in force this file, byte by byte, and does the store know its hash? */
+/* Whether the job in force is this file, byte by byte, and the store knows its hash. */
 static inline bool rig_holds(struct rig *r, const struct sent *s)
 {
     const struct job_place *p = &r->store.job;
@@ -61,7 +62,7 @@ static inline bool rig_holds(struct rig *r, const struct sent *s)
     return true;
 }
 
-/* One step of the store. False: the power went in the operation that began. */
+/* One step of the store. False if the power failed in the operation that it began. */
 static inline bool rig_step(struct rig *r, int64_t *took)
 {
     const struct flash_chip *c = &r->chip;
@@ -85,7 +86,7 @@ static inline bool rig_step(struct rig *r, int64_t *took)
     return false;
 }
 
-/* Steps until the store waits for something. */
+/* Step until the store waits for something. */
 static inline bool rig_settle(struct rig *r)
 {
     int64_t took = 1;
@@ -95,7 +96,7 @@ static inline bool rig_settle(struct rig *r)
     return true;
 }
 
-/* Send what is missing, in order. False: the power went. */
+/* Send the missing pages in order. False if the power failed. */
 static inline bool rig_send(struct rig *r, const struct sent *s, enum net_code *result)
 {
     int64_t took;

@@ -1,4 +1,5 @@
-/* The player as hardware: everything is looked at again at each clock. Shares no code with it. */
+/* player_ticks - reference model of the player for its tests: the hardware, stepped clock by clock.
+ * It shares no code with the player. */
 #ifndef PLAYER_TICKS_H
 #define PLAYER_TICKS_H
 
@@ -15,10 +16,10 @@ struct ticks {
     int stock, high;
     int running, playing, whole;
     int64_t clock, accumulator, tick, wait, dead, dry, refused, frames;
-    int64_t sum[FRAME_AXES], count[FRAME_AXES];   /* the DDA's accumulators; pulses */
-    int high_left[FRAME_AXES], since[FRAME_AXES]; /* clocks of the pulse; since its end */
-    int backward[FRAME_AXES], wanted[FRAME_AXES]; /* the line; the frame's */
-    int64_t turn_in[FRAME_AXES];                  /* clocks to the change of the line */
+    int64_t sum[FRAME_AXES], count[FRAME_AXES];   /* accumulators of the DDA; pulses so far */
+    int high_left[FRAME_AXES], since[FRAME_AXES]; /* [clocks] left of the pulse; since its end */
+    int backward[FRAME_AXES], wanted[FRAME_AXES]; /* direction line; direction of the frame */
+    int64_t turn_in[FRAME_AXES];                  /* [clocks] until the direction line changes */
     uint32_t told, events;
 };
 
@@ -50,7 +51,7 @@ static inline int ticks_push(struct ticks *t, const struct frame *f)
     return PLAYER_OK;
 }
 
-/* Ticks before an axis' first pulse, by running its accumulator. */
+/* Number of ticks before an axis' first pulse, found by running its accumulator. */
 static inline int64_t ticks_first(const struct ticks *t, int command)
 {
     int64_t sum = t->period / 2, n = 0;
@@ -104,7 +105,7 @@ static inline void ticks_period(struct ticks *t)
     t->dead += t->wait;
 }
 
-/* The clock after this one, at this rate since. */
+/* Advance by one clock at this rate. */
 static inline void ticks_clock(struct ticks *t, int64_t rate)
 {
     int pulse[FRAME_AXES] = { 0 }, end = 0;
@@ -151,7 +152,7 @@ static inline void ticks_clock(struct ticks *t, int64_t rate)
     }
 }
 
-/* All pulses stop; the FIFO is empty. */
+/* Stop all pulses and empty the FIFO. */
 static inline void ticks_clear(struct ticks *t)
 {
     t->running = t->playing = t->stock = t->high = t->whole = 0;

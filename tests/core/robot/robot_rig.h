@@ -1,4 +1,5 @@
-/* Arm, limits and watch of the tests of moves: every cycle joints, their speeds, accelerations. */
+/* robot_rig - for the tests of robot motions: an arm with its limits, and a watch that checks
+ * position, speed and acceleration of the joints in every cycle. */
 #ifndef ROBOT_RIG_H
 #define ROBOT_RIG_H
 
@@ -45,20 +46,20 @@ static inline struct robot_config rig_config(void)
     return c;
 }
 
-/* What has been seen since it was set to 0. */
+/* Extremes since the watch was set to 0. */
 struct rig_watch {
-    double speed, acc; /* highest share of a joint's limits */
-    double path;       /* [mm] farthest from the line a - b */
-    double slowest;    /* [mm/s] between the first and last tenth of it */
+    double speed, acc; /* largest share of a joint's limits */
+    double path;       /* [mm] largest distance from the line a - b */
+    double slowest;    /* [mm/s] lowest speed between its first and last tenth */
     double a[3], b[3];
     double time; /* [s] */
     double before[OPW_JOINTS];
-    double noise; /* [rad] of joints 4, 6 within IN_LINE: the way meets such a place, */
-    int in_line;  /* as now, or within the last two cycles, which show in a difference */
+    double noise; /* [rad] allowed for joints 4, 6 where the path meets the wrist singularity */
+    int in_line;  /* it is there now, or was within the last two cycles */
 };
 
-/* Within IN_LINE of a place that is singular but for rounding joints 4 and 6 are certain to NOISE,
- * less than a pulse. [rad] */
+/* Within IN_LINE [rad] of the wrist singularity, rounding leaves joints 4 and 6 an uncertainty of
+ * NOISE [rad], less than a pulse. */
 static const double IN_LINE = 1e-4, NOISE = 2e-5;
 
 static inline double rig_off(const double at[3], const double a[3], const double b[3], double *part)
@@ -76,7 +77,7 @@ static inline double rig_off(const double at[3], const double a[3], const double
     return sqrt(off);
 }
 
-/* One cycle; the tip is looked at through its joints, if it is to be on a line. */
+/* Watch one cycle. If the tool centre point has to be on a line, it is computed from the joints. */
 static inline void rig_cycle(const struct robot_config *c, struct rig_watch *w)
 {
     struct manipulator arm = c->arm;
@@ -110,13 +111,13 @@ static inline void rig_run(const struct robot_config *c, struct rig_watch *w)
     CHECK(robot_idle(&robot) && !robot.lost);
 }
 
-/* All limits of the joints have been kept: speeds, accelerations. */
+/* Check that speeds and accelerations of all joints have kept to their limits. */
 static inline void rig_kept(const struct rig_watch *w)
 {
     CHECK(w->speed <= 1.0 && w->acc <= 1.0 + 1e-3);
 }
 
-/* At rest at a pose, without the flags of branches. */
+/* Start at rest at a pose, without flags for its branch. */
 static inline void rig_start(const struct robot_config *c, const double xyz[3], const double abc[3])
 {
     double joint[OPW_JOINTS] = { 0.0, 0.0, 0.0, 0.0, 0.5, 0.0 };

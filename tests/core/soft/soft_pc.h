@@ -1,4 +1,5 @@
-/* A PC with its program, and in place of the card one that plays every memory in time. */
+/* soft_pc - for the tests: the robot controller on its PC, with an ideal card that plays every
+ * memory in time. */
 #ifndef SOFT_PC_H
 #define SOFT_PC_H
 
@@ -36,7 +37,7 @@ static struct inform_points points;
 static struct source_text given;
 static struct source source;
 static int64_t now;                /* [clocks] */
-static double fastest[OPW_JOINTS]; /* [rad/s] joints since it was set to 0 */
+static double fastest[OPW_JOINTS]; /* [rad/s] highest speed of each joint since it was set to 0 */
 
 static inline struct soft_config pc_config(void)
 {
@@ -105,7 +106,7 @@ static inline void pc_start(const char *job, const char *gcode)
     soft_start(&soft, &config);
 }
 
-/* Pulses of the memory that the driver wrote last. */
+/* Play the memory that the driver wrote last. */
 static inline void pc_play(void)
 {
     for (int n = 0; n < host.write_slots && !card.stopped; n++) {
@@ -118,7 +119,7 @@ static inline void pc_play(void)
     }
 }
 
-/* One memory's time: an interrupt, the driver's run, what the card makes of it. */
+/* The time of one memory: the interrupt, the driver's run, the pulses of the card. */
 static inline void pc_cycle(void)
 {
     card.irq_seq++;
@@ -147,7 +148,7 @@ static inline void pc_run(int cycles)
     }
 }
 
-/* Until it is in a status, 60 s at most. */
+/* Run until the controller has a status, for 60 s at most. */
 static inline void pc_until(enum soft_status status)
 {
     for (int n = 0; n < 600000 && soft_status(&soft, &panel) != status; n++) {
@@ -171,7 +172,7 @@ static inline void pc_at(double x, double y, double z, double tolerance)
     CHECK_NEAR(soft.robot.pose.at[2], z, tolerance);
 }
 
-/* Angle between the tool's attitude and that of A B C. [deg] */
+/* Angle between the tool's orientation and that of A B C [deg]. */
 static inline double pc_off(double a, double b, double c)
 {
     double want[4], back[4], v[3];

@@ -1,4 +1,5 @@
-/* The driver on the wires of a card, instant by instant of their common grid. */
+/* soft_rig - for the tests: the driver and a card, which exchange their link at the instants of a
+ * common grid. */
 #ifndef SOFT_RIG_H
 #define SOFT_RIG_H
 
@@ -9,7 +10,8 @@
 
 enum { SLOT = 200, SLOTS = 20, INTERVAL = SLOT * SLOTS };
 
-/* [clocks] The document's: 0.5 us, 1 KB and 3 KB at 133 MB/s, 1 us a register, 36 us a point. */
+/* Times of the source document [clocks]: 0.5 us, 1 KB and 3 KB at 133 MB/s, 1 us per register, 36
+ * us per point. */
 enum {
     WAIT = 20,
     COPY_IN = 308,
@@ -31,7 +33,7 @@ static int64_t now;
 static struct fpga_host host;
 static int32_t write_seq, out_seq, reset_seq;
 
-/* A controller without program at rest; then change `config` and call rig_power_on(). */
+/* Set up a controller at rest without a program; then change `config` and call rig_power_on(). */
 static inline void rig_document(void)
 {
     config = (struct soft_config){
@@ -130,7 +132,7 @@ static inline void rig_read_host(void)
     fpga_set_host(&card, host.run, (uint32_t)host.servo);
 }
 
-/* An instant: both read what the other has published at it. */
+/* An instant: each side reads what the other one has published. */
 static inline void rig_instant(void)
 {
     fpga_advance(&card, now);
@@ -148,7 +150,7 @@ static inline void rig_until(int64_t clock)
     }
 }
 
-/* Pulses that the joints commanded so far are from where they began. */
+/* Pulses from the start to the joint position commanded last. */
 static inline int64_t rig_commanded(int i)
 {
     return llround(soft.joint[i] * config.robot.scale[i])

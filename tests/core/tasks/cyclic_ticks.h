@@ -1,4 +1,5 @@
-/* cyclic_ticks - a processor looked at at every clock, and the scheduler asked for the same. */
+/* cyclic_ticks - for the tests of the cyclic tasks: a reference scheduler that is stepped clock by
+ * clock, and the same set of tasks run by the core. */
 #ifndef CYCLIC_TICKS_H
 #define CYCLIC_TICKS_H
 
@@ -9,16 +10,16 @@
 
 enum { N = 5, LONGEST = 4000, WAKES = 60, LOG = 20000 };
 
-/* Tasks with fixed times; the times of woken ones too. */
+/* A set of tasks with fixed execution times, and the clocks of events. */
 struct set {
     struct cyclic_config c;
     int64_t time[N];
     int wakes;
-    int woken;           /* task that is woken: 0, or 1, which has a timer too, */
-    int64_t wake[WAKES]; /* and may begin at these clocks, rising */
+    int woken;           /* task that events wake: 0, or 1, which has a timer, too */
+    int64_t wake[WAKES]; /* [clock] of the events, rising */
 };
 
-/* What happens: a run begins or ends. */
+/* An entry of the log: a run begins or ends. */
 struct entry {
     int64_t clock;
     int task;
@@ -38,13 +39,13 @@ static void note(struct log *l, int64_t clock, int task, enum cyclic_what what)
     }
 }
 
-/* --- A processor that looks at everything at every clock. ----------------------------------- */
+/* --- The reference scheduler, stepped clock by clock. ---------------------------------------- */
 struct tick {
     bool waits, begun, event, run_event;
     int64_t since, from, left;
 };
 
-/* The one of the tasks allowed that goes first, or -1. */
+/* The task that has the processor, of those that are ready; -1 none. */
 static int choose(const struct set *q, const struct tick t[N], int64_t clock, bool interrupts)
 {
     int best = -1;
@@ -123,7 +124,7 @@ static inline void brute(const struct set *q, int64_t clocks, struct log *l)
     }
 }
 
-/* The next wake of a task without a timer, for a clock to come. */
+/* Announce the next event of a task without a timer, at a clock to come. */
 static int wake_ahead(const struct set *q, struct cyclic *s, int wake)
 {
     if (wake < q->wakes && !s->task[0].asked) {
@@ -137,7 +138,7 @@ static int wake_ahead(const struct set *q, struct cyclic *s, int wake)
     return wake;
 }
 
-/* One of a task with a timer, at its clock. */
+/* Announce an event of a task with a timer, at its clock. */
 static int wake_now(const struct set *q, struct cyclic *s, int wake)
 {
     for (; wake < q->wakes && q->wake[wake] <= s->processor.clock; wake++) {
@@ -148,7 +149,7 @@ static int wake_now(const struct set *q, struct cyclic *s, int wake)
     return wake;
 }
 
-/* --- The scheduler, asked in steps of random length. ------------------------------------------ */
+/* --- The core's scheduler, advanced in steps of random length. -------------------------------- */
 static inline void scheduled(const struct set *q, int64_t clocks, uint64_t *seed, struct log *l)
 {
     struct cyclic s;

@@ -1,4 +1,5 @@
-/* Hashes of the tokens of the random programs as the FreeRTOS kernel V11.1.0 played them. */
+/* freertos_hashes - hashes of the tokens of all random programs (task_programs.h), recorded from
+ * the FreeRTOS kernel V11.1.0. */
 #ifndef FREERTOS_HASHES_H
 #define FREERTOS_HASHES_H
 

@@ -1,4 +1,5 @@
-/* Tokens of the scheme of the network card's tasks as the FreeRTOS kernel V11.1.0 played it. */
+/* freertos_scheme - tokens of the scheme of the network card's tasks (task_scheme.h), recorded from
+ * the FreeRTOS kernel V11.1.0. */
 #ifndef FREERTOS_SCHEME_H
 #define FREERTOS_SCHEME_H
 

@@ -1,4 +1,5 @@
-/* Tokens of the first random programs as the FreeRTOS kernel V11.1.0 played them, in pieces. */
+/* freertos_tokens - tokens of the first random programs (task_programs.h), recorded from the
+ * FreeRTOS kernel V11.1.0, as parts of strings. */
 #ifndef FREERTOS_TOKENS_H
 #define FREERTOS_TOKENS_H
 

@@ -1,5 +1,5 @@
-/* Random programs of tasks and interrupts, and the tokens of what happens in them: as the
- * FreeRTOS kernel played them, and as the test plays them on ours.
+/* task_programs - random programs of tasks and interrupts, and tokens of what happens in them, for
+ * comparing this kernel with the FreeRTOS kernel, on which they were recorded.
  *
  * A task does its actions over and over, an interrupt its own once each time. Tokens: @c the clock
  * is c; >t task t gets the processor; !i interrupt i begins; c.a=r action a of context c (t0 .. a
@@ -34,7 +34,7 @@ enum { PROGRAMS = 5000, TASKS = 6, INTERRUPTS = 3, ACTIONS = 8, PENDS = 40 };
  * and of one. */
 enum { BINARY = 0, COUNTING = 3, MUTEX = 4, QUEUE = 6, QUEUES = 8, COUNTS_TO = 3, COUNTS_FROM = 1 };
 
-/* As a time to wait. */
+/* A time to wait that never ends. */
 #define FOR_EVER (-1)
 
 /* on: semaphore, queue or task. value: time, priority, value sent, bits, ticks of a delay. */
@@ -55,7 +55,7 @@ struct program {
     int64_t tick, tick_time, switch_time, entry_time, end;
 };
 
-/* What a program may do. */
+/* Features that a program may use. */
 enum {
     EQUALS = 1,
     FORGETS = 2,
@@ -78,7 +78,7 @@ static inline int some_ticks(uint64_t *seed, int features)
     return features & TIMEOUTS && draw(seed, 0, 2) ? draw(seed, 0, 4) : FOR_EVER;
 }
 
-/* One of those that a task or an interrupt may do; the others are drawn again. */
+/* Draw an action that a task or an interrupt may do. */
 static inline struct action some_action(uint64_t *seed, int features, bool interrupt, int tasks)
 {
     struct action a = { COMPUTE, 0, 0, 0, 0 };
@@ -131,7 +131,7 @@ static inline struct action some_action(uint64_t *seed, int features, bool inter
     }
 }
 
-/* A mutex is taken and given around other actions. With priorities that change: the holder lowers
+/* Put a take and a give of a mutex around other actions. With changing priorities the holder lowers
  * its own, perhaps below one that it was lent, and waits for another semaphore. */
 static inline void hold(uint64_t *seed, struct program *p, int task, int features)
 {

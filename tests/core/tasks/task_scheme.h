@@ -1,5 +1,5 @@
-/* The document's scheme of the network card's tasks, and what comes for them: as the
- * FreeRTOS kernel played it, and as the test plays it on ours.
+/* task_scheme - the source document's scheme of the network card's tasks, and the packets that come
+ * for them, for comparing this kernel with the FreeRTOS kernel, on which it was recorded.
  *
  * Each packet is an interrupt that gives BYTES to the parser, which gives the semaphore of the
  * packet's task. Home works with a lower priority; pause holds the processor until it is released;
@@ -21,7 +21,7 @@ static const char *const NAME[] = { "parse", "home", "stop", "pause", "run" };
 static const char LETTER[] = "-hspr";
 static const int PRIORITY[] = { 6, 5, 4, 3, 1 };
 
-/* A packet is at rising clocks, the first at 10. */
+/* Packets at rising clocks, the first at 10. */
 struct scenario {
     const char *name;
     struct {
@@ -138,7 +138,7 @@ static inline void say(const char *format, ...)
     va_end(list);
 }
 
-/* The interrupt of the packets that are there at this clock. */
+/* Say the interrupts of the packets that come up to this clock. */
 static inline void say_packets(const struct scenario *s, int64_t clock)
 {
     for (; scheme.arrived < s->packets && s->packet[scheme.arrived].clock <= clock;
