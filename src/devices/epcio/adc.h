@@ -77,6 +77,9 @@ enum adc_status {
     ADC_BAD_IGNORED, /* not 0 .. 3 */
 };
 
+/* What a status but 0 says, in a sentence without a full stop. */
+const char *adc_status_text(enum adc_status status);
+
 /* Say what is wrong, the first in the order of adc_status. Every member must be right, also those
  * not in use at present. The other functions take only what was found right here. */
 enum adc_status adc_check_config(const struct adc_config *c);
