@@ -32,7 +32,8 @@ struct file_wide {
     wchar_t text[FILE_WIDE + 10];
 }; /* with a head, and a pattern behind it */
 
-/* The character at p, which moves behind it; 0 at the end, UINT32_MAX if there is none. */
+/* The character at p, which moves behind it; 0 at the end, UINT32_MAX if there is none.
+ * CCN 17: the ranges of UTF-8: of the first byte, of the others, and of the character. */
 static inline uint32_t file_character(const char **p)
 {
     const unsigned char *at = (const unsigned char *)*p;

@@ -63,7 +63,8 @@ static int see(struct encoder *e, int64_t clock)
 }
 
 /* Many like edges in a row need not be walked: either all are seen or none. Whole line periods are
- * skipped, up to a few edges before the end or before one that means something if it is seen. */
+ * skipped, up to a few edges before the end or before one that means something if it is seen.
+ * CCN 17: all edges or none are skipped, and each way leaves the last two to be seen. */
 static void skip(struct encoder *e, int way, int64_t left)
 {
     enum { MARGIN = 8, SETTLED = 4 };

@@ -29,6 +29,7 @@ enum adc_status adc_check_config(const struct adc_config *c)
     return c->time < 1 ? ADC_BAD_TIME : ADC_OK;
 }
 
+/* CCN 18: a row of limits, each with its status. */
 enum adc_status adc_check_control(const struct adc_control *set)
 {
     if (set->mode != ADC_SINGLE && set->mode != ADC_FREE_RUN)

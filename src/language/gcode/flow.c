@@ -300,7 +300,9 @@ static enum fault find_file(struct interpreter *in, const struct program *p, con
 }
 
 /* Where a subprogram begins: behind its line. It is in the text that calls it, in the program, or
- * in the file of its name. */
+ * in the file of its name.
+ * CCN 19: three places are searched in turn, and each step only goes on behind one without a
+ * fault. */
 static enum fault find_sub(struct interpreter *in, const struct program *p, const char *label,
                            int32_t words, struct oword_place *place)
 {
@@ -466,6 +468,7 @@ static enum fault return_line(const struct flow_step *l)
     return leave(l->in, l->s->r);
 }
 
+/* CCN 16: a case for each O word. */
 enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_place here)
 {
     struct flow_step l = { .in = in, .s = s, .here = here, .at = s->at };
