@@ -33,7 +33,8 @@ struct file_wide {
 }; /* with a head, and a pattern behind it */
 
 /* Read the UTF-8 character at *p and move *p behind it; 0 at the end, UINT32_MAX if it is not
- * valid. */
+ * valid.
+ * CCN 17: the ranges of UTF-8: of the first byte, of the others, and of the character. */
 static inline uint32_t file_character(const char **p)
 {
     const unsigned char *at = (const unsigned char *)*p;

@@ -4,7 +4,6 @@ import ast
 import graphlib
 import re
 import subprocess
-from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,7 +11,6 @@ import pytest
 from conftest import ROOT
 
 PACKAGE = ROOT / "src/motionfmu"
-FILES_MAX = 40
 Graph = dict[str, set[str]]
 
 
@@ -126,9 +124,43 @@ def listed() -> list[str]:
     ).stdout.splitlines()
 
 
-def test_no_folder_is_too_full_to_be_read() -> None:
-    count = Counter(str(Path(name).parent) for name in listed())
-    assert {folder: n for folder, n in count.items() if n > FILES_MAX} == {}
+def opening(folder: Path) -> str:
+    """What a folder says it is: its package's docstring, or what its README begins with."""
+    if (module := folder / "__init__.py").exists():
+        return ast.get_docstring(ast.parse(module.read_text())) or ""
+    readme = folder / "README.md"
+    title, _, rest = (readme.read_text() if readme.exists() else "").partition("\n\n")
+    return rest if re.fullmatch("# .+", title) else ""
+
+
+def is_sentence(text: str) -> bool:
+    """Whether a text begins with a sentence: some words in plain text, and what ends them."""
+    first = text.split("\n\n")[0]
+    ends = re.search(r"[.:](\s|$)", first) is not None
+    return ends and re.match(r"[A-Z`\[]", first) is not None and len(first.split()) >= 4
+
+
+def test_every_folder_of_the_sources_says_in_a_sentence_what_it_is() -> None:
+    folders = {ROOT / Path(name).parent for name in listed() if name.startswith("src/")}
+    folders -= {ROOT / "src"}
+    assert len(folders) > 60
+    assert {str(f.relative_to(ROOT)) for f in folders if not is_sentence(opening(f))} == set()
+
+
+def test_a_folder_that_does_not_say_what_it_is_is_found(tmp_path: Path) -> None:
+    assert not is_sentence(opening(tmp_path))
+    for text, says in (
+        ("# Drive\n\nA digital servo drive of one motor, with alarms.\n", True),
+        ("# Drive\n\n`drive_tick` is called once a period: it has no clock.\n", True),
+        ("# Drive\n\n| file | does |\n|---|---|\n", False),
+        ("# Drive\n\n## What is installed\n\nA drive is one. It is.\n", False),
+        ("# Drive\n\nDrive.\n", False),
+        ("A digital servo drive of one motor.\n", False),
+    ):
+        (tmp_path / "README.md").write_text(text)
+        assert is_sentence(opening(tmp_path)) == says
+    (tmp_path / "__init__.py").write_text('"""How a scenario runs, and what a run gave."""\n')
+    assert is_sentence(opening(tmp_path))
 
 
 def test_the_root_holds_the_folders_it_was_designed_with() -> None:

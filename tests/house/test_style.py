@@ -1,4 +1,4 @@
-"""How the project reads: docstrings, sizes, names, purity of the cores."""
+"""How the project reads: docstrings, names, purity of the cores."""
 
 import ast
 import importlib
@@ -18,8 +18,6 @@ BUILT = [
     *sorted((ROOT / "build/lib").glob("motionfmu_stations.so")),
     *sorted((ROOT / "build/parts").glob("*.o")),
 ]
-# A file past this size may be two things: to be looked at, not to be cut for the number.
-LINES_MAX = 600
 # What a core may take from outside: mathematics that IEEE 754 fixes to the bit, and the copies the
 # compiler makes by itself. All other mathematics is in elementary, the same bits everywhere.
 ALLOWED = set(
@@ -144,11 +142,6 @@ def sources() -> list[Path]:
     return [ROOT / n for n in names]
 
 
-def test_no_file_is_two_things() -> None:
-    long = {str(f.relative_to(ROOT)): n for f in sources() if (n := lines(f)) > LINES_MAX}
-    assert long == {}
-
-
 def test_lines_of_c_fit_a_hundred_columns() -> None:
     long = [
         f"{f.relative_to(ROOT)}:{n}"
@@ -158,10 +151,6 @@ def test_lines_of_c_fit_a_hundred_columns() -> None:
         if len(line) > 100
     ]
     assert long == []
-
-
-def lines(file: Path) -> int:
-    return len(file.read_text().splitlines()) if file.exists() else 0
 
 
 def test_c_file_names_are_unique_because_sources_are_packed_flat() -> None:

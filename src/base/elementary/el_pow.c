@@ -27,6 +27,7 @@ static inline bool quick(double x, double y, double *result)
     return el_exp_quick(dd_fast(z.h, z.l + l.l * y), error * fabs(y) + size * 0x1p-100, result);
 }
 
+/* CCN 20: a case for each of the special values that IEEE 754 names. */
 double el_pow(double x, double y)
 {
     double result;

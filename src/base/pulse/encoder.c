@@ -4,6 +4,18 @@
 
 #include "encoder_filter.h"
 
+const char *encoder_status_text(enum encoder_status status)
+{
+    switch (status) {
+    case ENCODER_BAD_FORMAT: return "the encoder format is 0 to 3";
+    case ENCODER_BAD_RATE:   return "an encoder multiplies by 0, 1, 2 or 4";
+    case ENCODER_BAD_WIRING:
+        return "the encoder wiring is a sum of 1, 2, 4, 8; pulse and direction cannot be swapped";
+    case ENCODER_BAD_FILTER: return "the encoder filter is 0 to 65535 clocks";
+    default:                 return "there is at least one line period between two index pulses";
+    }
+}
+
 enum encoder_status encoder_check(const struct encoder_config *c)
 {
     if ((int)c->format < ENCODER_AB || c->format > ENCODER_NONE)

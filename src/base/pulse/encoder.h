@@ -12,6 +12,9 @@
 /* ENCODER_OK, or the first member that is out of range. */
 enum encoder_status encoder_check(const struct encoder_config *c);
 
+/* What a status but 0 says, in a sentence without a full stop. */
+const char *encoder_status_text(enum encoder_status status);
+
 /* Set the counter to zero; the next sample is the first. The configuration must have been
  * checked. */
 void encoder_reset(struct encoder *e, const struct encoder_config *c);

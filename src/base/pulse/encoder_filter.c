@@ -67,7 +67,8 @@ static int see(struct encoder *e, int64_t clock)
 
 /* At a constant speed the filter passes either all edges or none, so edges need not be walked one
  * by one. Skip whole line periods, up to a few edges before the end of the `left` edges or before
- * an index or compare event. */
+ * an index or compare event.
+ * CCN 17: all edges or none are skipped, and each way leaves the last two to be seen. */
 static void skip(struct encoder *e, int way, int64_t left)
 {
     enum { MARGIN = 8, SETTLED = 4 };

@@ -64,6 +64,7 @@ static bool share_valid(double x)
     return x == 0.0 || machine_share(x);
 }
 
+/* CCN 24: a row of limits that all must hold. */
 bool machine_valid(const struct machine *m)
 {
     if (m->dda_length < 10 || m->dda_length > 15 || m->queue_depth < 1) {

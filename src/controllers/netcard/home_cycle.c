@@ -18,6 +18,7 @@ static bool between(double value, double low, double high)
     return value >= low && value <= high;
 }
 
+/* CCN 17: a row of limits that all must hold. */
 bool home_cycle_valid(const struct home_cycle_config *c)
 {
     enum { LONGEST = 2000000000 };

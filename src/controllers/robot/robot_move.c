@@ -50,6 +50,7 @@ static int axis_of(const double v[3])
     return -1;
 }
 
+/* CCN 21: a row of limits that all must hold. */
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
@@ -179,7 +180,8 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
     return false;
 }
 
-/* Whether joints at the end of a path are those that its target asks for. */
+/* Whether joints at the end of a path are those that its target asks for.
+ * CCN 16: a target says the end by joints, by a branch, by turns, or leaves it open. */
 static enum robot_status check_end(const struct manipulator *arm, const struct robot_target *t,
                                    const double end[OPW_JOINTS], struct robot_refusal *why)
 {
@@ -245,6 +247,7 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
     return length == COURSE_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
 }
 
+/* CCN 16: a move that turns first is two moves, which are accepted together or refused together. */
 static enum robot_status along(struct robot *r, const struct robot_config *c,
                                const struct robot_move *move, const struct pose *pose,
                                const double by[3], struct robot_refusal *why)

@@ -7,7 +7,8 @@
 static const double PIVOT = 1e-9;
 
 /* Normal equations of the tip alone: with the mean over all touches taken off, R_i t + p_i loses
- * the point. */
+ * the point.
+ * CCN 20: most of it are loops over the three axes, as the equations have sums. */
 int tip_solve(const struct pose *flange, int count, double tip[3], double *rms)
 {
     double r[TIP_POSES][3][3], mean[3][3] = { { 0 } }, at[3] = { 0 }, a[3][4] = { { 0 } };

@@ -283,7 +283,8 @@ static double turning(const struct survey *s)
 
 /* Whether limits hold everywhere between two parts of the path, not at the steps only: bounds say
  * it of the whole, or of its halves. Where there are none a singular place is met, which the
- * joints pass smoothly, as the steps see it. joint[] goes on from the start to the end. */
+ * joints pass smoothly, as the steps see it. joint[] goes on from the start to the end.
+ * CCN 24: a proof by halves: each way to decide an interval, before it is halved. */
 static bool proved(const struct survey *s, double from, double to, int depth,
                    double joint[OPW_JOINTS], struct look *k)
 {
@@ -355,7 +356,8 @@ static bool torn(const struct survey *s, double from, double size, const struct 
 }
 
 /* Pieces from start to end, each as long as its place among the halves of halves and its evenness
- * allow. WAY_PIECES + 1: too many. */
+ * allow. WAY_PIECES + 1: too many.
+ * CCN 18: a size is taken, halved, doubled again or refused, and a refusal needs the least one. */
 static enum way_status cut(struct way *w, const struct survey *s, double joint[OPW_JOINTS])
 {
     double at = 0.0, size = 1.0;

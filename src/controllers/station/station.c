@@ -71,6 +71,7 @@ static bool modules_valid(const struct pc_config *p)
     return valid;
 }
 
+/* CCN 20: a row of limits, each with its status. */
 static enum station_status check(const struct station_config *c)
 {
     const struct pc_config *p = &c->pc;

@@ -7,6 +7,21 @@ static double volts_min(enum adc_range range)
     return range == ADC_BIPOLAR ? -ADC_VOLTS_MAX : 0.0;
 }
 
+const char *adc_status_text(enum adc_status status)
+{
+    switch (status) {
+    case ADC_BAD_BITS:    return "the ADC has 12, 14 or 16 bit";
+    case ADC_BAD_TIME:    return "a conversion takes one clock or more";
+    case ADC_BAD_MODE:    return "the ADC mode is 0 (single) or 1 (free run)";
+    case ADC_BAD_CHANNEL: return "the ADC channel is 0 to 7";
+    case ADC_BAD_MASK:    return "a mask of ADC channels is 0 to 255";
+    case ADC_BAD_RANGE:   return "the ADC range is 0 (bipolar) or 1 (unipolar)";
+    case ADC_BAD_COMPARE: return "the ADC compares rising (0), falling (1) or both (2)";
+    case ADC_BAD_VOLTS:   return "the compare voltage is outside the range of its channel";
+    default:              return "the ADC comparison ignores 0 to 3 low bits";
+    }
+}
+
 enum adc_status adc_check_config(const struct adc_config *c)
 {
     if (c->bits != 12 && c->bits != 14 && c->bits != 16)
@@ -14,6 +29,7 @@ enum adc_status adc_check_config(const struct adc_config *c)
     return c->time < 1 ? ADC_BAD_TIME : ADC_OK;
 }
 
+/* CCN 18: a row of limits, each with its status. */
 enum adc_status adc_check_control(const struct adc_control *set)
 {
     if (set->mode != ADC_SINGLE && set->mode != ADC_FREE_RUN)

@@ -79,6 +79,9 @@ enum adc_status {
     ADC_BAD_IGNORED, /* not 0 .. 3 */
 };
 
+/* What a status but 0 says, in a sentence without a full stop. */
+const char *adc_status_text(enum adc_status status);
+
 /* ADC_OK, or the first error in the order of adc_status. Members that are not in use at present are
  * checked, too. The other functions take only what passed these checks. */
 enum adc_status adc_check_config(const struct adc_config *c);

@@ -10,6 +10,16 @@ static bool is_edge(enum local_io_edge edge)
     return edge == LOCAL_IO_RISE || edge == LOCAL_IO_FALL || edge == LOCAL_IO_BOTH;
 }
 
+const char *local_io_status_text(enum local_io_status status)
+{
+    switch (status) {
+    case LOCAL_IO_BAD_EDGE:      return "an edge is rising (0), falling (1) or both (2)";
+    case LOCAL_IO_BAD_DEDICATED: return "there are 7 dual-function inputs";
+    case LOCAL_IO_BAD_LDO:       return "there are 8 local outputs";
+    default:                     return "there are 6 servo-on outputs";
+    }
+}
+
 enum local_io_status local_io_check_control(const struct local_io_control *set)
 {
     for (int i = 0; i < LOCAL_IO_LDIS; i++)

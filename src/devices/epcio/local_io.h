@@ -73,6 +73,9 @@ enum local_io_status {
     LOCAL_IO_BAD_SERVO_ON,  /* servo_on has a bit above 5 */
 };
 
+/* What a status but 0 says, in a sentence without a full stop. */
+const char *local_io_status_text(enum local_io_status status);
+
 /* LOCAL_IO_OK, or the first error in the order of local_io_status. The other functions take only
  * what passed this check. */
 enum local_io_status local_io_check_control(const struct local_io_control *set);

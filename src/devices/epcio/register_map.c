@@ -172,6 +172,7 @@ static enum epcio_status write_remote(struct epcio *card, int base, int i, doubl
     return epcio_set_remote_io(card, set, &c);
 }
 
+/* CCN 17: a case for each register with an effect of its own, then the blocks by their ranges. */
 static enum epcio_status write_one(struct epcio *card, int base, int i, double value)
 {
     switch (base) {

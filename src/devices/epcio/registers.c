@@ -318,3 +318,27 @@ enum epcio_status epcio_reset_module(struct epcio *card, enum epcio_module modul
     epcio_plan(card);
     return EPCIO_OK;
 }
+
+/* Of the card's widest pulse. */
+static const char *pulse_text(int status)
+{
+    switch (status) {
+    case PULSE_BAD_FORMAT: return "the pulse format is 0 to 3";
+    case PULSE_BAD_WIRING: return "the pulse wiring is a sum of 1, 2, 4";
+    default:               return "the pulse width is 1 to 65535 clocks";
+    }
+}
+
+const char *epcio_status_text(enum epcio_status status)
+{
+    int number = (int)status & 0xFF;
+    switch ((int)status & ~0xFF) {
+    case EPCIO_PULSE:     return pulse_text(number);
+    case EPCIO_ENCODER:   return encoder_status_text((enum encoder_status)number);
+    case EPCIO_ADC:       return adc_status_text((enum adc_status)number);
+    case EPCIO_LOCAL_IO:  return local_io_status_text((enum local_io_status)number);
+    case EPCIO_REMOTE_IO: return remote_io_status_text((enum remote_io_status)number);
+    case EPCIO_TIMER:     return timer_status_text((enum timer_status)number);
+    default:              return card_status_text(status);
+    }
+}

@@ -5,6 +5,15 @@ static bool period_fits(int64_t period)
     return period >= 1 && period <= TIMER_PERIOD_MAX;
 }
 
+const char *timer_status_text(enum timer_status status)
+{
+    switch (status) {
+    case TIMER_BAD_PERIOD: return "the timer period is 1 to 4294967295 clocks";
+    case TIMER_BAD_VALUE:  return "the watchdog waits 1 to 65535 timer periods";
+    default:               return "the watchdog resets for 1 to 4294967295 clocks";
+    }
+}
+
 enum timer_status timer_set(struct timer *t, bool on, int64_t period, int64_t clock)
 {
     if (!period_fits(period))

@@ -37,6 +37,9 @@ enum timer_status {
     TIMER_BAD_RESET,  /* watchdog: reset period not 1 .. 2^32 - 1 clocks */
 };
 
+/* What a status but 0 says, in a sentence without a full stop. */
+const char *timer_status_text(enum timer_status status);
+
 /* Order at one clock: the reset period ends and the timer fires (either first, the result is the
  * same), the watchdog counts the firing, then comes what the host does at that clock. */
 

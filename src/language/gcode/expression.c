@@ -69,6 +69,7 @@ static double modulo(double a, double b)
     return rest < 0.0 ? rest + fabs(b) : rest;
 }
 
+/* CCN 19: a case for each operation. */
 static double apply(enum operation o, double a, double b)
 {
     switch (o) {
@@ -103,7 +104,9 @@ static bool apply_bits(enum operation o, double a, double b, double *value)
     return true;
 }
 
-/* Apply an operation to what stands left and right of it, into *value. */
+/* Apply an operation to what stands left and right of it, into *value.
+ * CCN 16: each operation refuses operands of its own: vacant ones, 0, negative ones, broken
+ * ones. */
 static enum fault join(struct reading *s, enum operation o, int32_t from, double right,
                        double *value)
 {
@@ -224,7 +227,8 @@ static enum function function(struct reading *s)
     return (enum function)i;
 }
 
-/* FIX and FUP of Fanuc's controls go towards 0 and away from it. */
+/* FIX and FUP of Fanuc's controls go towards 0 and away from it.
+ * CCN 20: a case for each function. */
 static double of(enum function f, double x, bool fanuc)
 {
     switch (f) {
@@ -267,6 +271,7 @@ static enum fault exists(struct reading *s, int32_t from, double *value)
     return FAULT_NONE;
 }
 
+/* CCN 16: EXISTS and ATAN have brackets of their own, and each function its arguments. */
 static enum fault call(struct reading *s, int32_t from, double *value)
 {
     const int32_t at = s->at;

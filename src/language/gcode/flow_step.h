@@ -1,4 +1,4 @@
-/* flow_step - a line with an O word on its way, between the files of flow. */
+/* flow_step - a line with an O word on its way, between flow and flow_fanuc. */
 #ifndef FLOW_STEP_H
 #define FLOW_STEP_H
 
@@ -22,17 +22,10 @@ enum fault flow_again(struct interpreter *in, struct oword_place to, struct faul
 /* The place behind the line that has been read. */
 struct oword_place flow_behind(const struct interpreter *in);
 
-/* Read [ ] and the end of the line. */
-enum fault flow_condition(const struct flow_step *l, double *value);
-
 /* Begin what has an end: `left` as in struct flow_open. */
 enum fault flow_open(const struct flow_step *l, enum flow_kind kind, int32_t left);
 
 /* The end of a WHILE, the innermost that is open: back to its line. */
 enum fault flow_loop_end(const struct flow_step *l);
-
-/* call; return and endsub. */
-enum fault flow_call_line(const struct flow_step *l);
-enum fault flow_return_line(const struct flow_step *l);
 
 #endif

@@ -465,6 +465,7 @@ bool frame_takes_axes(const struct block *b)
     return b->g.code[GCODE_SCALING] == 510 || b->g.code[GCODE_ROTATION] == 680;
 }
 
+/* CCN 17: scaling, rotation and polar words in the order in which they apply. */
 enum fault frame_change(struct interpreter *in, const struct program *p, const struct block *b,
                         struct fault_report *r)
 {

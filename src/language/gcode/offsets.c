@@ -208,6 +208,7 @@ static bool further_parameter(const struct interpreter *in, int number, double *
     return true;
 }
 
+/* CCN 23: each number, or range of numbers, is a row of the language's table. */
 bool offsets_parameter(const struct interpreter *in, const struct program *p, int number,
                        double *value)
 {

@@ -19,7 +19,8 @@ static double coordinate(const struct interpreter *in, const struct program *p, 
     return axis < 0 ? 0.0 : of[axis] / unit;
 }
 
-/* Numbers with a meaning, a row each; false if it has none. */
+/* Numbers with a meaning, a row each; false if it has none.
+ * CCN 16: each number, or range of numbers, is a row of the language's table. */
 static bool machine_value(const struct interpreter *in, const struct program *p, int32_t n,
                           double *value)
 {

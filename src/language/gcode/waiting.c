@@ -21,6 +21,7 @@ static int whole(const struct token *w, int most)
     return w->value >= 0.0 && w->value <= most && w->value == round(w->value) ? (int)w->value : -1;
 }
 
+/* CCN 20: a row of rules of M66, each with its fault, in the order in which they are told. */
 enum fault waiting_input(struct interpreter *in, const struct program *p, const struct block *b,
                          struct fault_report *r)
 {

@@ -136,6 +136,7 @@ static struct inform_point no_point(void)
                                   .user = INFORM_ANY };
 }
 
+/* CCN 18: a case for each kind of word, and the kinds that exclude each other. */
 static int read_tags(struct inform_scan *s, const struct inform_points *points,
                      struct inform_point *p)
 {
@@ -226,7 +227,8 @@ int inform_points_read(struct inform_points *p, const char *text, int64_t length
     return status;
 }
 
-/* Whether the reader would take it. */
+/* Whether the reader would take it.
+ * CCN 19: a row of limits that all must hold. */
 static bool writable(int32_t number, const struct inform_point *p)
 {
     bool good = number >= 0 && number < INFORM_POINTS

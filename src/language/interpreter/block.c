@@ -184,6 +184,7 @@ static enum fault arc(const struct interpreter *in, const struct program *p, con
     return f;
 }
 
+/* CCN 16: a straight line, an arc and a spline differ at each of the steps that they share. */
 enum fault block_motion(struct interpreter *in, const struct program *p, const struct block *b,
                         struct fault_report *r)
 {

@@ -229,7 +229,8 @@ void cutter_drop(struct interpreter *in)
     memset(&in->cutter, 0, sizeof in->cutter);
 }
 
-/* The distance of the centre to the left of the contour. */
+/* The distance of the centre to the left of the contour.
+ * CCN 16: the diameter stands in the block, in the table or with the tool that is loaded. */
 static enum fault set_edge(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const int code = b->g.code[GCODE_CUTTER];
@@ -282,6 +283,8 @@ static const struct token *refused(const struct interpreter *in, const struct bl
     return NULL;
 }
 
+/* CCN 20: a row of rules of G40 to G42, each with its fault, in the order in which they are
+ * told. */
 enum fault cutter_block(struct interpreter *in, const struct program *p, const struct block *b,
                         struct fault_report *r)
 {

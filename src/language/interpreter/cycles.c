@@ -137,6 +137,7 @@ static enum fault keep_aside(struct interpreter *in, const struct block *b, bool
     return f;
 }
 
+/* CCN 25: each word that a cycle keeps: whether it takes it, what it was, and what it may be. */
 static enum fault keep_words(struct interpreter *in, const struct program *p, const struct block *b,
                              bool kept, struct fault_report *r)
 {
@@ -220,6 +221,8 @@ static enum fault set_places(struct interpreter *in, const struct program *p, co
                         : FAULT_NONE;
 }
 
+/* CCN 17: a row of rules that all cycles share, each with its fault, in the order in which they
+ * are told. */
 enum fault cycles_block(struct interpreter *in, const struct program *p, const struct block *b,
                         struct fault_report *r)
 {
@@ -290,7 +293,8 @@ static enum fault shift(struct interpreter *in, const struct program *p, char st
               true, r);
 }
 
-/* One step of the list. */
+/* One step of the list.
+ * CCN 22: a case for each letter of a list of steps. */
 static enum fault step(struct interpreter *in, const struct program *p, const char *steps,
                        struct fault_report *r)
 {

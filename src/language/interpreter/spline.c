@@ -16,6 +16,7 @@ static void way_of(const struct interpreter *in, const struct block *b, const ch
     frame_way(in, way);
 }
 
+/* CCN 19: G5 and G5.1 share all but which words they take and where the inner points lie. */
 enum fault spline_path(struct interpreter *in, const struct program *p, const struct block *b,
                        const double end[AXES], struct path *path, struct fault_report *r)
 {

@@ -173,6 +173,7 @@ static bool homes_beside(const struct gcode *g)
     return (other == 280 || other == 300) && (motion == 0 || motion == 10);
 }
 
+/* CCN 18: each word of a block has an owner, two or none, and most blocks none that matter. */
 enum fault uses_check(const struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct gcode *g = &b->g;

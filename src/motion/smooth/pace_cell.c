@@ -35,7 +35,8 @@ static bool between(const double a[2], const double b[2], const double c[2])
 }
 
 /* Add g0 x0 + g1 x1 <= 1. Planes are by rising g0, falling g1, and each says something that all
- * others together do not, for x0, x1 >= 0. */
+ * others together do not, for x0, x1 >= 0.
+ * CCN 21: each condition compares a plane with its neighbours of one side or both. */
 static void add_plane(struct pace_cell *c, double g0, double g1)
 {
     const double g[2] = { g0, g1 };

@@ -401,6 +401,7 @@ static void take_long(struct shape *s, const struct path *path, double tolerance
     s->whole_tolerance = tolerance;
 }
 
+/* CCN 16: a command may be refused, wait for room, be taken whole, or begin or go on a run. */
 enum shape_status shape_take(struct shape *s, const struct command *c)
 {
     const double merge = s->merge < c->tolerance ? s->merge : c->tolerance;

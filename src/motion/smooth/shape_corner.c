@@ -284,6 +284,7 @@ static bool rounded(struct shape *s, double half, double part, double tolerance)
     return true;
 }
 
+/* CCN 24: a corner is none, cannot be rounded, or is tried with ever shorter curves. */
 void shape_corner_round(struct shape *s, double tolerance)
 {
     struct piece *a = shape_made(s, s->corner_made - 1), *b = shape_made(s, s->corner_made);

@@ -93,6 +93,7 @@ static double to_foot(const struct shape_fit *f, int32_t vertex, int32_t span,
     return square > 0.0 ? along / square * h / 3.0 : 0.0;
 }
 
+/* CCN 19: one loop over the points for all of them and for those that are off. */
 void shape_fit_push(struct shape_fit *f, bool all)
 {
     struct shape_run *r = f->run;

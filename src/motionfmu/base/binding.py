@@ -143,6 +143,7 @@ class Struct:
         value = view[0].item()
         return value.decode() if isinstance(value, bytes) else value
 
+    # CCN 20: each kind of member refuses what it cannot hold, and one message tells of them all.
     def __setitem__(self, name: str, value: Any) -> None:
         view, f = self._view(name), self._fields[name]
         kind = view.dtype.kind if f.times == f.over or view.dtype.kind == "b" else "f"

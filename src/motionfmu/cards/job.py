@@ -73,6 +73,42 @@ def decode(text: bytes, name: str = "job") -> Job:
     for k, row in enumerate(rows):
         if zlib.crc32(row[:CRC_AT].tobytes()) != int.from_bytes(row[CRC_AT:].tobytes(), "little"):
             raise InputError(f"{name}: page {k}: its CRC is wrong")
+    head = _head(text, name)
+    events = []
+    for k in range(head.events):
+        pins, mode, level, width = _EVENT.unpack_from(text, _EVENTS_AT + k * _EVENT.size)
+        events.append(FrameEvent(pins, mode == 1, level, width))
+    commands, numbers = _played(rows[1:], head, name)
+    end = commands.sum(axis=0).tolist()
+    if len(commands) != head.frames or end != head.end:
+        raise InputError(f"{name}: {len(commands)} frames to {end}, not as its header says")
+    return Job(
+        head.period_ns, head.mask, commands, numbers, events,
+        head.pulses_per_m, head.speed_max, head.acc_max, head.jerk_max,
+        head.origin, head.pages, head.rest,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _JobHead:
+    """What the first page of a job file says of the others."""
+
+    period_ns: int
+    mask: int
+    rest: int
+    pages: int
+    frames: int
+    events: int  # In the table
+    pulses_per_m: tuple[int, ...]
+    speed_max: tuple[int, ...]
+    acc_max: tuple[int, ...]
+    jerk_max: tuple[int, ...]
+    end: list[int]  # [pulses] where the last frame ends
+    origin: bytes
+
+
+def _head(text: bytes, name: str) -> _JobHead:
+    """The header of a file of whole pages."""
     h = _HEADER.unpack_from(text)
     magic, version, size, ident, period, mask, rest, pages, frames, count = h[:10]
     if magic != b"MCJ1" or version != 1 or size != PAGE:
@@ -80,24 +116,29 @@ def decode(text: bytes, name: str = "job") -> Job:
     origin = h[30]
     if ident != int.from_bytes(origin[:4], "little"):
         raise InputError(f"{name}: its id {ident:#x} is not of its origin")
-    if not 0 < mask < 1 << AXES or not 0 < period or count > EVENTS or pages != len(rows) - 1:
+    there = len(text) // PAGE - 1
+    if not 0 < mask < 1 << AXES or not 0 < period or count > EVENTS or pages != there:
         raise InputError(f"{name}: page 0: axes {mask}, period {period} ns, {pages} pages")
     if rest > count:
         raise InputError(f"{name}: page 0: event {rest} for rest, {count} in the table")
-    events = []
-    for k in range(count):
-        pins, mode, level, width = _EVENT.unpack_from(text, _EVENTS_AT + k * _EVENT.size)
-        events.append(FrameEvent(pins, mode == 1, level, width))
-    axes = [k for k in range(AXES) if mask >> k & 1]
+    return _JobHead(
+        period, mask, rest, pages, frames, count,
+        h[10:14], h[14:18], h[18:22], h[22:26], list(h[26:30]), origin,
+    )  # fmt: skip
+
+
+def _played(rows: np.ndarray, head: _JobHead, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Commands and event numbers of all pages of data, each of which goes on where one ended."""
+    axes = [k for k in range(AXES) if head.mask >> k & 1]
     commands, numbers, at = [], [], 0
     place = np.zeros(AXES, np.int64)
-    for k, row in enumerate(rows[1:], 1):
+    for k, row in enumerate(rows, 1):
         first, *begin, n, used = _PAGE.unpack_from(row.tobytes())
         where = f"{name}: page {k}"
         if first != at or n == 0 or used > PAYLOAD or list(place) != begin:
             raise InputError(f"{where}: frame {first} at {begin}, {at} at {place.tolist()} wanted")
         found, switched = _frames(row[FIRST_BYTE : FIRST_BYTE + used], len(axes), n, where)
-        if switched.max(initial=0) > count or np.abs(found).max() > COMMAND_MAX:
+        if switched.max(initial=0) > head.events or np.abs(found).max() > COMMAND_MAX:
             raise InputError(f"{where}: an event or a command beyond its range")
         full = np.zeros((n, AXES), np.int32)
         full[:, axes] = found
@@ -105,12 +146,7 @@ def decode(text: bytes, name: str = "job") -> Job:
         at += n
         commands.append(full)
         numbers.append(switched)
-    if at != frames or list(place) != list(h[26:30]):
-        raise InputError(f"{name}: {at} frames to {place.tolist()}, not as its header says")
-    return Job(
-        period, mask, np.vstack(commands), np.concatenate(numbers), events,
-        h[10:14], h[14:18], h[18:22], h[22:26], origin, pages, rest,
-    )  # fmt: skip
+    return np.vstack(commands), np.concatenate(numbers)
 
 
 def _frames(

@@ -196,6 +196,7 @@ class Scanner:
         m = _REST.match(self.text, self.next)
         self.next = m.end() if m else self.next
 
+    # CCN 19: a scanner of one character at a time, whose states are its local variables.
     def encoded(self, drawn: Container[str]) -> Iterator[tuple[str, list[float]]]:
         """Flags and numbers of PE: (":", [pen]), or (flags among "<=", [x, y]).
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from motionfmu.run.suite import Case
 
 
+# CCN 16: each option of the command in the order in which it acts, with its message.
 @app.command()
 def check(  # noqa: PLR0913  (each is an option of the command)
     paths: Annotated[

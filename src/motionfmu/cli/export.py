@@ -1,7 +1,8 @@
-"""The command that makes files for other tools of a scenario."""
+"""The command that makes files for other tools of a scenario or an FMU."""
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -46,10 +47,8 @@ def export(  # noqa: PLR0913  (each is an option)
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
     values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
     """
-    from motionfmu.cli import fmu_export
-
-    if fmu_export.is_fmu(path):
-        fmu_export.pack(path.name, target, fmi or 3, program, settings(set_))
+    if _is_fmu(path):
+        _pack(path.name, target, fmi or 3, program, settings(set_))
         return
     if program is not None:
         raise InputError(
@@ -76,3 +75,26 @@ def export(  # noqa: PLR0913  (each is an option)
     size = f"{written.components} components, {written.connections} connections"
     print(f"{file}: SSP {fmi - 1}.0, FMI {fmi}, {size}; steps of {step:g} s")
     warnings(written.left_out)
+
+
+def _is_fmu(path: Path) -> bool:
+    """Whether a path of the command line is the name of a built FMU and no existing file."""
+    from motionfmu.scenarios.fmus import fmu_names
+
+    return len(path.parts) == 1 and not path.exists() and path.name in fmu_names()
+
+
+def _pack(
+    name: str, target: Path | None, fmi: int, program: Path | None, given: Mapping[str, Any]
+) -> None:
+    """Write an FMU with its files inside, and print what it holds."""
+    from motionfmu.export.single_fmu import packed, program_of
+
+    values = {key.removeprefix(f"{name}."): value for key, value in given.items()}
+    if program is not None:
+        values[program_of(name)] = str(program)
+    file = target or Path(f"{name}.fmu")
+    files, refused = packed(name, file, fmi, values)
+    inside = ", ".join(files) or "nothing"
+    print(f"{file}: FMI {fmi}, {name} with {inside} in its resources, values set: {len(values)}")
+    warnings([f"until other values are set: {line}" for line in refused.splitlines()])

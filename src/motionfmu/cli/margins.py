@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -23,6 +24,8 @@ from motionfmu.cli.common import (
 )
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from motionfmu.analysis.freq.loop_study import LoopStudy, LoopStudyOptions
     from motionfmu.analysis.linear import AxisModel
 
@@ -72,17 +75,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         (part / "report.html").write_text(page_text(linear, studies, about), encoding="utf-8")
         text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
         (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
-    table = bare_table()
-    table.add_column("loop", overflow="fold")
-    for heading in ("gain", "phase", "delay", "peak S", "largest", "simulated"):
-        table.add_column(heading, no_wrap=True)
-    for s in studies:
-        m, ringing = s.margins, s.simulated.gain if s.simulated else math.nan
-        cells = (f"x {m.gain:.4g}", f"{m.phase:.4g}°", f"{m.delay * 1e3:.4g} ms")
-        name = s.at if m.stable else f"{s.at} [bold red]unstable[/]"
-        limits = f"{s.linear.gain:.5g}", f"{ringing:.5g}"
-        table.add_row(name, *cells, f"{m.sensitivity:.4g}", *limits)
-    out.print(table)
+    out.print(_table(studies))
     for line in in_lines(gain_of(linear.scenario, linear.set, axis, linear.at)):
         out.print(line, markup=False)
     if kept := held(linear):
@@ -96,6 +89,21 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
         for note in s.notes:
             out.print(note, markup=False)
     out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+
+
+def _table(studies: Sequence["LoopStudy"]) -> "Table":
+    """Margins of each loop, a row for each."""
+    table = bare_table()
+    table.add_column("loop", overflow="fold")
+    for heading in ("gain", "phase", "delay", "peak S", "largest", "simulated"):
+        table.add_column(heading, no_wrap=True)
+    for s in studies:
+        m, ringing = s.margins, s.simulated.gain if s.simulated else math.nan
+        cells = (f"x {m.gain:.4g}", f"{m.phase:.4g}°", f"{m.delay * 1e3:.4g} ms")
+        name = s.at if m.stable else f"{s.at} [bold red]unstable[/]"
+        limits = f"{s.linear.gain:.5g}", f"{ringing:.5g}"
+        table.add_row(name, *cells, f"{m.sensitivity:.4g}", *limits)
+    return table
 
 
 def _of_the_program(linear: "AxisModel") -> tuple[dict[str, float], str]:

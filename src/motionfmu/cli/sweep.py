@@ -81,8 +81,6 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     """Run a scenario at many points; resumes where an earlier call was ended."""
     needed("study")
     from motionfmu import sweep as sweeps
-    from motionfmu.base.units import spelled
-    from motionfmu.report.numbers import length
     from motionfmu.study.study_axes import option
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
@@ -94,21 +92,26 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     outcome = _sweep(chosen, target, sweeps.Ways(workers, scheduler, new))
     before = f", {outcome.resumed} of them before" if outcome.resumed else ""
     out.print(f"{chosen.name}: {len(outcome.rows)} runs{before}, {outcome.errors} with an error")
-    if (best := outcome.best) is not None:
-        for axis, value in zip(chosen.axes, chosen.points[best], strict=True):
-            out.print(f"  {axis.name} = {value} {spelled(axis.unit)}".rstrip(), markup=False)
-        unit, least = (
-            next(c.unit for c in chosen.columns if c.name == chosen.cost),
-            outcome.cost[best],
-        )
-        text = length(least) if unit == "mm" else f"{least:.6g} {spelled(unit)}".rstrip()
-        cost = f"{chosen.cost} = {text}".replace("[", r"\[")
-        out.print(f"  {cost}  [dim]smallest, run {best}[/]")
-        for told in outcome.at_the_edge:
-            out.print(f"at the edge of the study: {told}; less may lie beyond", markup=False)
+    if outcome.best is not None:
+        _tell_best(chosen, outcome, outcome.best)
     elif not chosen.cost:
         out.print("no cost was named, so no run is the best: --cost RESULT")
     out.print(f"table: {outcome.folder / 'sweep.parquet'}", soft_wrap=True)
     out.print(f"report: {outcome.folder / 'report.html'}", soft_wrap=True)
     if outcome.errors == len(outcome.rows) or (chosen.cost and outcome.best is None):
         raise typer.Exit(FAILED)
+
+
+def _tell_best(chosen: "Study", outcome: "Outcome", best: int) -> None:
+    """Print the values of the best run, its cost, and which of them are at the study's edge."""
+    from motionfmu.base.units import spelled
+    from motionfmu.report.numbers import length
+
+    for axis, value in zip(chosen.axes, chosen.points[best], strict=True):
+        out.print(f"  {axis.name} = {value} {spelled(axis.unit)}".rstrip(), markup=False)
+    unit, least = next(c.unit for c in chosen.columns if c.name == chosen.cost), outcome.cost[best]
+    text = length(least) if unit == "mm" else f"{least:.6g} {spelled(unit)}".rstrip()
+    cost = f"{chosen.cost} = {text}".replace("[", r"\[")
+    out.print(f"  {cost}  [dim]smallest, run {best}[/]")
+    for told in outcome.at_the_edge:
+        out.print(f"at the edge of the study: {told}; less may lie beyond", markup=False)

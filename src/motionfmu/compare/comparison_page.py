@@ -63,6 +63,7 @@ def page_text(found: Pairing) -> str:
     return page.text(frame)
 
 
+# CCN 16: a row of cards, each of which is left out or worded by what the runs have.
 def _cards(found: Pairing) -> str:
     shown = []
     for name, x in (("Run A", found.a), ("Run B", found.b)):

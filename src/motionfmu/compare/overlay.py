@@ -74,6 +74,7 @@ class Pair:
         return float(np.sqrt(np.mean(self.difference**2)))
 
 
+# CCN 16: three things may differ between two recordings, each with its words for the reader.
 def common(a: Side, b: Side) -> Common:
     """Where both runs have values: the samples of the coarser one in the time both cover."""
     if len(a.time) == len(b.time) and np.allclose(a.time, b.time, rtol=0, atol=1e-12):

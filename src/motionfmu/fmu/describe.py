@@ -200,6 +200,7 @@ def _dims(given: Any) -> tuple[int, ...]:
     return tuple(given)
 
 
+# CCN 17: a row of rules that know nothing of each other, each with its message.
 def _wrong(causality: str, name: str, row: dict[str, Any]) -> Iterator[str]:
     """Faults of a row, apart from its start values and from names that stand twice."""
     for key in sorted(set(row) - _KEYS - {"continuous"}):

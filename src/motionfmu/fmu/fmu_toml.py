@@ -8,12 +8,32 @@ from typing import Any
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import ordered, shown, tables_of, text_of
 from motionfmu.fmu import agree, terminals
-from motionfmu.fmu.describe import CAUSALITIES, STRICT, Description, strict_tick, variable
+from motionfmu.fmu.describe import CAUSALITIES, STRICT, Description, Variable, strict_tick, variable
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
 MAY = {"grid", "terminal", "agree"}
 _CORE = r"[a-z][a-z0-9_]{0,63}"
+
+
+def _variables(
+    rows: list[tuple[str, str, Any]],
+) -> tuple[list[Variable], list[tuple[str, str]]]:
+    """The variables of all rows, and what is wrong with rows, by name."""
+    variables: list[Variable] = []
+    wrong: list[tuple[str, str]] = []
+    names: set[str] = set()
+    for causality, name, row in rows:
+        try:
+            variables.append(variable(name, causality, row))
+        except InputError as error:
+            wrong += ((name, told) for told in error.args)
+        if name == STRICT:
+            wrong.append((name, f"the name {name} is taken: every FMU has it"))
+        if name in names:
+            wrong.append((name, f"{name} is described twice"))
+        names.add(name)
+    return variables, wrong
 
 
 def parse(text: str, file: str = "fmu.toml") -> Description:
@@ -33,18 +53,8 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
     if not isinstance(cores, list) or not all(matches(_CORE, core) for core in cores):
         told = f"cores {shown(cores)}: names of folders wanted"
         faults.lines.append(f"{file}:{line_of(text, 'cores')}: {told}")
-    variables, names = [], set()
-    for causality, name, row in rows:
-        try:
-            variables.append(variable(name, causality, row))
-        except InputError as error:
-            faults.lines += (f"{file}:{line_of(text, name)}: {told}" for told in error.args)
-        if name == STRICT:
-            told = f"the name {name} is taken: every FMU has it"
-            faults.lines.append(f"{file}:{line_of(text, name)}: {told}")
-        if name in names:
-            faults.lines.append(f"{file}:{line_of(text, name)}: {name} is described twice")
-        names.add(name)
+    variables, wrong = _variables(rows)
+    faults.lines += (f"{file}:{line_of(text, name)}: {told}" for name, told in wrong)
     periods = {n for causality, n, row in rows if causality == "parameter" and _real(row)}
     if "grid" in doc and doc["grid"] not in periods:
         told = f"grid {shown(doc['grid'])}: the name of a parameter of type f64 wanted"

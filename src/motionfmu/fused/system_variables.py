@@ -128,6 +128,7 @@ def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
         yield Variable("until.step", "output", "i32", text)
 
 
+# CCN 16: each field of one description, which a system with given values fills in another way.
 def described(job: ProgramPlan, used: Roles, tick_ns: int) -> Description:
     """Describe a system as an FMU; its step must be a whole multiple of `tick_ns`."""
     system, given = job.system, job.given or {}

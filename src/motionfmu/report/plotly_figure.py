@@ -1,7 +1,7 @@
 """A diagram as the interactive plot of a page: a figure of plotly as a plain dictionary."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from html import escape
 from typing import Any
 
@@ -21,6 +21,7 @@ from motionfmu.report.diagram import (
     Heat,
     LevelMark,
     LineMark,
+    Mark,
     PointMark,
     SamplesMark,
     Scale,
@@ -153,28 +154,17 @@ def _rows(diagram: Diagram) -> Figure:
     first, *below = (_legend_height(s) for s in diagram.subplots)
     heads = [0.0, *below]
     inner = sum(heads) + sum(s.height for s in diagram.subplots)
-    marks = diagram.marks
-    levels = [len(m.text) for m in marks if isinstance(m, LevelMark) and not m.upright]
-    right = RIGHT + CHARACTER * max(levels, default=0)
-    right += BAR_TEXT if any(isinstance(m, BarMark) for m in marks) else 0
-    over_time = any(isinstance(m, SamplesMark) for m in marks)
+    over_time = _any(diagram.marks, SamplesMark)
     drawn = _layout(inner + TOP + first + BOTTOM, rows=[[] for _ in diagram.subplots])
     drawn["margin"] |= {
         "t": TOP + first,
-        "r": math.ceil(right),
+        "r": _right(diagram),
         "l": OVER_TIME if over_time else LEFT,
     }
     drawn["hovermode"] = "x" if diagram.shape == FREE else "closest"
-    # Axes of one scale are as long as what they show, or show more where their ends are given.
-    alike = {"constrain": "range" if diagram.x[0].ends else "domain"}
-    alike = alike if diagram.shape == EQUAL else {}
-    # The script of a page may magnify an error that is coloured: its axes follow by themselves.
-    ranges: list[Figure] = [{}, {}]
-    if alike and not diagram.heat:
-        low, high = (ends.tolist() for ends in bounds(diagram))
-        ranges = [{"range": [a, b]} for a, b in zip(low, high, strict=True)]
     if over_time and len(diagram.subplots) > 1:
         drawn["hoversubplots"] = "axis"
+    across, up = _one_scale(diagram)
     top = inner
     for i, subplot in enumerate(diagram.subplots):
         top -= heads[i]
@@ -182,23 +172,47 @@ def _rows(diagram: Diagram) -> Figure:
         top -= subplot.height
         drawn[_key("legend", i)] = _legend(domain[1])
         # Plots over time line up: their margin is fixed.
-        more: Figure = {"domain": domain, "automargin": not over_time} | alike
+        more: Figure = {"domain": domain, "automargin": not over_time}
         if diagram.shape == FREE:
             more |= {"nticks": 6 if subplot.height >= FLAT else 4}
-        if alike:
-            more |= {"scaleanchor": "x", "scaleratio": 1} | ranges[1]
-        if any(isinstance(m, BarMark) for m in subplot.marks):
+        if _any(subplot.marks, BarMark):
             more |= {"autorange": "reversed", "tickvals": None, "ticktext": None}
-        drawn[_axis_key("y", i)] = _axis(subplot.y, **more)
+        drawn[_axis_key("y", i)] = _axis(subplot.y, **more | up)
     last, count = _key("y", len(diagram.subplots) - 1), len(diagram.x)
     for j, scale in enumerate(diagram.x):
         width = (1.0 - BESIDE * (count - 1)) / count
         start = j * (width + BESIDE)
-        more = {"domain": [start, min(1.0, start + width)], "anchor": last} if count > 1 else {}
-        drawn[_axis_key("x", j)] = _axis(scale, **{"anchor": last} | more | alike | ranges[0])
+        more = {"domain": [start, min(1.0, start + width)]} if count > 1 else {}
+        drawn[_axis_key("x", j)] = _axis(scale, **{"anchor": last} | more | across)
     if diagram.shape == SPACE:
         _into_space(diagram, drawn)
     return drawn
+
+
+def _any(marks: Iterable[Mark], kind: type) -> bool:
+    return any(isinstance(m, kind) for m in marks)
+
+
+def _right(diagram: Diagram) -> int:
+    """Margin [pixel] right of the plots: room for the texts of levels and of bars."""
+    levels = [len(m.text) for m in diagram.marks if isinstance(m, LevelMark) and not m.upright]
+    bars = BAR_TEXT if _any(diagram.marks, BarMark) else 0
+    return math.ceil(RIGHT + CHARACTER * max(levels, default=0) + bars)
+
+
+def _one_scale(diagram: Diagram) -> tuple[Figure, Figure]:
+    """What makes a millimetre of x as long as one of y, for either axis; nothing elsewhere."""
+    if diagram.shape != EQUAL:
+        return {}, {}
+    # Axes of one scale are as long as what they show, or show more where their ends are given.
+    alike = {"constrain": "range" if diagram.x[0].ends else "domain"}
+    across: Figure = dict(alike)
+    up: Figure = alike | {"scaleanchor": "x", "scaleratio": 1}
+    # The script of a page may magnify an error that is coloured: its axes follow by themselves.
+    if not diagram.heat:
+        low, high = (ends.tolist() for ends in bounds(diagram))
+        across["range"], up["range"] = ([a, b] for a, b in zip(low, high, strict=True))
+    return across, up
 
 
 def _into_space(diagram: Diagram, drawn: Figure) -> None:

@@ -2,7 +2,7 @@
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any, TypeVar
@@ -18,8 +18,6 @@ from motionfmu.scenarios.body import Body, Bounds, Pair
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
 # A bound in words: its name, its numbers, the times at which it holds.
 _BOUNDS = re.compile(r"((?:.*? )??(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
-BOUNDS = ("min", "max", "absmax", "peak", "rms", "final", "changes", "order")
-
 
 Judged = TypeVar("Judged", bound=Any)  # a Verdict, or a verdict of a saved result
 
@@ -140,13 +138,31 @@ def _inside(time: NDArray[Any], windows: tuple[tuple[float, float], ...]) -> NDA
     return np.any([(time >= a - 1e-12) & (time <= b + 1e-12) for a, b in windows], axis=0)
 
 
-def _where(windows: tuple[tuple[float, float], ...]) -> str:
-    low, high = windows[0]
-    return f", {low:g} to {high:g} s" if len(windows) == 1 else f", in {len(windows)} windows"
+def _when(check: Bounds) -> str:
+    """At which times a bound holds, in words; empty if it always does."""
+    if check.at is not None:
+        return f", at {check.at:g} s"
+    if check.windows is None:
+        return ""
+    low, high = check.windows[0]
+    many = len(check.windows)
+    return f", {low:g} to {high:g} s" if many == 1 else f", in {many} windows"
 
 
 def judge(name: str, check: Bounds, time: NDArray[Any], data: NDArray[Any]) -> list[Verdict]:
     """Judge one signal, a row per sample, by every bound of its check; a NaN fails them all."""
+    seen, reason = _statistics(check, time, data)
+    given = ((kind, getattr(check, kind)) for kind in BOUNDS)
+    found = [_JUDGES[kind](name, seen, bound) for kind, bound in given if bound is not None]
+    when = _when(check)
+    what = f"rate over {check.rate:g} s " if check.rate is not None else ""
+    return [replace(v, bounds=f"{what}{v.bounds}{when}", reason=reason or v.reason) for v in found]
+
+
+def _statistics(
+    check: Bounds, time: NDArray[Any], data: NDArray[Any]
+) -> tuple["SampleStatistics", str]:
+    """Of the samples that a check looks at; NaN, and the reason, if a check finds none."""
     end = float(time[-1]) + (float(time[-1] - time[-2]) if len(time) > 1 else 0.0)
     last = check.at if check.at is not None else max((b for _, b in check.windows or ()), default=0)
     reason = f"the run ends at {end:g} s, before {last:g} s" if last > end + 1e-12 else ""
@@ -162,30 +178,7 @@ def judge(name: str, check: Bounds, time: NDArray[Any], data: NDArray[Any]) -> l
         reason = "" if seen.count else "no sample is in a window"  # they are between two
     if reason:
         seen.add(np.full((1, *data.shape[1:]), np.nan))
-    found = []
-    if check.min is not None:
-        found.append(_side(name, ">=", seen.low, check.min))
-    if check.max is not None:
-        found.append(_side(name, "<=", seen.high, check.max))
-    if check.absmax is not None:
-        found.append(_side(name, "|.| <=", seen.size, check.absmax))
-    if check.peak is not None:
-        found.append(_range(name, "peak", seen.size, check.peak))
-    if check.rms is not None:
-        found.append(_range(name, "rms", float(np.sqrt(seen.squares / seen.count)), check.rms))
-    if check.final is not None:
-        found.append(_each(name, "final", seen.last, check.final))
-    if check.changes is not None:
-        found.append(_each(name, "changes", seen.changes, check.changes))
-    if check.order is not None:
-        found.append(_order(name, seen.orders, check.order))
-    where = _where(check.windows) if check.windows is not None else ""
-    where = f", at {check.at:g} s" if check.at is not None else where
-    what = f"rate over {check.rate:g} s " if check.rate is not None else ""
-    bounds = [f"{what}{v.bounds}{where}" for v in found]
-    return [
-        replace(v, bounds=b, reason=reason or v.reason) for v, b in zip(found, bounds, strict=True)
-    ]
+    return seen, reason
 
 
 def _chosen(check: Bounds, time: NDArray[Any], read: Read) -> Iterator[NDArray[np.float64]]:
@@ -219,6 +212,11 @@ class SampleStatistics:
         """The largest magnitude of all values."""
         return float(np.maximum(abs(self.low), abs(self.high)))
 
+    @property
+    def rms(self) -> float:
+        """Root of the mean square of all values."""
+        return float(np.sqrt(self.squares / self.count))
+
     def add(self, x: NDArray[np.float64]) -> None:
         """Take the next block of samples into account."""
         if self._check.changes is not None or self._check.order is not None:
@@ -242,3 +240,17 @@ class SampleStatistics:
         most = len(self._check.order) + 1
         for found, column, changed in zip(self.orders, columns, others, strict=True):
             found += map(float, column[1:][changed][: most - len(found)])
+
+
+# How each bound of a [check] line judges the statistics of a signal; verdicts stand in this order.
+_JUDGES: dict[str, Callable[[str, SampleStatistics, Any], Verdict]] = {
+    "min": lambda name, seen, bound: _side(name, ">=", seen.low, bound),
+    "max": lambda name, seen, bound: _side(name, "<=", seen.high, bound),
+    "absmax": lambda name, seen, bound: _side(name, "|.| <=", seen.size, bound),
+    "peak": lambda name, seen, bound: _range(name, "peak", seen.size, bound),
+    "rms": lambda name, seen, bound: _range(name, "rms", seen.rms, bound),
+    "final": lambda name, seen, bound: _each(name, "final", seen.last, bound),
+    "changes": lambda name, seen, bound: _each(name, "changes", seen.changes, bound),
+    "order": lambda name, seen, bound: _order(name, seen.orders, bound),
+}
+BOUNDS = tuple(_JUDGES)

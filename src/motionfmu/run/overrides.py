@@ -1,9 +1,11 @@
 """In what a run differs from its scenario, in words."""
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from motionfmu.base.toml_lines import shown
 from motionfmu.base.units import spelled
+from motionfmu.scenarios.body import Body
 from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import settings, start_values
 
@@ -35,6 +37,14 @@ def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[s
         file = f"{options.source[end.name]}: " if end.name in options.source else ""
         place = "scenario" if end.name in written else "default"
         found.append(f"{file}{end.name} = {_value(values)}{unit} ({place}: {_value(before)})")
+    found += _steps(options, body)
+    driven = {d.input for d in body.drive}
+    found += [f"{name}: its [[drive]] is left out" for name in sorted(driven & {*options.undriven})]
+    return found
+
+
+def _steps(options: "Options", body: Body) -> Iterator[str]:
+    """A line for each time or number of steps that is not the scenario's own."""
     for key, asked, own, unit in (
         ("stop", options.stop, body.stop, " s"),
         ("step", options.step, body.step, " s"),
@@ -42,7 +52,4 @@ def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[s
     ):
         if asked is not None and asked != own:
             text = own if isinstance(own, str) else f"{own:.9g}{unit}"
-            found.append(f"{key} = {asked:.9g}{unit} (scenario: {text})")
-    driven = {d.input for d in body.drive}
-    found += [f"{name}: its [[drive]] is left out" for name in sorted(driven & {*options.undriven})]
-    return found
+            yield f"{key} = {asked:.9g}{unit} (scenario: {text})"

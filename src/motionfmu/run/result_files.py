@@ -71,6 +71,7 @@ def numbers(result: Result) -> dict[str, Any]:
     return found | {"run": _made(result)}
 
 
+# CCN 18: a table of what a run depends on, a comprehension for each row.
 def _made(result: Result) -> dict[str, Any]:
     """All that a run depends on, and in which two runs may differ."""
     document, library = result.scenario.document, result.scenario.library()

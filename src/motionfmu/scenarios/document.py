@@ -225,6 +225,19 @@ def _meant(place: tuple[str, ...], missing: list[str]) -> tuple[str, str]:
     return "", ""
 
 
+def _missing(found: Any, place: tuple[str, ...], sources: tuple[Source, ...]) -> str:
+    """The text of a key that is missing, or of a list that is too short."""
+    if len(place) == 1:
+        return f"{sources[0].name}: {place[0]} is missing"
+    if isinstance(found["loc"][-1], int):
+        few = list(found["input"])
+        shorter = [p for i, p in enumerate(place[:-1]) if not (place[0] == "check" and i == 2)]
+        told = f"{'.'.join(shorter)} = {shown(few)}: too few values"
+        return f"{_spot(sources, place)}: {told}"
+    return f"{_place(sources, *_table_key(place[:-1]))}: {place[-1]} is missing"
+
+
+# CCN 17: each table that pydantic names in its own way has its exception here.
 def _one(
     found: Any, place: tuple[str, ...], sources: tuple[Source, ...]
 ) -> tuple[tuple[str, ...], str]:
@@ -234,16 +247,9 @@ def _one(
         place = place[:2]  # what follows is a type, or the place in a list
     elif top in ("stop", "limit", "settle", "step"):
         place = place[:1]
-    if found["type"] == "missing" and len(place) == 1:
-        return place, f"{sources[0].name}: {place[0]} is missing"
-    spot = _spot(sources, place)
-    if found["type"] == "missing" and isinstance(found["loc"][-1], int):
-        few = list(found["input"])
-        shorter = [p for i, p in enumerate(place[:-1]) if not (top == "check" and i == 2)]
-        return place, f"{spot}: {'.'.join(shorter)} = {shown(few)}: too few values"
     if found["type"] == "missing":
-        around = _place(sources, *_table_key(place[:-1]))
-        return place, f"{around}: {place[-1]} is missing"
+        return place, _missing(found, place, sources)
+    spot = _spot(sources, place)
     name = list(place[1:] if top == "set" else place)
     if top == "check":
         del name[2:3]  # number of the table: the key names them all

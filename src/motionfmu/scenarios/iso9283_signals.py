@@ -44,6 +44,7 @@ def check_position(resolver: Resolver, name: str, table: str, key: str) -> None:
         raise document.error(f"{key} = {name!r} is no length", table, key)
 
 
+# CCN 16: a row of rules between keys that know nothing of each other, each with its message.
 def _check_keys(resolver: Resolver) -> None:
     """Refuse keys that exclude each other, and a key without one that it needs."""
     document, table = resolver.document, resolver.document.body.iso9283

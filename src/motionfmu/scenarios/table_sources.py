@@ -124,6 +124,7 @@ def merged(sources: Iterable[Source]) -> Tables:
     return found
 
 
+# CCN 16: four rules of merging, each a filter of keys: limits, extends, tables, what is taken away.
 def _over(base: Tables, own: Mapping[str, Any]) -> Tables:
     """Two tables merged key by key; None, which a program can give, takes a key away."""
     out = {k: v for k, v in base.items() if k != "extends"}

@@ -49,14 +49,19 @@ def values_of(end: End, value: Any) -> Values:
             text = f"no NUL and less than {STRING_MAX} bytes wanted"
             raise ValueError(f"{end.name} = {shown(x)}: {text}")
         if isinstance(x, int | float) and not isinstance(x, bool):
-            if not math.isfinite(x):
-                raise ValueError(f"{end.name} = {x!r}: not a finite number")
-            least, most = WHOLE.get(end.port.type, (-math.inf, math.inf))
-            low, high = max(end.port.low, least), min(end.port.high, most)
-            if not low <= x <= high:
-                raise ValueError(f"{end.name} = {x!r}: outside {_bound(low)} .. {_bound(high)}")
+            _check_number(end, x)
         out.append(float(x) if end.port.type.startswith("Float") else x)
     return tuple(out)
+
+
+def _check_number(end: End, x: int | float) -> None:
+    """Refuse what is not finite, or outside the limits of a variable or of its type."""
+    if not math.isfinite(x):
+        raise ValueError(f"{end.name} = {x!r}: not a finite number")
+    least, most = WHOLE.get(end.port.type, (-math.inf, math.inf))
+    low, high = max(end.port.low, least), min(end.port.high, most)
+    if not low <= x <= high:
+        raise ValueError(f"{end.name} = {x!r}: outside {_bound(low)} .. {_bound(high)}")
 
 
 def _bound(limit: float) -> str:

@@ -88,18 +88,23 @@ class Axis:
         # Values outside the range that the variable declares are allowed; their runs are errors.
         source, kind = self.source, self.end.port.type
         if isinstance(source, ListedValues):
-            fits: dict[str, Any] = {"Float64": (int, float), "Int32": int, "Boolean": bool}
-            for x in source.values:
-                boolean = isinstance(x, bool) and kind != "Boolean"
-                if boolean or not isinstance(x, fits.get(kind, str)):
-                    raise ValueError(f"{self.name} = {x!r}: {kind} wanted")
-            return
-        if kind not in ("Float64", "Int32"):
+            self._check_list(source)
+        elif kind not in ("Float64", "Int32"):
             raise ValueError(f"{self.name} is {kind}: a list of values wanted")
-        if isinstance(source, Normal):
-            if sampling == "grid":
-                raise ValueError(f"{self.name}: a grid has no normal distribution")
-            return
+        elif not isinstance(source, Normal):
+            self._check_range(source, sampling)
+        elif sampling == "grid":
+            raise ValueError(f"{self.name}: a grid has no normal distribution")
+
+    def _check_list(self, source: ListedValues) -> None:
+        kind = self.end.port.type
+        fits: dict[str, Any] = {"Float64": (int, float), "Int32": int, "Boolean": bool}
+        for x in source.values:
+            boolean = isinstance(x, bool) and kind != "Boolean"
+            if boolean or not isinstance(x, fits.get(kind, str)):
+                raise ValueError(f"{self.name} = {x!r}: {kind} wanted")
+
+    def _check_range(self, source: Span, sampling: str) -> None:
         shown = f"{self.name} = {source.low:g} .. {source.high:g}"
         if not source.low < source.high:
             raise ValueError(f"{shown}: from is not below to")
@@ -109,7 +114,7 @@ class Axis:
             raise ValueError(f"{shown}: a grid wants n, the number of values")
         if sampling not in ("grid", "") and source.n is not None:
             raise ValueError(f"{shown}: n = {source.n} belongs to a grid, not to {sampling}")
-        if kind == "Int32":
+        if self.end.port.type == "Int32":
             even = self._even(source)
             if broken := [x for x in (even[0], even[-1]) if x != round(x)]:
                 raise ValueError(f"{shown}: {broken[0]:g} is no whole number")

@@ -1,19 +1,24 @@
 """Contour error: every sample against the exact commanded geometry."""
 
+import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from motionfmu.analysis.contour.arcs import Array
 from motionfmu.analysis.contour.assign import assign
 from motionfmu.analysis.contour.circles import circular_tests
 from motionfmu.analysis.contour.contour_result import ContourInput, ContourResult
 from motionfmu.analysis.contour.corners import find_corners
 from motionfmu.analysis.contour.instants import Instants
+from motionfmu.analysis.contour.kinds import Statistics
+from motionfmu.analysis.contour.order import quantiles
+from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.pulse_path import PulsePaths
 from motionfmu.analysis.contour.scaled_values import blocks, places
-from motionfmu.analysis.contour.statistics import statistics
-from motionfmu.analysis.contour.track import follow
+from motionfmu.analysis.contour.track import Track, follow
 
 # The tool is within exp(-5) = 0.7 % of a corner's following distance after five servo lags.
 LAGS = 5.0
@@ -73,8 +78,8 @@ def analyse(
     circles, missing = circular_tests(path, (instants, run.actual), tracks, settle, run.run_in)
     corners = find_corners(path, instants, tracks, cutting, window)
     both = cutting & path.cut[command.track.segment]
-    error = statistics(path, run.time, track, cutting)
-    command_error = statistics(path, run.time, command.track, both)
+    error = _statistics(path, run.time, track, cutting)
+    command_error = _statistics(path, run.time, command.track, both)
     progress(1.0)
     return ContourResult(
         run=run,
@@ -88,6 +93,30 @@ def analyse(
         circles=circles,
         corners=corners,
         missing=missing,
+    )
+
+
+def _statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:
+    """Statistics of the distance over chosen samples, one at least."""
+    rows = np.flatnonzero(chosen)
+    size = track.distance[rows]
+    worst = int(rows[np.argmax(size)])
+    x, y, z = track.feet(np.array([worst]))[0].tolist()
+    mean, square = float(size.mean()), float(np.einsum("i,i->", size, size))
+    top = float(size.max())
+    own = int(track.segment[worst])
+    p50, p95, p99 = quantiles(size, (0.5, 0.95, 0.99))
+    return Statistics(
+        max=top,
+        rms=math.sqrt(square / len(size)),
+        mean=mean,
+        p50=p50,
+        p95=p95,
+        p99=p99,
+        time=float(time[worst]),
+        line=int(path.lines[own]),
+        command=int(path.commands[own]),
+        point=(x, y, z),
     )
 
 

@@ -126,16 +126,21 @@ def watched(found: list[Cause]) -> list[str]:
     return [f"{c}.{n}" for cause in found for c, s in cause.switches.items() for n in s.reached]
 
 
-def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> CauseOff:
-    """Settings that switch a cause off after the run `result`, on top of those of other causes."""
+def _not_reached(cause: Cause, result: "Result") -> str:
+    """Which output stays below the level at which the cause acts; empty if none does."""
     for component, switch in cause.switches.items():
         for name, level in switch.reached.items():
             largest = float(np.abs(result[f"{component}.{name}"]).max())
             if largest < level:
-                text = f"{component}.{name} stays below {level:g} (largest {largest:.3g})"
-                return CauseOff(
-                    {}, text if level != 1 else f"{component}.{name} never", absent=True
-                )
+                told = f"{component}.{name} stays below {level:g} (largest {largest:.3g})"
+                return told if level != 1 else f"{component}.{name} never"
+    return ""
+
+
+def off(cause: Cause, result: "Result", base: Mapping[str, Any]) -> CauseOff:
+    """Settings that switch a cause off after the run `result`, on top of those of other causes."""
+    if why := _not_reached(cause, result):
+        return CauseOff({}, why, absent=True)
     changed: dict[str, Any] = {}
     for component, switch in cause.switches.items():
         ports = result.scenario.resolver.ports[component]

@@ -108,28 +108,22 @@ class Bench:
         names = [port.name if k == own else f"{port.name}[{k}]" for k in range(1, port.count + 1)]
         return [values[n] for n in names]
 
+    # CCN 19: an input is wired, set, given by a law, stated or switched off, and the later way
+    # wins.
     def _alone(self, system: System) -> System:
         """The system of the FMUs that are used, with all other axes switched off."""
         removed = set(self.setup.cut)
-        joined = [
+        wires = [
             w
             for w in system.wires
-            if w.source.component in self.used
-            and w.target.component in self.used
-            and w.target.name not in removed
+            if w.target.component in self.used and w.target.name not in removed
         ]
+        joined = tuple(w for w in wires if w.source.component in self.used)
         components = {c: f for c, f in system.components.items() if c in self.used}
-        given: dict[str, Any] = {s.end.name: s.values for s in system.settings}
-        given |= {s.end.name: s.values for s in system.stimuli}
-        given = {n: v for n, v in given.items() if n.partition(".")[0] in self.used}
-        for c, fmu in components.items():
-            said = carried(fmu)
-            if isinstance(said, Law):
-                given |= {f"{c}.{n}": self._all(c, n, v) for n, v in said.still.items()}
+        given = self._said(system)
         feeds = {w.target.name for w in joined}
-        for w in system.wires:
-            name = w.target.name
-            if w.target.component in self.used and name not in feeds and name not in removed:
+        for w in wires:
+            if w.target.name not in feeds:
                 self._from_law(w, given)
         for name, value in self.axis.at.items():
             if name in self.axis.inputs and name not in feeds:
@@ -141,7 +135,18 @@ class Bench:
                 given[f"{c}.active"] = self.own(c, "active", True, False)
         found = [resolver.end(name, "set", name) for name in given]
         self.given = [(end, given[end.name]) for end in found]
-        return replace(system, components=components, wires=tuple(joined), stimuli=())
+        return replace(system, components=components, wires=joined, stimuli=())
+
+    def _said(self, system: System) -> dict[str, Any]:
+        """Values that the scenario and the laws of the FMUs that are used set, by name."""
+        given: dict[str, Any] = {}
+        given |= {s.end.name: s.values for s in system.settings if s.end.component in self.used}
+        given |= {s.end.name: s.values for s in system.stimuli if s.end.component in self.used}
+        for c, fmu in system.components.items():
+            said = carried(fmu)
+            if c in self.used and isinstance(said, Law):
+                given |= {f"{c}.{n}": self._all(c, n, v) for n, v in said.still.items()}
+        return given
 
     def _from_law(self, wire: Wire, given: dict[str, Any]) -> None:
         """Set an input to the value that an FMU that does not run would give it, by its law."""
@@ -201,6 +206,7 @@ class Bench:
                 slave.start()
             yield slaves
 
+    # CCN 17: the steps of the master stand in its order: read, record, get, put, step.
     def run(self, added: Array, stop: Callable[[Array], bool] | None = None) -> tuple[Array, Array]:
         """Run the FMUs with signals added at the inputs.
 

@@ -84,7 +84,8 @@ def parts(
     gains = {n: (v,) * axis for n, v in set_.items() if isinstance(v, Gain)}
     for k, every in wide.items():
         _complete(system, every, gains if k == axis else {})
-    _check(scenario, axis, at, wide[axis])
+    _check_axis(scenario, axis, wide[axis])
+    _check_point(scenario, at, wide[axis])
     return _blocks(scenario, system, at, wide, before)
 
 
@@ -232,9 +233,8 @@ def _constant(said: Any, own: AxisValues, name: str) -> Any:
     return found
 
 
-def _check(
-    scenario: Scenario, axis: int, at: Mapping[str, float], every: Mapping[str, AxisValues]
-) -> None:
+def _check_axis(scenario: Scenario, axis: int, every: Mapping[str, AxisValues]) -> None:
+    """Refuse an axis that a component does not have, or that is not active in it."""
     for c, own in every.items():
         switch = scenario.resolver.ports[c].get("active")
         if switch is None:
@@ -247,6 +247,12 @@ def _check(
             raise InputError(f"axis = {axis}: {c} has axes 1 to {count}")
         if not own["active"]:
             raise InputError(f"axis = {axis}: it is not active in {c} ({c}.active)")
+
+
+def _check_point(
+    scenario: Scenario, at: Mapping[str, float], every: Mapping[str, AxisValues]
+) -> None:
+    """Refuse an operating point that names what no plant has, or what its loops hold."""
     for name, value in at.items():
         component, _, variable = name.partition(".")
         fmu = scenario.document.body.component.get(component)

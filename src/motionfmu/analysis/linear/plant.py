@@ -185,6 +185,7 @@ class Linearised:
         asked = p.tobytes(), *(tuple(sorted(d.items())) for d in (stated, left or {}))
         return self._points(asked, lambda: self._point(p, stated, left))
 
+    # CCN 16: most of it sorts names into inputs and outputs, by comprehensions.
     def _point(
         self, p: Matrix, stated: Mapping[str, float], left: Mapping[str, float] | None
     ) -> Point:

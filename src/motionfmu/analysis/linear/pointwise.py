@@ -85,6 +85,7 @@ class Pointwise:
     operation that has none.
     """
 
+    # CCN 17: one walk over the operations, in which a place is free again behind its last reader.
     def __init__(self, x: ca.SX, results: list[ca.SX]) -> None:
         made = program([x], results)
         depends = made.depends({0})

@@ -14,6 +14,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.run import Scenario
 from motionfmu.scenarios import system
+from motionfmu.scenarios.fmus import Port
 
 # Frequency [rad/s] that counts as 0, for time constants up to a minute.
 _SLOW = 1e-4
@@ -107,18 +108,24 @@ def found(
     """Parameter, axis, value, Kp [1/s] and loop, as `LoopGain` has them, of each position gain."""
     points = [dict(at)] if at else _motions(scenario)
     models: dict[int, AxisModel | None] = {}
+    for whole, port in _gains(scenario):
+        count = port.count if port.shape else 0
+        every = range(1, count + 1) if count else (axis or 1,)
+        for k in [k for k in every if axis in (None, k)]:
+            if k not in models:
+                models[k] = _first(scenario, k, points, set_)
+            made = models[k]
+            if made is not None and (kp := _acting(made, whole)) is not None:
+                yield (whole, k if count else 0, made.value(whole), *kp)
+
+
+def _gains(scenario: Scenario) -> Iterator[tuple[str, Port]]:
+    """Parameters that a law calls position gains and that are not in 1/s already."""
     for component, fmu in scenario.document.body.component.items():
         own, ports = law.carried(fmu), scenario.resolver.ports[component]
-        kinds = own.gain if isinstance(own, law.Law) else {}
-        for name in [n for n, k in kinds.items() if k == "position" and ports[n].unit != "1/s"]:
-            count = ports[name].count if ports[name].shape else 0
-            every = range(1, count + 1) if count else (axis or 1,)
-            for k in [k for k in every if axis in (None, k)]:
-                if k not in models:
-                    models[k] = _first(scenario, k, points, set_)
-                whole, made = f"{component}.{name}", models[k]
-                if made is not None and (kp := _acting(made, whole)) is not None:
-                    yield (whole, k if count else 0, made.value(whole), *kp)
+        for name, kind in own.gain.items() if isinstance(own, law.Law) else ():
+            if kind == "position" and ports[name].unit != "1/s":
+                yield f"{component}.{name}", ports[name]
 
 
 def _first(
@@ -133,6 +140,7 @@ def _first(
     return None
 
 
+# CCN 17: half of it are conditions within comprehensions: which plants, wires and outputs.
 def _motions(scenario: Scenario) -> list[dict[str, float]]:
     """Slow motions, in both directions, of plants that a law moves: speed by output."""
     found = {}

@@ -111,6 +111,7 @@ def grid(loop: System, points: int = _POINTS) -> Array:
     return omega[(omega >= low) & (omega <= top)]
 
 
+# CCN 16: a figure for each field of the result, and what it is if there is no crossing.
 def margins(loop: System) -> Margins:
     """All margins of a loop.
 

@@ -74,6 +74,8 @@ class PeriodMap:
     period_ns: int
 
 
+# CCN 20: memories, delays and entries share one row of unit vectors, whose order each part relies
+# on.
 def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
     """Step linear blocks through one period as the master does.
 

@@ -1,6 +1,6 @@
 """From flat equations to dx/dt = xdot(x, u, p), block by block."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import casadi as ca
@@ -20,34 +20,23 @@ def load(package: Path, name: str) -> Ode:
 def build(flat: Flat) -> Ode:
     """Make the differential equation of a flat class; Unsupported names class and construct."""
     names = _FlatNames(flat)
-    declared = list(flat.declarations.values())
     residuals = [names.evaluate(e) for e in _residuals(flat)]
-    inputs = [d for d in declared if d.kind == "input"]
-    outputs = [d for d in declared if d.kind == "output"]
-    moving = [d for d in declared if d.kind in ("variable", "output")]
-    states = [d for d in moving if d.fixed]
-    for d in states:
-        if d.name not in names.derivatives:
-            raise names.refuse(f"{d.name} has fixed = true but no derivative")
+    inputs, outputs = _of_kind(flat, "input"), _of_kind(flat, "output")
+    states = [d for d in _of_kind(flat, "variable", "output") if d.fixed]
     x, u, p = (names.column(d.name for d in g) for g in (states, inputs, names.parameters))
-    slopes = ca.vertcat(*(names.derivatives[d.name] for d in states))
-    others = names.column(d.name for d in moving if not d.fixed)
-    dummies = [d.name for d in moving if not d.fixed and d.name in names.derivatives]
-    residuals += _dummy_derivatives(names, residuals, dummies, (x, slopes, others))
-    unknowns = ca.vertcat(slopes, others, *(names.derivatives[n] for n in dummies))
-    solution = _solve(names, ca.vertcat(*residuals), unknowns)
-    xdot = solution[: len(states)]
+    unknowns, solution = _explicit(names, residuals, states)
     y = ca.substitute(names.column(d.name for d in outputs), unknowns, solution)
-    start = [names.evaluate(d.start) if d.start else ca.SX(0.0) for d in states]
+    start, sizes = names.each(states, "start", 0.0), names.each(states, "nominal", 1.0)
     checks = tuple((names.evaluate(c), text) for c, text in flat.asserts)
-    sizes = [names.evaluate(d.nominal) if d.nominal else ca.SX(1.0) for d in states]
-    for text, e in [
-        *((f"start of {d.name}", s) for d, s in zip(states, start, strict=True)),
-        *((f"nominal of {d.name}", s) for d, s in zip(states, sizes, strict=True)),
-        *((f'assert "{text}"', c) for c, text in checks),
-    ]:
-        if ca.depends_on(e, ca.vertcat(x, u, unknowns)):
-            raise names.refuse(f"{text} depends on more than parameters, which is not supported")
+    _refuse_variables(
+        names,
+        [
+            *((f"start of {d.name}", s) for d, s in zip(states, start, strict=True)),
+            *((f"nominal of {d.name}", s) for d, s in zip(states, sizes, strict=True)),
+            *((f'assert "{text}"', c) for c, text in checks),
+        ],
+        ca.vertcat(x, u, unknowns),
+    )
     return Ode(
         name=flat.name,
         description=flat.description,
@@ -58,7 +47,7 @@ def build(flat: Flat) -> Ode:
         x=x,
         u=u,
         p=p,
-        xdot=xdot,
+        xdot=solution[: len(states)],
         y=y,
         start=ca.vertcat(*start),
         checks=checks,
@@ -70,6 +59,11 @@ def build(flat: Flat) -> Ode:
             for d in [*inputs, *outputs, *names.parameters]
         },
     )
+
+
+def _of_kind(flat: Flat, *kinds: str) -> list[Declaration]:
+    """Declarations of some kinds, in the order of the class."""
+    return [d for d in flat.declarations.values() if d.kind in kinds]
 
 
 class _FlatNames:
@@ -129,6 +123,11 @@ class _FlatNames:
             )
         return float(value)
 
+    def each(self, declared: list[Declaration], attribute: str, default: float) -> list[ca.SX]:
+        """An attribute of some variables; the default where it is not declared."""
+        found = [getattr(d, attribute) for d in declared]
+        return [self.evaluate(e) if e else ca.SX(default) for e in found]
+
     def default(self, d: Declaration) -> float:
         """Value of a parameter as declared."""
         value = self.number(d, "binding")
@@ -145,6 +144,30 @@ def _residuals(flat: Flat) -> list[Expression]:
             own = {"VarRef": {"name": {"name": d.name}, "subscripts": []}}
             found.append({"Binary": {"op": "Sub", "lhs": own, "rhs": d.binding}})
     return found
+
+
+def _explicit(
+    names: _FlatNames, residuals: list[ca.SX], states: list[Declaration]
+) -> tuple[ca.SX, ca.SX]:
+    """All unknowns, the derivatives of the states first, and what they are by the equations."""
+    for d in states:
+        if d.name not in names.derivatives:
+            raise names.refuse(f"{d.name} has fixed = true but no derivative")
+    x = names.column(d.name for d in states)
+    slopes = ca.vertcat(*(names.derivatives[d.name] for d in states))
+    rest = [d.name for d in _of_kind(names.flat, "variable", "output") if not d.fixed]
+    others = names.column(rest)
+    dummies = [name for name in rest if name in names.derivatives]
+    residuals = residuals + _dummy_derivatives(names, residuals, dummies, (x, slopes, others))
+    unknowns = ca.vertcat(slopes, others, *(names.derivatives[n] for n in dummies))
+    return unknowns, _solve(names, ca.vertcat(*residuals), unknowns)
+
+
+def _refuse_variables(names: _FlatNames, told: list[tuple[str, ca.SX]], variables: ca.SX) -> None:
+    """Refuse the first of some expressions, each with its name, that is not of parameters alone."""
+    for text, e in told:
+        if ca.depends_on(e, variables):
+            raise names.refuse(f"{text} depends on more than parameters, which is not supported")
 
 
 def _linear_parts(names: _FlatNames, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
@@ -168,6 +191,25 @@ def _dummy_derivatives(
     their derivatives, and all other unknowns.
     """
     x, slopes, others = symbols
+    found = _by_states(names, residuals, dummies, others)
+    inputs = names.column(d.name for d in _of_kind(names.flat, "input"))
+    for name in dummies:
+        if name not in found:
+            raise names.refuse(
+                f"der({name}): {name} is neither a state (fixed = true) nor given by states"
+            )
+        if ca.depends_on(found[name], inputs):
+            raise names.refuse(f"der({name}) asks for the derivative of an input")
+    return [names.derivatives[n] - ca.jtimes(found[n], x, slopes) for n in dummies]
+
+
+def _by_states(
+    names: _FlatNames, residuals: list[ca.SX], dummies: list[str], others: ca.SX
+) -> dict[str, ca.SX]:
+    """Variables, the dummies among them if they can be found, by states and inputs.
+
+    An equation without derivatives gives its unknown where it is the last one in it.
+    """
     derivatives = ca.vertcat(*names.derivatives.values())
     left = {i: e for i, e in enumerate(residuals) if not ca.depends_on(e, derivatives)}
     wanted = set(dummies)
@@ -191,18 +233,7 @@ def _dummy_derivatives(
                 a, b = _linear_parts(names, e, v)
                 found[name] = -b / a
                 progress = True
-    for name in dummies:
-        if name not in found:
-            raise names.refuse(
-                f"der({name}): {name} is neither a state (fixed = true) nor given by states"
-            )
-        if ca.depends_on(found[name], names.column(d for d in _inputs(names.flat))):
-            raise names.refuse(f"der({name}) asks for the derivative of an input")
-    return [names.derivatives[n] - ca.jtimes(found[n], x, slopes) for n in dummies]
-
-
-def _inputs(flat: Flat) -> list[str]:
-    return [d.name for d in flat.declarations.values() if d.kind == "input"]
+    return found
 
 
 def _coupled(names: _FlatNames, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
@@ -213,26 +244,35 @@ def _coupled(names: _FlatNames, a: ca.SX, b: ca.SX, labels: list[str]) -> ca.SX:
         raise names.refuse(str(error)) from None
 
 
+def _blocks(
+    names: _FlatNames, residuals: ca.SX, unknowns: ca.SX
+) -> Iterator[tuple[list[int], list[int]]]:
+    """Rows and columns of each block, those first on which later ones depend."""
+    count = unknowns.numel()
+    if residuals.numel() != count:
+        raise names.refuse(f"{residuals.numel()} equations for {count} unknowns")
+    pattern = ca.jacobian(residuals, unknowns).sparsity()
+    if ca.sprank(ca.DM(pattern)) < count:
+        raise names.refuse("the equations are structurally singular (a constraint on states?)")
+    blocks, rows, columns, row_start, column_start, _, _ = pattern.btf()
+    for k in range(blocks):
+        yield (
+            rows[row_start[k] : row_start[k + 1]],
+            columns[column_start[k] : column_start[k + 1]],
+        )
+
+
 def _solve(names: _FlatNames, residuals: ca.SX, unknowns: ca.SX) -> ca.SX:
     """Solve residuals = 0 by its block lower triangular form."""
     labels = [str(unknowns[i]) for i in range(unknowns.numel())]
-    if residuals.numel() != unknowns.numel():
-        raise names.refuse(f"{residuals.numel()} equations for {len(labels)} unknowns")
-    pattern = ca.jacobian(residuals, unknowns).sparsity()
-    if ca.sprank(ca.DM(pattern)) < len(labels):
-        raise names.refuse("the equations are structurally singular (a constraint on states?)")
-    blocks, rows, columns, row_start, column_start, _, _ = pattern.btf()
-    symbols = [unknowns[c] for c in range(len(labels))]
-    equations = [residuals[r] for r in range(len(labels))]
     values: dict[int, ca.SX] = {}
     place = {label: c for c, label in enumerate(labels)}
-    for k in range(blocks):
-        mine = columns[column_start[k] : column_start[k + 1]]
-        e = ca.vertcat(*(equations[r] for r in rows[row_start[k] : row_start[k + 1]]))
-        v = ca.vertcat(*(symbols[c] for c in mine))
+    for rows, mine in _blocks(names, residuals, unknowns):
+        e = ca.vertcat(*(residuals[r] for r in rows))
+        v = ca.vertcat(*(unknowns[c] for c in mine))
         solved_before = [place[n] for n in map(str, ca.symvar(e)) if place.get(n) in values]
         if solved_before:
-            known = ca.vertcat(*(symbols[c] for c in solved_before))
+            known = ca.vertcat(*(unknowns[c] for c in solved_before))
             e = ca.substitute(e, known, ca.vertcat(*(values[c] for c in solved_before)))
         a, b = _linear_parts(names, e, v)
         if len(mine) == 1:

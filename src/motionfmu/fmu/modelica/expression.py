@@ -129,16 +129,7 @@ class Evaluator:
         f = self._flat.functions.get(name)
         if f is None or f["external"] or len(f["outputs"]) != 1:
             raise self._refuse(f"function {name} (unknown, external or of several outputs)")
-        names: dict[str, ca.SX] = {}
-        for i, port in enumerate(f["inputs"]):
-            given = d["args"][i] if i < len(d["args"]) else None
-            if given is not None and "NamedArgument" in given:
-                raise self._refuse(f"named argument of {name}")
-            if given is None and port["default"] is None:
-                raise self._refuse(f"function {name} without argument {port['name']}")
-            names[port["name"]] = (
-                self(port["default"], names) if given is None else self(given, local)
-            )
+        names = self._arguments(f["inputs"], d, local)
         for port in f["locals"] + f["outputs"]:
             if port["default"] is not None:
                 names[port["name"]] = self(port["default"], names)
@@ -153,6 +144,22 @@ class Evaluator:
                 raise self._refuse(f"array {part['ident']} in function {name}")
             names[part["ident"]] = self(body["value"], names)
         return names[f["outputs"][0]["name"]]
+
+    def _arguments(
+        self, ports: list[dict[str, Any]], d: dict[str, Any], local: Mapping[str, ca.SX] | None
+    ) -> dict[str, ca.SX]:
+        """Values of the inputs of a called function, by name: given by place, or their defaults."""
+        names: dict[str, ca.SX] = {}
+        for i, port in enumerate(ports):
+            given = d["args"][i] if i < len(d["args"]) else None
+            if given is not None and "NamedArgument" in given:
+                raise self._refuse(f"named argument of {d['name']['name']}")
+            if given is None and port["default"] is None:
+                raise self._refuse(f"function {d['name']['name']} without argument {port['name']}")
+            names[port["name"]] = (
+                self(port["default"], names) if given is None else self(given, local)
+            )
+        return names
 
 
 def _choose(condition: ca.SX, then: ca.SX, otherwise: ca.SX) -> ca.SX:

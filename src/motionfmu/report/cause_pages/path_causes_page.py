@@ -84,6 +84,7 @@ def _bars(found: PathExplanation) -> Diagram:
     return one(across, Scale(ticks=titles), marks, BAR_HEIGHT * len(effects))
 
 
+# CCN 17: a table in HTML, most of whose cells may be empty.
 def _effects(found: PathExplanation) -> str:
     kinds = [n for n in FIGURES if n in found.figures]
     rows = []

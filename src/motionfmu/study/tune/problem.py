@@ -1,7 +1,7 @@
 """The problem of a tuning: gains, cost, limits, family of plants."""
 
 import itertools
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -216,13 +216,7 @@ def check_names(problem: Problem, scenario: Scenario) -> None:
 def wrong_names(problem: Problem, scenario: Scenario, place: _Place) -> list[str]:
     """A line for each name of a problem that the scenario's FMUs do not have."""
     lines: list[str] = []
-    named = [((key,), name) for key in ("command", "position") if (name := getattr(problem, key))]
-    named += [(("gains",), name) for name in problem.gains or ()]
-    tables: list[tuple[str, ...]] = [(t,) for t in (*TABLES, "at")]
-    for keys in [*tables, ("limits", "peak"), ("limits", "loop")]:
-        table = problem if keys[:-1] == () else problem.limits
-        named += [((*keys, name), name) for name in getattr(table, keys[-1])]
-    for keys, name in named:
+    for keys, name in _named(problem):
         try:
             scenario.resolver.end(name, "", "")
         except InputError as error:
@@ -236,6 +230,18 @@ def wrong_names(problem: Problem, scenario: Scenario, place: _Place) -> list[str
             text += suggestion(name, gains)
             lines.append(place.line(text, "bounds", name))
     return lines
+
+
+def _named(problem: Problem) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Every name of a variable in a problem, behind the keys under which it stands."""
+    for key in ("command", "position"):
+        if name := getattr(problem, key):
+            yield (key,), name
+    yield from ((("gains",), name) for name in problem.gains or ())
+    for key in (*TABLES, "at"):
+        yield from (((key, name), name) for name in getattr(problem, key))
+    for key in ("peak", "loop"):
+        yield from ((("limits", key, name), name) for name in getattr(problem.limits, key))
 
 
 def _pairs(values: dict[str, Any]) -> dict[str, Any]:

@@ -194,6 +194,7 @@ def merit(values: CostAndLimits) -> float:
     return float(np.log(values.worst)) + _PENALTY * float(-np.minimum(values.slack, 0.0).sum())
 
 
+# CCN 18: stages of one search after each other, of each of which time and evaluations are told.
 def solve(study: TuningFunctions, progress: Callable[[float], None] = lambda share: None) -> Found:
     """Find the gains within the limits; `RanAway` if only a gain's own bound stops it."""
     together = _solver(study, _shared(study))

@@ -10,6 +10,7 @@ import numpy as np
 
 from motionfmu.base.errors import InputError
 from motionfmu.run import Result, Scenario, load
+from motionfmu.study.tune.choice import DecisionVariable
 from motionfmu.study.tune.move import MoveCost
 from motionfmu.study.tune.path_error import EVERY
 from motionfmu.study.tune.problem import Problem, check_names, problem
@@ -26,23 +27,24 @@ _ONE_BY_ONE = 4
 def rounded(study: TuningFunctions, z: Array) -> tuple[Array, CostAndLimits]:
     """The best whole-number registers about a solution."""
     # It is more important to keep the limits than to have the smallest cost.
-    options = []
-    whole = [k for k, v in enumerate(study.variables) if v.whole]
-    for variable, share in zip(study.variables, z, strict=True):
-        value = variable.value(float(share))
-        if variable.whole:
-            both = {float(np.floor(value)), float(np.ceil(value))}
-            kept = sorted(b for b in both if variable.low <= b <= variable.high)
-            options.append([variable.share(b) for b in kept or [round(value)]])
-        else:
-            options.append([variable.share(float(f"{value:.6g}"))])
-    if len(whole) > _ONE_BY_ONE:
+    options = [_near(v, float(share)) for v, share in zip(study.variables, z, strict=True)]
+    if sum(v.whole for v in study.variables) > _ONE_BY_ONE:
         corners = [np.array([o[side] for o in options]) for side in (0, -1)]
     else:
         corners = [np.array(c) for c in itertools.product(*options)]
     tried = [(c, study.values(c, False)) for c in corners]
     good = [t for t in tried if t[1].feasible(TOLERANCE)]
     return min(good or tried, key=lambda t: t[1].worst if good else merit(t[1]))
+
+
+def _near(variable: DecisionVariable, share: float) -> list[float]:
+    """Shares of what a register can hold next to a share: below and above, if they are within."""
+    value = variable.value(share)
+    if not variable.whole:
+        return [variable.share(float(f"{value:.6g}"))]
+    both = {float(np.floor(value)), float(np.ceil(value))}
+    kept = sorted(b for b in both if variable.low <= b <= variable.high)
+    return [variable.share(b) for b in kept or [round(value)]]
 
 
 def tune(
