@@ -64,9 +64,10 @@ def run(
     (folder / "tests").mkdir(exist_ok=True)
     (folder / "pytest.ini").write_text(INI)
     (folder / "tests/test_some.py").write_text(TESTS)
+    (folder / "tests/conftest.py").write_text('pytest_plugins = ["skip_list"]\n')
     (folder / "tests/skips.toml").write_text(listed)
     own = {"MOTIONFMU_SKIPS": asked, "PYTHONPATH": str(ROOT / "tests/helpers")}
-    line = [sys.executable, "-m", "pytest", "-p", "skip_list", "-p", "no:cacheprovider"]
+    line = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider"]
     return subprocess.run(
         [*line, *options], cwd=folder, env=os.environ | own, capture_output=True, text=True
     )
