@@ -30,4 +30,4 @@ def _later(case: Any) -> Any:
     if isinstance(case, tuple):  # pytest.param gives one, too
         values = tuple(getattr(case, "values", case))
         marks, name = getattr(case, "marks", ()), getattr(case, "id", None)
-    return pytest.param(*values, marks=[*marks, pytest.mark.more], id=name)
+    return pytest.param(*values, marks=(*marks, pytest.mark.more), id=name)
