@@ -13,6 +13,7 @@ VENV := import ensurepip, venv
 # In a log a build tells what is wrong; on a terminal, how far it is, too.
 QUIET := $(if $(MAKE_TERMOUT),,-- --quiet)
 
+.NOTPARALLEL: # ninja, ctest and pytest share out the cores
 .PHONY: needs demo test test-more test-all test-long sanitized check bench importers warnings fuzz explore mutants build export wheel clean
 
 demo: build                     ## build all and run the demo scenario
@@ -39,7 +40,7 @@ wheel: build export             ## the wheel for pip in build/wheel, tried in a 
 # Nothing of one test run is repeated by the next: test, test-more and test-long have no test in common.
 PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25
 # C tests of a build; those that hold are told in its tests.txt alone.
-CTEST = ctest --test-dir $(1) -j 2 --output-on-failure > $(1)/tests.txt || { grep -v " Passed " $(1)/tests.txt; \
+CTEST = ctest --test-dir $(1) -j 2 --output-on-failure > $(1)/tests.txt || { grep -v -e " Passed " -e " Start " $(1)/tests.txt; \
   echo "C tests failed in $(1)" >&2; exit 1; }; grep "tests passed" $(1)/tests.txt
 
 test: build check               ## what every change needs, in six minutes: style, C tests, most Python tests
