@@ -10,8 +10,11 @@ export PYTHONDONTWRITEBYTECODE :=
 NEEDS := import sys; v = sys.version_info; \
   sys.exit(None if v >= (3, 11) else "%s is Python %d.%d, 3.11 or newer is needed: make PYTHON=..." % ((sys.executable,) + tuple(v[:2])))
 VENV := import ensurepip, venv
+# In a log a build tells what is wrong; on a terminal, how far it is, too.
+QUIET := $(if $(MAKE_TERMOUT),,-- --quiet)
 
-.PHONY: needs demo test test-long check bench importers warnings fuzz explore mutants build export wheel clean
+.NOTPARALLEL: # ninja, ctest and pytest share out the cores
+.PHONY: needs demo test test-more test-all test-long sanitized check bench importers warnings fuzz explore mutants build export wheel clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -25,24 +28,38 @@ needs:
 
 build: needs .venv/installed
 	@test -f build/build.ninja || cmake --preset default -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
-	@cmake --build build
+	@cmake --build build $(QUIET)
 
 export: needs .venv/exporting    ## FMUs for Linux, Windows and macOS in build/export/fmus
 	@grep -qs MOTIONFMU_EXPORT:BOOL=ON build/CMakeCache.txt || cmake --preset export -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
-	@cmake --build build --target export
+	@cmake --build build --target export $(QUIET)
 
 wheel: build export             ## the wheel for pip in build/wheel, tried in a new environment
 	$(BIN)/python tests/wheel/wheel.py build/export build/wheel
 
-test: build check               ## everything: style, C tests (also sanitized), Python tests
-	@ctest --test-dir build -j 2 --output-on-failure
-	@test -f build/asan/build.ninja || cmake --preset asan -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
-	@cmake --build build/asan
-	@ctest --test-dir build/asan -j 2 --output-on-failure
-	$(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25 --durations-min=5
+# Nothing of one test run is repeated by the next: test, test-more and test-long have no test in common.
+PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25
+# C tests of a build; those that hold are told in its tests.txt alone.
+CTEST = ctest --test-dir $(1) -j 2 --output-on-failure > $(1)/tests.txt || { grep -v -e " Passed " -e " Start " $(1)/tests.txt; \
+  echo "C tests failed in $(1)" >&2; exit 1; }; grep "tests passed" $(1)/tests.txt
 
-test-long: build                ## what takes an hour and `make test` shows of a few: FMPy on all scenarios
-	$(BIN)/python -m pytest -m long -n 2 --dist loadgroup --durations=25 --durations-min=60
+test: build check               ## what every change needs, in six minutes: style, C tests, most Python tests
+	@$(call CTEST,build)
+	$(PYTEST) --durations-min=5
+
+test-more: build export sanitized    ## what is slow and stands by itself: sanitized C tests, exports, tests marked `more`
+	@$(call CTEST,build/asan)
+	MOTIONFMU_SKIPS=listed $(PYTEST) -m "more and not long" --durations-min=20
+
+test-all: export MOTIONFMU_SKIPS = listed
+test-all: test test-more        ## everything but test-long; a skip that is not in tests/skips.toml is an error
+
+test-long: build                ## what takes an hour and the others show of a few: FMPy on all scenarios
+	$(PYTEST) -m long --durations-min=60
+
+sanitized: build                ## C tests and fuzz harnesses with AddressSanitizer and UBSan in build/asan
+	@test -f build/asan/build.ninja || cmake --preset asan -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
+	@cmake --build build/asan $(QUIET)
 
 check: needs .venv/installed          ## formatting, lint, types
 	git ls-files '*.c' '*.h' '*.inc' | xargs $(BIN)/clang-format --dry-run --Werror

@@ -8,6 +8,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from few_cases import few
 from fmi_tools import OK, Instance, random_inputs, run, start_values, unpacked
 from fmpy import simulate_fmu
 from fmpy.build import build_platform_binary
@@ -165,7 +166,7 @@ def quick_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, st
     }
 
 
-@every_fmu
+@pytest.mark.parametrize("name", few(fmu_names(), ["epcio", "scope"]))
 def test_packed_sources_give_the_same_bits(
     name: str, tmp_path: Path, quick_build: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -19,7 +19,7 @@ from motionfmu.cards.server import Cards
 from motionfmu.cards.sim import FLASH_BYTES
 
 HOST = "127.0.0.1"
-PATIENCE = 10.0  # [s] for what comes at once on a machine that is not asleep
+PATIENCE = 120.0  # [s] for what comes at once, however busy the machine is
 WAIT = 0.005  # [s] until a soft card connects again
 
 

@@ -164,6 +164,7 @@ def told(compiler: list[str], files: list[Path], headers: Path) -> list[str]:
     return [t for t in found if re.search("warning|error", t)]
 
 
+@pytest.mark.more
 def test_installed_headers_are_cxx(tmp_path: Path) -> None:
     """All of them in two orders, and each alone in C and in C++, without a warning."""
     if not shutil.which("g++"):

@@ -64,6 +64,7 @@ def printed(example: tuple[str, str, str, list[str]], prefix: Path, folder: Path
     return in_c
 
 
+@pytest.mark.more
 def test_card_in_c_and_python_prints_the_same_numbers(prefix: Path, tmp_path: Path) -> None:
     text = printed(EXAMPLES[0], prefix, tmp_path)
     assert re.findall(r"pulses (.*), int", text) == ["0 0 0", "15000 12000 5000"]
@@ -71,6 +72,7 @@ def test_card_in_c_and_python_prints_the_same_numbers(prefix: Path, tmp_path: Pa
     assert "refused: -7" in text
 
 
+@pytest.mark.more
 def test_robot_in_c_and_python_prints_the_same_numbers(prefix: Path, tmp_path: Path) -> None:
     text = printed(EXAMPLES[1], prefix, tmp_path)
     rests = re.findall(r"X +(\S+)  Y +(\S+)  Z +(\S+) mm +0.00 mm/s", text)
@@ -81,6 +83,7 @@ def test_robot_in_c_and_python_prints_the_same_numbers(prefix: Path, tmp_path: P
     assert "out of reach at" in text and text.count("OT 1") > 50
 
 
+@pytest.mark.more
 def test_a_project_finds_the_package_in_c_and_cxx(prefix: Path, tmp_path: Path) -> None:
     needs("g++")
     project = copied("virtual_card", tmp_path)
@@ -97,6 +100,7 @@ def test_a_project_finds_the_package_in_c_and_cxx(prefix: Path, tmp_path: Path) 
     assert path == pytest.approx(2.1, abs=0.02)
 
 
+@pytest.mark.more
 def test_installed_libraries_show_names_of_the_project_alone(prefix: Path) -> None:
     found = output("nm", "-g", "--defined-only", *(prefix / "lib/motionfmu").glob("*.a"))
     shown = {words[2] for line in found.splitlines() if len(words := line.split()) == 3}
@@ -104,6 +108,7 @@ def test_installed_libraries_show_names_of_the_project_alone(prefix: Path) -> No
     assert {name for name in shown if not name.startswith("motionfmu_")} == set()
 
 
+@pytest.mark.more
 def test_a_program_may_have_names_of_the_sources(prefix: Path, tmp_path: Path) -> None:
     own = "int ring_push(void) { return 1; }\nint adc_start(void) { return 2; }\n"
     call = (
@@ -155,6 +160,7 @@ def test_the_example_of_the_robot_station_runs() -> None:
     assert "joint 1 to 190 deg, limit 180 deg" in told and where == "[1000.0, 100.0, 900.0]"
 
 
+@pytest.mark.more
 def test_a_master_of_ones_own_finds_the_bits_of_a_run(tmp_path: Path) -> None:
     folder = ROOT / "examples/fmpy_loop"
     told = output(sys.executable, folder / "circle.py", FMUS, cwd=tmp_path)
@@ -172,6 +178,7 @@ def test_a_master_of_ones_own_finds_the_bits_of_a_run(tmp_path: Path) -> None:
     assert files == set(re.findall(r"\]\(([\w.]+)\)", (folder / "README.md").read_text()))
 
 
+@pytest.mark.more
 def test_the_script_of_a_student_shows_half_the_backlash(tmp_path: Path) -> None:
     folder = ROOT / "examples/student_backlash"
     rows = output(sys.executable, folder / "backlash.py", cwd=tmp_path).splitlines()[2:]

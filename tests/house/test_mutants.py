@@ -10,6 +10,7 @@ from conftest import ROOT
 
 sys.path.append(str(ROOT / "tests/mutants"))
 
+import mutants
 from changes import Change, changes
 from nearest_tests import of_c, of_python
 
@@ -99,3 +100,18 @@ def test_most_cores_have_tests_that_are_near() -> None:
 def test_tests_of_a_module_are_those_that_name_it() -> None:
     near = of_python(ROOT, ROOT / "src/motionfmu/study/tune/choice.py")
     assert len(near) == 3 and "tune" in near[0]
+
+
+def test_tests_that_make_test_leaves_out_are_asked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(mutants, "TREE", tmp_path)
+    (tmp_path / "pytest.ini").write_text(
+        "[pytest]\naddopts = -m 'not long and not more'\nmarkers =\n    more\n    long\n"
+    )
+    text = (
+        "import pytest\ndef test_one():\n    pass\n@pytest.mark.more\ndef test_two():\n    assert "
+    )
+    for outcome in (True, False):
+        (tmp_path / "test_some.py").write_text(f"{text}{outcome}\n")
+        assert mutants.python_tests(["test_some.py"]) == outcome

@@ -96,6 +96,7 @@ def examples(seed: str, *options: str) -> list[str]:
     return re.findall(r"^Test case: .*?^\)", done.stdout, re.MULTILINE | re.DOTALL)
 
 
+@pytest.mark.more
 def test_two_runs_draw_the_same_and_exploring_does_not() -> None:
     one = examples("1")
     assert len(one) >= 200

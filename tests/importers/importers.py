@@ -43,7 +43,7 @@ class Tool:
     passed: str = PASSED  # what it says of a good one then
     ssp: bool = False  # it runs an SSP of FMI 2, too
     known: dict[str, str] = field(default_factory=dict)  # its own faults: verdict or pattern, why
-    quick: bool = True  # it is in make test, where it is installed
+    quick: bool = True  # it is in make test-more, where it is installed
 
     def why(self, verdict: str) -> str:
         """What is known of a verdict that is a fault of its own; empty if it is none."""

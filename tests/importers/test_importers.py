@@ -11,7 +11,7 @@ import motionfmu
 from motionfmu.export import as_fmu, as_ssp
 
 STEPS = 6000  # to within the first circle: all axes, pulses and interrupts are at work
-TOOLS = importers.tools()
+TOOLS = [tool for tool in importers.tools() if tool.quick and not tool.checks]
 DEMO = importers.ROOT / "scenarios" / "circle"
 
 
@@ -42,12 +42,11 @@ def _column(ran: motionfmu.Result, name: str) -> np.ndarray:
     return values.reshape(len(values), -1)[:, element]
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("tool", TOOLS, ids=lambda tool: tool.folder)
 def test_an_exported_system_gives_the_projects_bits(
     tool: importers.Tool, systems: dict[importers.Case, np.ndarray]
 ) -> None:
-    if not tool.quick or tool.checks:
-        pytest.skip(f"{tool.name} is for make importers")
     if missing := tool.missing():
         pytest.skip(f"{tool.name} needs {missing}")
     if tool.install and not tool.installed():

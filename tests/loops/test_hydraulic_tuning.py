@@ -17,6 +17,9 @@ from motionfmu.study.tune import RanAway, Tuned, problem, read, tune
 from motionfmu.study.tune.move import MoveCost
 from motionfmu.study.tune.trial import tried
 
+# What they share is made once, by one worker.
+pytestmark = pytest.mark.xdist_group("hydraulic tuning")
+
 SCENARIO = ROOT / "scenarios/hydraulic_gain"
 SCALE = "controller.scale_phase"
 

@@ -121,7 +121,8 @@ def make(targets: list[str]) -> bool:
 
 
 def python_tests(files: list[str]) -> bool:
-    options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:randomly"]
+    # Those too that `make test` leaves to `make test-more`.
+    options = ["-x", "-q", "-m", "not long", "-p", "no:cacheprovider", "-p", "no:randomly"]
     return ran([sys.executable, "-c", PYTEST, *options, *files], TREE)
 
 
@@ -196,7 +197,7 @@ def main() -> None:
         "Python_EXECUTABLE": sys.executable,
         "MOTIONFMU_FMUS": "OFF",
         "CMAKE_BUILD_TYPE": "Debug",
-        # A step beyond an array ends the test, as it does in the sanitized build of `make test`.
+        # A step beyond an array ends the test, as in the sanitized build of `make test-more`.
         "CMAKE_C_FLAGS_DEBUG": "-O1 -fsanitize=bounds -fsanitize-undefined-trap-on-error",
     }
     configured = ["cmake", "-G", "Ninja", "-S", TREE, "-B", BUILT]

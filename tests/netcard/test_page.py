@@ -163,7 +163,7 @@ def test_a_page_hears_of_all_cards_then_of_those_that_change(fleet: Fleet) -> No
         del fleet.cards[2]
         fleet.tell("status", 1, "")
         assert line.receive_json() == {"cards": [], "gone": [2], "events": []}
-    deadline = time.monotonic() + 5
+    deadline = time.monotonic() + 60  # it takes milliseconds
     while fleet.queues and time.monotonic() < deadline:
         time.sleep(0.01)
     assert fleet.queues == []

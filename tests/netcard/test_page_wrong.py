@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from test_page import CARD, TOKEN, client
@@ -49,18 +50,32 @@ def test_the_routes_tried_are_all_there_are(tmp_path: Path) -> None:
     assert {p for p in posts if not any(path.startswith(p) for path in POSTS)} == set()
 
 
-@given(
+ANYTHING = given(
     st.sampled_from(POSTS),
     st.dictionaries(st.sampled_from(NAMES), JSON | st.sampled_from(NAMES)) | JSON,
     st.none() | st.binary(max_size=20),
 )
+
+
+@ANYTHING
 @example("/cards/1/command", {"name": "start", "card": 5}, None)
 @example("/cards/1/command", {"name": "\ud800"}, None)
 @example("/config/read", {"text": "\ud800 = 1", "name": "\ud800"}, None)
 @example("/cards/1/command", {}, b'{"name": "home", "axes": ' + b"9" * 5000 + b"}")
 @example("/open?page=%ff", {}, b"PD1,1")
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=40)
 def test_wrong_types_are_refused_in_words(path: str, asked: Any, raw: bytes | None) -> None:
+    refused(path, asked, raw)
+
+
+@pytest.mark.more
+@ANYTHING
+@settings(deadline=None, max_examples=300)
+def test_many_wrong_types_are_refused_in_words(path: str, asked: Any, raw: bytes | None) -> None:
+    refused(path, asked, raw)
+
+
+def refused(path: str, asked: Any, raw: bytes | None) -> None:
     """Whatever comes, the answer is what it is good for, or 4xx with a message."""
     body = json.dumps(asked).encode() if raw is None else raw
     answer = SERVED.post(path, content=body)

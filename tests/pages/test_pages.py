@@ -11,6 +11,9 @@ from made import made
 
 import motionfmu
 
+# What they share is made once, by one worker.
+pytestmark = pytest.mark.xdist_group("pages")
+
 DESK = {"width": 1400, "height": 900}
 KINDS = (
     "contour",

@@ -12,6 +12,9 @@ from hypothesis import strategies as st
 from plant_library import PACKAGE, ROOT, Library, Run
 from scipy.integrate import cumulative_simpson
 
+# What they share is made once, by one worker.
+pytestmark = pytest.mark.xdist_group("hydraulics")
+
 AGREED = 1e-6  # [1] of the largest value of an output
 
 

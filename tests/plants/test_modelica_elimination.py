@@ -1,6 +1,6 @@
 """The solution of coupled linear equations against numpy, and pivots that are refused."""
 
-import time
+import sys
 
 import casadi as ca
 import numpy as np
@@ -64,13 +64,24 @@ def test_parameters_are_looked_at_near_their_values():
     assert found == pytest.approx([5.0, 2.0])
 
 
-def test_a_hundred_unknowns_in_a_second():
-    """As many as an arm of six joints has, as a chain."""
+def test_a_hundred_unknowns_are_soon_solved():
+    """As many as an arm of six joints has, as a chain: counted, as seconds are the machine's."""
     n, s = 100, ca.SX.sym("s", 100)
     a = ca.SX.eye(n)
     for k in range(1, n):
         a[k, k - 1] = 0.4 * ca.cos(s[k])
         a[k - 1, k] = 0.4 * ca.sin(s[k])
-    begun = time.perf_counter()
-    elimination.solve(a, s, {}, [f"z{k}" for k in range(n)])
-    assert time.perf_counter() - begun < 5.0
+    calls = 0
+
+    def count(_frame, event, _what):
+        nonlocal calls
+        calls += event in ("call", "c_call")
+
+    before = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        x = elimination.solve(a, s, {}, [f"z{k}" for k in range(n)])
+    finally:
+        sys.setprofile(before)
+    assert 2e4 < calls < 4e5  # 1.2e5, half a second
+    assert n < ca.Function("x", [s], [x]).n_instructions() < 25 * n

@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import bits
@@ -22,8 +23,12 @@ EXPORTED = Path(os.environ.get("MOTIONFMU_EXPORTED", ROOT / "build/export/fmus")
 FMUS = sorted(EXPORTED.glob("*.fmu"))
 NEWEST_GLIBC = (2, 17)
 MADE = "make export has not run"
-exported = pytest.mark.skipif(not FMUS, reason=MADE)
 every_fmu = pytest.mark.parametrize("fmu", FMUS or [Path("none")], ids=lambda f: f.stem)
+
+
+def exported(test: Callable[..., None]) -> Callable[..., None]:
+    """A test that looks at exports."""
+    return pytest.mark.more(pytest.mark.skipif(not FMUS, reason=MADE)(test))
 
 
 @exported
@@ -82,7 +87,9 @@ def test_no_library_names_a_place_of_this_machine(fmu: Path) -> None:
 
 @exported
 @every_fmu
-@pytest.mark.parametrize("platform", [p for p in PLATFORMS if p.name in bits.RUNNERS])
+@pytest.mark.parametrize(
+    "platform", [p for p in PLATFORMS if p.name in bits.RUNNERS], ids=lambda p: p.name
+)
 def test_other_platforms_give_the_same_bits(fmu: Path, platform: Platform, tmp_path: Path) -> None:
     if why := bits.missing(platform):
         pytest.skip(why)
@@ -125,7 +132,7 @@ def given(fmu: Path, folder: Path) -> dict[str, str]:
 
 @exported
 @pytest.mark.parametrize("fmi", (2, 3))
-@pytest.mark.parametrize("platform", [here(), Platform("x86_64-windows")])
+@pytest.mark.parametrize("platform", [here(), Platform("x86_64-windows")], ids=lambda p: p.name)
 def test_names_of_files_are_utf_8(fmi: int, platform: Platform, tmp_path: Path) -> None:
     """A part program is read, a trace written, with names that no code page of Europe has."""
     if why := bits.missing(platform):

@@ -17,7 +17,6 @@ from motionfmu.base.platforms import PLATFORMS, Platform, here, named
 
 SCENARIO = ROOT / "scenarios/circle"
 STEPS, STEP = 400, 1e-4
-zig = pytest.mark.skipif(not util.find_spec("ziglang"), reason="no zig: make export installs it")
 
 
 def test_platforms_are_named() -> None:
@@ -28,7 +27,8 @@ def test_platforms_are_named() -> None:
         named("x86_64-linux,win64")
 
 
-@zig
+@pytest.mark.more
+@pytest.mark.skipif(not util.find_spec("ziglang"), reason="no zig: make export installs it")
 def test_a_system_from_the_text_of_its_fmus_gives_the_same_bits(tmp_path: Path) -> None:
     others = [p for p in PLATFORMS if p.name in bits.RUNNERS and not bits.missing(p)]
     for name, platforms in (("one", "here"), ("text", ",".join(p.name for p in (here(), *others)))):

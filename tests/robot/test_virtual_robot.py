@@ -279,6 +279,7 @@ def test_extremes_are_refused_with_value_and_limit(huge: float) -> None:
     assert robot.read().rests and robot.read().move == 0
 
 
+@pytest.mark.more
 def test_jog_that_turns_keeps_all_limits() -> None:
     robot = VirtualRobot()
     robot.jog([1, 0, 0, 0, 0, 1], robots.BASE, speed=0.3, way=50.265)

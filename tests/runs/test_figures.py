@@ -16,6 +16,9 @@ from motionfmu.report.samples import COARSE, Samples
 from motionfmu.report.signal_chart import signal_chart
 from motionfmu.run.figures import OVERVIEW, Chart, Curve, Panel
 
+# What they share is made once, by one worker.
+pytestmark = pytest.mark.xdist_group("figures")
+
 # 1 V is 300 rpm: 5 turns of 10 mm, 50 000 encoder counts per second.
 SPEED, COUNTS = 0.05, 50_000.0
 PLAIN = """# A voltage step on an axis whose encoder the card counts.

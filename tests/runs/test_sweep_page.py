@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from few_cases import few
 from page_curves import unpacked
 from test_sweep import CIRCLE, GAIN, SHORT
 
@@ -30,12 +31,15 @@ def synthetic(names: list[str], sampling: str, runs: int, folder: Path) -> Outco
 
 @pytest.mark.parametrize(
     ("count", "sampling", "runs", "way"),
-    [
-        (1, "grid", 9, "curve"),
-        (2, "grid", 7, "field"),
-        (2, "latin", 150, "field"),
-        (3, "random", 40, "matrix"),
-    ],
+    few(
+        [
+            (1, "grid", 9, "curve"),
+            (2, "grid", 7, "field"),
+            (2, "latin", 150, "field"),
+            (3, "random", 40, "matrix"),
+        ],
+        2,
+    ),
 )
 def test_the_page_shows_the_cost_over_what_was_varied(
     count: int, sampling: str, runs: int, way: str, tmp_path: Path
@@ -65,7 +69,7 @@ def test_the_page_shows_the_cost_over_what_was_varied(
         assert error.max() < 1e-12 if sampling == "grid" else np.quantile(error, 0.9) < 0.1
 
 
-@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("count", few([1, 2, 3], [1]))
 @pytest.mark.parametrize("cost", [0.0, 3.0, None])
 def test_a_page_of_equal_costs_or_of_none_is_written(
     cost: float | None, count: int, tmp_path: Path

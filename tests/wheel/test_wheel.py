@@ -65,7 +65,7 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
     return Installed(tmp_path_factory.mktemp("wheel"))
 
 
-pytestmark = pytest.mark.xdist_group("wheel")
+pytestmark = [pytest.mark.more, pytest.mark.xdist_group("wheel")]
 
 
 def test_the_base_is_small(installed: Installed) -> None:
