@@ -3,6 +3,7 @@
 >>> import motionfmu
 >>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
 >>> result.plot("mcc.path_feed")  # doctest: +SKIP
+>>> result = motionfmu.machine("mill3").run("part.ngc")  # doctest: +SKIP
 
 The library and the card without FMUs are in `motionfmu.virtual.mcc`, the robot in
 `motionfmu.virtual.robot`, part programs in `motionfmu.analysis.gcode`, linear models in
@@ -16,9 +17,9 @@ if TYPE_CHECKING:
     from typing import Any
 
     from motionfmu.base.errors import InputError
-    from motionfmu.run import Result, Scenario, load, scenario
+    from motionfmu.run import Machine, Result, Scenario, load, machine, scenario
 
-__all__ = ["InputError", "Result", "Scenario", "load", "scenario"]
+__all__ = ["InputError", "Machine", "Result", "Scenario", "load", "machine", "scenario"]
 
 
 def __getattr__(name: str) -> "Any":

@@ -403,7 +403,8 @@ def test_an_fmu_brings_its_causes_with_it(text, message, tmp_path, monkeypatch) 
             return
         shutil.copytree(ROOT / "scenarios/mismatch_line", tmp_path / "line")
         file = tmp_path / "line/scenario.toml"
-        file.write_text(file.read_text().replace('"velocity_axes"', '"own"'))
+        own = '[component]\nmachine = "own"\n\n[record]'
+        file.write_text(file.read_text().replace("[record]", own, 1))
         listed = cause_switches.causes(motionfmu.load(file))
         assert listed[-1].name == "heat" and listed[-1].title == "Heat"
     finally:

@@ -3,14 +3,13 @@
 import inspect
 import shutil
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from conftest import ROOT
+from refusals import refusal
 
 import motionfmu
-from motionfmu import InputError
 from motionfmu.base.toml_lines import tables_of
 from motionfmu.run.session import Session
 
@@ -22,12 +21,6 @@ TABLES = tables_of(TEXT, "")
 @pytest.fixture(scope="module")
 def base() -> motionfmu.Scenario:
     return motionfmu.load(CIRCLE)
-
-
-def refusal(call: Any, *given: Any, **named: Any) -> list[str]:
-    with pytest.raises(InputError) as caught:
-        call(*given, **named)
-    return list(caught.value.args)
 
 
 def same(a: motionfmu.Result, b: motionfmu.Result) -> bool:

@@ -49,7 +49,8 @@ def scenario(folder: Path, table: str, part: str = PART, more: str = "") -> Path
     """The demo's machine with another program and another analysis."""
     shutil.copytree(ROOT / "scenarios/circle", folder)
     text = (folder / "scenario.toml").read_text()
-    head = text[: text.index("[contour]")].replace("stop = 8.0", "stop = 5.0")
+    less = 'stop = 5.0\nwithout = ["contour", "check"]'
+    head = text[: text.index("[check]")].replace("stop = 8.0", less)
     (folder / "scenario.toml").write_text(head + table + more)
     if part:
         (folder / "circle.ngc").write_text(part)

@@ -49,13 +49,12 @@ def list_all() -> None:
 
 
 def first_line(folder: Path) -> str:
-    """What a scenario shows, be it right or wrong; of another project its title."""
-    from motionfmu.scenarios.package_files import SCENARIO
+    """What a scenario shows or a machine is, right or wrong; of another project its title."""
+    from motionfmu.scenarios.package_files import MACHINE, SCENARIO
 
-    file = folder / SCENARIO
-    with (file if file.is_file() else folder / "README.md").open(
-        encoding="utf-8", errors="replace"
-    ) as stream:
+    files = [folder / name for name in (SCENARIO, MACHINE, "README.md")]
+    file = next((f for f in files[:-1] if f.is_file()), files[-1])
+    with file.open(encoding="utf-8", errors="replace") as stream:
         return stream.readline(1000).strip().lstrip("# ")
 
 

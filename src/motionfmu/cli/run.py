@@ -24,9 +24,16 @@ from motionfmu.cli.common import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from motionfmu.run import Scenario
     from motionfmu.run.checks import Verdict
     from motionfmu.run.result import Result
 
+OnMachine = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MACHINE", help="PATH is a program: run it on a machine of `motionfmu machines`."
+    ),
+]
 Engine = Annotated[str | None, typer.Option(help="fused, native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 if not given.")]
 
@@ -68,9 +75,24 @@ def _ends(result: "Result") -> list[str]:
     return [f"ended: {result.stopped}{told}"]
 
 
+def loaded(path: Path, machine: str | None) -> "Scenario":
+    """The scenario that a path means; with a machine, the program there on that machine."""
+    from motionfmu import run
+
+    return run.load(path) if machine is None else run.machine(machine).scenario(path)
+
+
+def _judgement(result: "Result") -> str:
+    """The verdict in words; a run of which nothing is asked has none."""
+    if not result.checks:
+        return "no checks: nothing was judged"
+    return "all checks hold" if result.ok else "a check FAILED"
+
+
 @app.command()
 def run(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
+    machine: OnMachine = None,
     engine: Engine = None,
     fmi: Fmi = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
@@ -88,13 +110,12 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         bool, typer.Option("--pictures", help="Also write the report's pictures, PNG and SVG.")
     ] = False,
 ) -> None:
-    """Run a scenario, judge it and write its report."""
+    """Run a scenario, or a program on a machine, judge it and write its report."""
     from motionfmu.report import result_folder
-    from motionfmu.run import load
 
     if pictures:
         needed("report")
-    scenario = load(path)
+    scenario = loaded(path, machine)
     target = result_folder.usable(folder or results(scenario.name))
     options: dict[str, Any] = {
         "engine": engine,
@@ -114,13 +135,14 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     kept = result_folder.Kept(csv, signals, pictures)
     shown = result_folder.save(result, target, kept, under_way)
     under_way("")
-    verdicts(result.checks)
+    if result.checks:
+        verdicts(result.checks)
     warnings([told for told in result.warnings if told not in early])
     for line in result.overrides:
         print(f"not as written: {line}")
     for line in _ends(result):
         print(line)
-    print(f"{scenario.name}: {'all checks hold' if result.ok else 'a check FAILED'}")
+    print(f"{scenario.name}: {_judgement(result)}")
     print(f"report: {shown}")
     if not result.ok:
         raise typer.Exit(FAILED)

@@ -98,6 +98,14 @@ class Figure(BaseModel):
     plot: list[Plot] = Field(min_length=1, max_length=FIGURES_MAX)
 
 
+class MachineSignals(BaseModel):
+    """Where a machine takes its program and tells that it is done."""
+
+    model_config = _STRICT
+    program: Name | None = None  # parameter that names it
+    done: Name | None = None
+
+
 def _listed(x: Any) -> Any:
     """A list of tables of bounds; a single table becomes a list of one."""
     return tuple(x) if isinstance(x, list | tuple) else (x,)
@@ -112,6 +120,8 @@ class Body(BaseModel):
     """The tables of a scenario.toml."""
 
     model_config = _STRICT
+    machine: Name | None = None
+    signals: MachineSignals = MachineSignals()
     stop: Annotated[float, Field(gt=0)] | Name
     limit: float | None = Field(default=None, gt=0)
     settle: float | None = Field(default=None, ge=0)
@@ -143,6 +153,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "contrary": Contrary,
     "contour": Contour,
     "record": Record,
+    "signals": MachineSignals,
     "figure": Figure,
     "plot": Plot,
     "iso9283": Iso9283,

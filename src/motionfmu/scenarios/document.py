@@ -13,11 +13,18 @@ from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import Body
 from motionfmu.scenarios.foreign import is_foreign
-from motionfmu.scenarios.table_sources import Source, Tables, chain, merged, of_file
+from motionfmu.scenarios.table_sources import (
+    ARRAYS,
+    Source,
+    Sources,
+    Tables,
+    chain,
+    merged,
+    of_file,
+)
 
 # Tables whose keys are names that the user chooses.
 OPEN = ("component", "connect", "set", "check")
-ARRAYS = ("drive", "figure", "waveform", "contrary")
 ABOUT = "the first line is a comment that says what the scenario shows"
 # The fewest entries that a list may have, by its key.
 EMPTY = {"signals": 'the name of an output, or a pattern such as "card.*", wanted'}
@@ -33,7 +40,7 @@ class Document:
     about: str  # what its first line says
     body: Body
     tables: Tables  # of all sources together
-    sources: tuple[Source, ...]  # the strongest first
+    sources: Sources  # the strongest first
     wrong: tuple[str, ...] = ()  # what is wrong with keys and types, which body does not have
     damaged: frozenset[str] = frozenset()  # tables and keys at the top of which something is wrong
 
@@ -44,7 +51,7 @@ class Document:
 
     @property
     def files(self) -> list[Path]:
-        """The scenario.toml and those that it extends."""
+        """The scenario.toml, those that it extends and its machine's."""
         return [Path(s.name) for s in self.sources if s.lines is not None]
 
     def beside(self, name: str) -> Path | None:
@@ -61,8 +68,9 @@ class Document:
         Faults(ordered(lines, (s.name for s in self.sources))).tell()
 
 
-def _place(sources: tuple[Source, ...], table: str, key: str, item: Any = None) -> str:
+def _place(every: Sources, table: str, key: str, item: Any = None) -> str:
     """Where a key, or the nearest table around it, stands in the strongest source that has it."""
+    sources, table = every.of(table)
     tries = [(table, key, item), (table, key, None)]
     parts = table.split(".")
     tries += [(".".join(parts[:n]), "", None) for n in range(len(parts), 0, -1)]
@@ -107,8 +115,7 @@ def plain(value: Any) -> Any:
 
 def parsed(sources: list[Source], name: str = "") -> Document:
     """Check keys and types; the document lists the faults and holds the tables that are right."""
-    tables = merged(sources)
-    places = tuple(sources)
+    tables, places = merged(sources)
     sound = _numbers(copy.deepcopy(tables))
     wrong = [f"{s.name}:1: {ABOUT}" for s in sources if s.lines is not None and not s.about]
     damaged: set[str] = set()
@@ -133,13 +140,13 @@ def parsed(sources: list[Source], name: str = "") -> Document:
     return Document(name, about, body, tables, places, tuple(wrong), frozenset(damaged))
 
 
-def _file(sources: tuple[Source, ...], component: str, fmu: str) -> str:
+def _file(sources: Sources, component: str, fmu: str) -> str:
     """The path of a foreign FMU, absolute; it is beside the source that names it."""
     owner = next((s for s in sources if component in s.tables.get("component", {})), sources[0])
     return str((owner.folder / fmu).resolve())
 
 
-def _ending(body: Body, sources: tuple[Source, ...]) -> list[str]:
+def _ending(body: Body, sources: Sources) -> list[str]:
     """What is wrong with stop, limit and settle together."""
     if isinstance(body.stop, str) and body.limit is None:
         text = f"stop = {body.stop!r} is a signal: limit = seconds, the longest run, is missing"
@@ -189,7 +196,7 @@ def _without(tables: Tables, error: ValidationError) -> Tables:
     return out
 
 
-def _told(error: ValidationError, sources: tuple[Source, ...]) -> list[str]:
+def _told(error: ValidationError, sources: Sources) -> list[str]:
     """A line of text for each place at which pydantic found a fault."""
     found: dict[tuple[str, ...], str] = {}
     missing: dict[tuple[str, ...], list[str]] = {}
@@ -225,7 +232,7 @@ def _meant(place: tuple[str, ...], missing: list[str]) -> tuple[str, str]:
     return "", ""
 
 
-def _missing(found: Any, place: tuple[str, ...], sources: tuple[Source, ...]) -> str:
+def _missing(found: Any, place: tuple[str, ...], sources: Sources) -> str:
     """The text of a key that is missing, or of a list that is too short."""
     if len(place) == 1:
         return f"{sources[0].name}: {place[0]} is missing"
@@ -238,9 +245,7 @@ def _missing(found: Any, place: tuple[str, ...], sources: tuple[Source, ...]) ->
 
 
 # CCN 17: each table that pydantic names in its own way has its exception here.
-def _one(
-    found: Any, place: tuple[str, ...], sources: tuple[Source, ...]
-) -> tuple[tuple[str, ...], str]:
+def _one(found: Any, place: tuple[str, ...], sources: Sources) -> tuple[tuple[str, ...], str]:
     """A fault's place, without pydantic's names for the alternatives of a type, and its text."""
     top = place[0]
     if top in OPEN and top != "check":
@@ -267,7 +272,7 @@ def _one(
     return place, f"{spot}: {'.'.join(name)} = {shown(value)}: {told}"
 
 
-def _spot(sources: tuple[Source, ...], place: tuple[str, ...]) -> str:
+def _spot(sources: Sources, place: tuple[str, ...]) -> str:
     return _place(sources, *_table_key(place))
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from motionfmu.base.errors import InputError, suggestion
 
 PACKAGE = Path(__file__).resolve().parents[1]
-SCENARIO = "scenario.toml"
+SCENARIO, MACHINE = "scenario.toml", "machine.toml"
 _OTHER = re.compile(r"""["']\.\./(\w+)["'/]""")
 
 
@@ -22,6 +22,13 @@ def scenarios() -> dict[str, Path]:
     """Folders of the scenarios that have a name: those of the package and of ./scenarios."""
     places = (folder("scenarios"), Path("scenarios"))
     found = [file.parent for place in places for file in sorted(place.glob(f"*/{SCENARIO}"))]
+    return {place.name: place for place in found}
+
+
+def machines() -> dict[str, Path]:
+    """Folders of the machines that have a name: those of the package and of ./machines."""
+    places = (PACKAGE / "machines", Path("machines"))
+    found = [file.parent for place in places for file in sorted(place.glob(f"*/{MACHINE}"))]
     return {place.name: place for place in found}
 
 

@@ -1,6 +1,7 @@
-"""Where the tables of a scenario come from: files, one extending another, or a program."""
+"""Where the tables of a scenario come from: its file, what it extends, its machine, a program."""
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,9 +11,15 @@ from motionfmu.base.toml_lines import Lines, is_file, shown, tables_of, text_of
 from motionfmu.scenarios import package_files
 
 Tables = dict[str, Any]
-DEPTH_MAX = 8  # scenarios that extend one another
-# Lists that grow; any other list takes the place of the one it extends.
+DEPTH_MAX = 8  # files that extend one another
+# Lists to which a file adds; any other list takes the place of the one it extends.
 JOINED = (("", "leave"), ("record", "signals"))
+# Arrays of tables, to which a file adds, too.
+ARRAYS = ("drive", "figure", "waveform", "contrary")
+# Keys that say where tables come from, and are none of theirs.
+ORIGINS = ("extends", "without")
+# What a machine does not say, for it has no job.
+NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "contrary")
 
 
 @dataclass(frozen=True)
@@ -61,6 +68,20 @@ class Source:
         return f"{self.name}:{head}{key and ' ' + key}"
 
 
+class Sources(tuple[Source, ...]):
+    """All sources of a scenario, the strongest first, and which one has each row of an array."""
+
+    rows: dict[str, tuple[Source, str]]  # source and place there, by place: "figure.2"
+
+    def of(self, table: str) -> tuple[tuple[Source, ...], str]:
+        """The sources that may have a table, and its name in these."""
+        array, _, rest = table.partition(".")
+        number, dot, inner = rest.partition(".")
+        if found := self.rows.get(f"{array}.{number}"):
+            return (found[0],), f"{found[1]}{dot}{inner}"
+        return tuple(self), table
+
+
 def scenario_file(path: str | Path) -> Path:
     """The scenario.toml, absolute, that a user's path or name of a scenario means.
 
@@ -81,29 +102,74 @@ def scenario_file(path: str | Path) -> Path:
     return file.resolve()
 
 
+def machine_file(path: str | Path, folder: Path) -> Path:
+    """The machine.toml, absolute, that a path or the name of a machine means.
+
+    A path is the file's or its folder's, in `folder` if it is relative; a name, where there is no
+    such path, that of a folder in ./machines or of a machine that comes with the package.
+    """
+    file = folder / path
+    if package_files.is_name(path) and not os.path.lexists(file):
+        file = package_files.machines().get(str(path), file)
+    file = file / package_files.MACHINE if is_file(file / package_files.MACHINE) else file
+    if not is_file(file):
+        hint = ""
+        if len(Path(path).parts) == 1:
+            hint = package_files.unknown(str(path), package_files.machines)
+        raise InputError(f"machine = {shown(str(path))}: no such machine{hint}")
+    return file.resolve()
+
+
 def of_file(path: str | Path) -> list[Source]:
-    """A file and those that it extends, the strongest first."""
+    """A file, what it extends and its machine, the strongest first."""
     return chain(_read(scenario_file(path)))
 
 
 def chain(first: Source) -> list[Source]:
+    """A source, those that it extends, then its machine and what that extends."""
+    found = _extended(first, _scenario_beside)
+    named = next((s for s in found if "machine" in s.tables), None)
+    if named is None:
+        return found
+    wanted, place = named.tables["machine"], named.place("", "machine")
+    if not isinstance(wanted, str | Path):
+        raise InputError(f"{place}: machine = {shown(wanted)}: a machine's name or folder wanted")
+    try:
+        file = machine_file(wanted, named.folder)
+    except InputError as error:
+        raise InputError(f"{place}: {error}") from None
+    machines = _extended(_read(file), machine_file)
+    for machine in machines:
+        for key in NOT_OF_A_MACHINE:
+            if key in machine.tables:
+                told = "is a scenario's, no machine's"
+                raise InputError(f"{machine.place('', key)}: {key} {told}")
+    return [*found, *machines]
+
+
+def _scenario_beside(wanted: str | Path, folder: Path) -> Path:
+    return scenario_file(folder / wanted)
+
+
+def _extended(first: Source, file_of: Callable[[str, Path], Path]) -> list[Source]:
     """A source and those that it extends, the strongest first."""
     found = [first]
+    kind = "machine" if file_of is machine_file else "scenario"
     while "extends" in found[-1].tables:
         last = found[-1]
         wanted, place = last.tables["extends"], last.place("", "extends")
         if not isinstance(wanted, str):
-            raise InputError(f"{place}: extends = {shown(wanted)}: a scenario's folder wanted")
+            raise InputError(f"{place}: extends = {shown(wanted)}: a {kind}'s folder wanted")
         try:
-            file = scenario_file(last.folder / wanted)
+            file = file_of(wanted, last.folder)
         except InputError:
-            raise InputError(f"{place}: extends = {shown(wanted)}: no such scenario") from None
+            raise InputError(f"{place}: extends = {shown(wanted)}: no such {kind}") from None
         names = [s.name for s in found]
         if str(file) in names:
             way = " -> ".join(Path(n).parent.name for n in [*names, str(file)])
             raise InputError(f"{place}: extends goes in a circle: {way}")
         if len(found) == DEPTH_MAX:
-            raise InputError(f"{place}: a scenario extends {DEPTH_MAX - 1} others at most")
+            raise InputError(f"{place}: a {kind} extends {DEPTH_MAX - 1} others at most")
         found.append(_read(file))
     return found
 
@@ -116,27 +182,101 @@ def _read(file: Path) -> Source:
     return Source(str(file), file.parent, tables, Lines(text), about)
 
 
-def merged(sources: Iterable[Source]) -> Tables:
+def merged(sources: Iterable[Source]) -> tuple[Tables, Sources]:
     """The tables of all sources merged; an earlier source is stronger than a later one."""
+    every = Sources(sources)
+    every.rows = {}
     found: Tables = {}
-    for source in reversed(list(sources)):
-        found = _over(found, source.tables)
-    return found
+    rows: dict[str, list[tuple[Source, int]]] = {}
+    for source in reversed(every):
+        found = _less(found, rows, source)
+        found = _over(found, source.tables, adds=source.lines is not None)
+        for array in ARRAYS:
+            own = source.tables.get(array)
+            if isinstance(own, list):
+                before = rows.get(array, []) if source.lines is not None else []
+                rows[array] = [*before, *((source, k) for k in range(len(own)))]
+            elif array not in found:
+                rows.pop(array, None)
+    for array, places in rows.items():
+        for k, (source, own_place) in enumerate(places):
+            every.rows[f"{array}.{k}"] = (source, f"{array}.{own_place}")
+    return found, every
 
 
-# CCN 16: four rules of merging, each a filter of keys: limits, extends, tables, what is taken away.
-def _over(base: Tables, own: Mapping[str, Any]) -> Tables:
+def _less(base: Tables, rows: dict[str, list[tuple[Source, int]]], source: Source) -> Tables:
+    """What a source inherits, less what its `without` names."""
+    names = source.tables.get("without", [])
+    place = source.place("", "without")
+    if not isinstance(names, list) or not all(isinstance(n, str) for n in names):
+        raise InputError(f"{place}: without = {shown(names)}: a list of names wanted")
+    out = {k: (dict(v) if isinstance(v, dict) else v) for k, v in base.items()}
+    for name in names:
+        if not _taken(out, rows, name):
+            told = "nothing that is inherited has this name (TABLE, TABLE.KEY or LIST.ITEM)"
+            raise InputError(f"{place}: without {shown(name)}: {told}{_near(base, name)}")
+    return out
+
+
+def _taken(tables: Tables, rows: dict[str, list[tuple[Source, int]]], name: str) -> bool:
+    """Take away a table, a key of it, an entry of a list or a row by its title."""
+    top, _, key = name.partition(".")
+    here = tables.get(top)
+    if here is None:
+        return False
+    if not key:
+        del tables[top]
+        rows.pop(top, None)
+        return True
+    if isinstance(here, dict):
+        if key in here:
+            del here[key]
+            return True
+        inner, _, item = key.partition(".")
+        listed = here.get(inner)
+        if isinstance(listed, list) and item in listed:
+            here[inner] = [x for x in listed if x != item]
+            return True
+    elif isinstance(here, list):
+        kept = [k for k, x in enumerate(here) if key not in (x, *_titles(x))]
+        tables[top] = [here[k] for k in kept]
+        if top in rows:
+            rows[top] = [rows[top][k] for k in kept]
+        return len(kept) < len(here)
+    return False
+
+
+def _titles(row: Any) -> list[Any]:
+    """What names a row of an array: a figure's title, a driven input, what a contrary is off."""
+    return [row.get(key) for key in ("title", "input", "off")] if isinstance(row, dict) else []
+
+
+def _near(tables: Tables, name: str) -> str:
+    """Words that suggest which inherited name may be meant."""
+    top, _, key = name.partition(".")
+    inside = tables.get(top)
+    if not key or inside is None:
+        return suggestion(top, list(tables))
+    names = list(inside) if isinstance(inside, dict) else []
+    names += [str(t) for x in inside for t in (x, *_titles(x)) if isinstance(t, str)]
+    return suggestion(key, names)
+
+
+# CCN 16: four rules of merging, each a filter of keys: limits, origins, tables, what is added.
+def _over(base: Tables, own: Mapping[str, Any], adds: bool) -> Tables:
     """Two tables merged key by key; None, which a program can give, takes a key away."""
-    out = {k: v for k, v in base.items() if k != "extends"}
+    out = dict(base)
     if "stop" in own and not isinstance(own["stop"], str):  # the limit was that of a signal
         out = {k: v for k, v in out.items() if k not in ("limit", "settle")}
     for name, value in own.items():
-        if name == "extends":
+        if name in ORIGINS:
             continue
         before = out.get(name)
         if isinstance(value, dict) and isinstance(before, dict):
             pairs = {k: _joined(name, k, before.get(k), v) for k, v in value.items()}
             out[name] = {k: v for k, v in (before | pairs).items() if v is not None}
+        elif adds and name in ARRAYS and isinstance(value, list) and isinstance(before, list):
+            out[name] = [*before, *value]
         else:
             out[name] = _joined("", name, before, value)
     return {k: v for k, v in out.items() if v is not None}

@@ -1,0 +1,129 @@
+"""A machine from its file, and programs that run on it."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file, shown
+from motionfmu.run.result import Result
+from motionfmu.run.runner import Scenario
+from motionfmu.scenarios.document import Document, made
+from motionfmu.scenarios.table_sources import machine_file
+
+# [s] Longer than any program that is not told how long it may take.
+LIMIT = 600.0
+
+
+class Machine:
+    """A machine on which programs run without a scenario.
+
+    Parameters
+    ----------
+    path : str or Path
+        A machine.toml or the folder that holds it; or the name of one of `machines`.
+
+    Attributes
+    ----------
+    file : Path
+        The machine.toml.
+    name : str
+        Of its folder.
+
+    Raises
+    ------
+    InputError
+        There is no such machine, or something in its file is wrong.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.file = machine_file(path, Path.cwd())
+        self.name = self.file.parent.name
+        self._signals = self._made({"stop": 1.0}, self.name, "").body.signals
+
+    def __repr__(self) -> str:
+        return f"<Machine {self.name}: {self.file}>"
+
+    def scenario(
+        self,
+        program: str | Path,
+        *,
+        limit: float = LIMIT,
+        settle: float = 0.1,
+        set: Mapping[str, Any] | None = None,
+        **tables: Any,
+    ) -> Scenario:
+        """Put a program on the machine.
+
+        Parameters
+        ----------
+        program : str or Path
+            File of the program, in the language of the machine's controller.
+        limit : float
+            The longest run [s]; one that is not done by then has a warning.
+        settle : float
+            How long it runs on when the program is done [s].
+        set : mapping, optional
+            Values by ``component.variable``, stronger than the machine's.
+        **tables
+            Any other key or table of a scenario.toml.
+
+        Returns
+        -------
+        Scenario
+            It ends with the program, and its checks are those that the machine has for every
+            program.
+
+        Raises
+        ------
+        InputError
+            The file cannot be read, or the machine takes no program.
+        """
+        file = Path(program)
+        if not is_file(file):
+            raise InputError(f"{file}: no such program")
+        if self._signals.program is None or self._signals.done is None:
+            told = "[signals] program and done are missing: it takes no program"
+            raise InputError(f"{self.file}: {told}")
+        values = {self._signals.program: str(file.resolve()), **(set or {})}
+        given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
+        about = f"{file.name} on {self.name}"
+        return Scenario(self._made(given | tables | {"set": values}, file.stem, about))
+
+    def run(
+        self, program: str | Path, *, set: Mapping[str, Any] | None = None, **options: Any
+    ) -> Result:
+        """Run a program on the machine.
+
+        Parameters
+        ----------
+        program : str or Path
+            As of `scenario`.
+        set : mapping, optional
+            Values by ``component.variable``, stronger than the machine's.
+        **options
+            As of `Scenario.run`.
+        """
+        return self.scenario(program, set=set).run(**options)
+
+    def _made(self, tables: Mapping[str, Any], name: str, about: str) -> Document:
+        return made({"machine": str(self.file), **tables}, name, Path.cwd(), about)
+
+
+def machine(path: str | Path) -> Machine:
+    """Read a machine.
+
+    Parameters
+    ----------
+    path : str or Path
+        A machine.toml or the folder that holds it, anywhere; or the name of one that `motionfmu
+        machines` lists.
+
+    Raises
+    ------
+    InputError
+        There is no such machine, or something in its file is wrong.
+    """
+    if not isinstance(path, str | Path):
+        raise InputError(f"{shown(path)}: the path or name of a machine wanted")
+    return Machine(path)
