@@ -247,7 +247,8 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
     return length == COURSE_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
 }
 
-/* CCN 16: a move that turns first is two moves, which are accepted together or refused together. */
+/* CCN 20: a move that turns first is two moves, which are accepted together or refused together; at
+ * its ends corners and stops are told apart. */
 static enum robot_status along(struct robot *r, const struct robot_config *c,
                                const struct robot_move *move, const struct pose *pose,
                                const double by[3], struct robot_refusal *why)

@@ -262,24 +262,25 @@ def _near(tables: Tables, name: str) -> str:
     return suggestion(key, names)
 
 
-# CCN 16: four rules of merging, each a filter of keys: limits, origins, tables, what is added.
 def _over(base: Tables, own: Mapping[str, Any], adds: bool) -> Tables:
     """Two tables merged key by key; None, which a program can give, takes a key away."""
     out = dict(base)
     if "stop" in own and not isinstance(own["stop"], str):  # the limit was that of a signal
         out = {k: v for k, v in out.items() if k not in ("limit", "settle")}
     for name, value in own.items():
-        if name in ORIGINS:
-            continue
-        before = out.get(name)
-        if isinstance(value, dict) and isinstance(before, dict):
-            pairs = {k: _joined(name, k, before.get(k), v) for k, v in value.items()}
-            out[name] = {k: v for k, v in (before | pairs).items() if v is not None}
-        elif adds and name in ARRAYS and isinstance(value, list) and isinstance(before, list):
-            out[name] = [*before, *value]
-        else:
-            out[name] = _joined("", name, before, value)
+        if name not in ORIGINS:
+            out[name] = _of_both(name, out.get(name), value, adds)
     return {k: v for k, v in out.items() if v is not None}
+
+
+def _of_both(name: str, before: Any, value: Any, adds: bool) -> Any:
+    """What becomes of a table or key that is inherited and given anew."""
+    if isinstance(value, dict) and isinstance(before, dict):
+        pairs = {k: _joined(name, k, before.get(k), v) for k, v in value.items()}
+        return {k: v for k, v in (before | pairs).items() if v is not None}
+    if adds and name in ARRAYS and isinstance(value, list) and isinstance(before, list):
+        return [*before, *value]
+    return _joined("", name, before, value)
 
 
 def _joined(table: str, key: str, before: Any, value: Any) -> Any:
