@@ -11,8 +11,8 @@
 #include <motionfmu/soft_words.h>
 
 static struct robot_station station; /* 600 kB: not on the stack */
-static struct inform_points points;
-static struct inform_program jobs;
+static struct robot_job_points points;
+static struct robot_job_program jobs;
 
 /* Run and print ten times a second until all rests. */
 static void run(const struct orders_text *program)
@@ -83,14 +83,14 @@ static int64_t read_file(const char *name, char text[65536])
 static int job(const char *name, const char *points_name)
 {
     static char text[65536];
-    struct inform_report r;
-    char message[INFORM_MESSAGE_MAX];
-    const struct orders_text program = { .inform = &jobs, .points = &points };
+    struct robot_job_report r;
+    char message[ROBOT_JOB_MESSAGE_MAX];
+    const struct orders_text program = { .job = &jobs, .points = &points };
 
-    inform_points_clear(&points);
-    if (inform_points_read(&points, text, read_file(points_name, text), &r) < 0
-        || inform_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
-        inform_message(&r, text, message);
+    robot_job_points_clear(&points);
+    if (robot_job_points_read(&points, text, read_file(points_name, text), &r) < 0
+        || robot_job_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
+        robot_job_message(&r, text, message);
         printf("%s\n", message);
         return 1;
     }

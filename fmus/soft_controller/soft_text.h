@@ -12,15 +12,15 @@ struct soft_blob {
     struct soft_config config;
     struct program_file *gcode;
     struct source source;
-    bool has_inform;
-    struct inform_program inform;
-    struct inform_points points;
+    bool has_job;
+    struct robot_job_program job;
+    struct robot_job_points points;
     uint64_t text; /* digest of the jobs' text, 0 without jobs */
 };
 
 static struct orders_text text_of(const struct soft_blob *b)
 {
-    return (struct orders_text){ b->gcode ? &b->source : NULL, b->has_inform ? &b->inform : NULL,
+    return (struct orders_text){ b->gcode ? &b->source : NULL, b->has_job ? &b->job : NULL,
                                  &b->points };
 }
 
@@ -35,8 +35,8 @@ static char *read_text(struct fmu *f, const char *parameter, const char *name, i
         fmu_fail(f, "%s: cannot read %s: %s", parameter, name, why);
         return NULL;
     }
-    char *text = malloc(INFORM_TEXT_MAX + 1);
-    *length = text ? (int64_t)fread(text, 1, INFORM_TEXT_MAX + 1, file) : 0;
+    char *text = malloc(ROBOT_JOB_TEXT_MAX + 1);
+    *length = text ? (int64_t)fread(text, 1, ROBOT_JOB_TEXT_MAX + 1, file) : 0;
     const bool bad = !text || ferror(file);
     fclose(file);
     if (bad) {
@@ -59,21 +59,21 @@ static uint64_t digest_of(const char *text, int64_t length)
 
 /* A reader's report, told with the file's name. */
 static int refuse_text(struct fmu *f, const char *name, const char *text,
-                       const struct inform_report *r)
+                       const struct robot_job_report *r)
 {
-    char message[INFORM_MESSAGE_MAX];
+    char message[ROBOT_JOB_MESSAGE_MAX];
 
-    inform_message(r, text, message);
+    robot_job_message(r, text, message);
     return fmu_fail(f, "%s: %s", name, message);
 }
 
 static int read_points(struct fmu *f, struct soft_blob *b)
 {
     const char *name = f->s.v.points;
-    struct inform_report r;
+    struct robot_job_report r;
     int64_t length;
 
-    inform_points_clear(&b->points);
+    robot_job_points_clear(&b->points);
     if (!name[0]) {
         return 0;
     }
@@ -81,7 +81,7 @@ static int read_points(struct fmu *f, struct soft_blob *b)
     if (!text) {
         return -1;
     }
-    int code = inform_points_read(&b->points, text, length, &r);
+    int code = robot_job_points_read(&b->points, text, length, &r);
     code = code ? refuse_text(f, name, text, &r) : 0;
     free(text);
     return code;
@@ -90,24 +90,24 @@ static int read_points(struct fmu *f, struct soft_blob *b)
 static int read_jobs(struct fmu *f, struct soft_blob *b)
 {
     const char *name = f->s.v.program, *job = f->s.v.job;
-    struct inform_report r;
+    struct robot_job_report r;
     int64_t length;
     char *text = read_text(f, "program", name, &length);
 
     if (!text) {
         return -1;
     }
-    int code = inform_read(&b->inform, &b->points, text, length, &r);
+    int code = robot_job_read(&b->job, &b->points, text, length, &r);
     code = code ? refuse_text(f, name, text, &r) : 0;
     b->text = digest_of(text, length);
     free(text);
     if (code == 0 && job[0]) {
-        b->config.orders.start.job = inform_job(&b->inform, job);
+        b->config.orders.start.job = robot_job_find(&b->job, job);
         code = b->config.orders.start.job < 0
                    ? fmu_fail(f, "job = \"%s\": no such job in %s", job, name)
                    : 0;
     }
-    b->has_inform = code == 0;
+    b->has_job = code == 0;
     return code;
 }
 
@@ -159,7 +159,7 @@ static struct soft_inputs inputs_of(const struct fmu *f)
 static void put_points(FILE *file, const struct soft *s)
 {
     for (int n = 0; n < s->taught_count; n++) {
-        char line[INFORM_POINT_TEXT];
+        char line[ROBOT_JOB_POINT_TEXT];
         if (soft_taught(s, n, line) == 0) {
             fprintf(file, "%s\n", line);
         }

@@ -10,14 +10,14 @@
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
-enum { MESSAGE = INFORM_MESSAGE_MAX };
+enum { MESSAGE = ROBOT_JOB_MESSAGE_MAX };
 
 /* A program in either language with its points; it stays where it is while it runs. */
 struct robot_program {
     struct binding_text text;
     struct source source;
-    struct inform_program inform;
-    struct inform_points points;
+    struct robot_job_program job;
+    struct robot_job_points points;
     struct orders_text orders;
 };
 
@@ -189,14 +189,14 @@ void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
 int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
                        bool gcode, binding_file file, char message[MESSAGE])
 {
-    struct inform_report r;
+    struct robot_job_report r;
 
     memset(p, 0, sizeof *p);
-    inform_points_clear(&p->points);
+    robot_job_points_clear(&p->points);
     p->orders.points = &p->points;
-    if (inform_points_read(&p->points, text[1], length[1], &r) < 0) {
-        char found[INFORM_MESSAGE_MAX];
-        inform_message(&r, text[1], found);
+    if (robot_job_points_read(&p->points, text[1], length[1], &r) < 0) {
+        char found[ROBOT_JOB_MESSAGE_MAX];
+        robot_job_message(&r, text[1], found);
         snprintf(message, MESSAGE, "points: %.400s", found);
         return 1;
     }
@@ -204,11 +204,11 @@ int binding_robot_read(struct robot_program *p, const char *const text[2], const
     if (gcode) {
         p->source = binding_source(&p->text);
         p->orders.gcode = &p->source;
-    } else if (inform_read(&p->inform, &p->points, text[0], length[0], &r) < 0) {
-        inform_message(&r, text[0], message);
+    } else if (robot_job_read(&p->job, &p->points, text[0], length[0], &r) < 0) {
+        robot_job_message(&r, text[0], message);
         return 1;
     } else {
-        p->orders.inform = &p->inform;
+        p->orders.job = &p->job;
     }
     return 0;
 }
@@ -246,15 +246,15 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
 int binding_robot_start(struct robot_station *s, const struct robot_program *p, const char *job,
                         struct soft *trial, char message[MESSAGE])
 {
-    struct inform_start *start = &s->config.orders.start;
+    struct robot_job_start *start = &s->config.orders.start;
 
     if (p->orders.gcode && check_gcode(s, p, trial, message)) {
         return 1;
     }
     start->job = 0;
     start->out = s->card.host_outputs;
-    if (p->orders.inform && job[0]) {
-        start->job = inform_job(&p->inform, job);
+    if (p->orders.job && job[0]) {
+        start->job = robot_job_find(&p->job, job);
         if (start->job < 0) {
             start->job = 0;
             snprintf(message, MESSAGE, "no job \"%.40s\" in the program", job);
@@ -322,7 +322,7 @@ void binding_robot_words(const struct robot_station *s, char message[MESSAGE])
     soft_words(&s->soft.trouble, message);
 }
 
-int binding_robot_taught(const struct robot_station *s, int32_t n, char line[INFORM_POINT_TEXT])
+int binding_robot_taught(const struct robot_station *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT])
 {
     return soft_taught(&s->soft, n, line);
 }

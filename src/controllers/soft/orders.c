@@ -6,16 +6,16 @@ void orders_start(struct orders *o, const struct orders_config *c, const struct 
                   const struct pose *at)
 {
     memset(o, 0, sizeof *o);
-    o->on = t->gcode || t->inform;
+    o->on = t->gcode || t->job;
     if (t->gcode) {
         orders_gcode_start(&o->gcode, c, at);
-    } else if (t->inform) {
-        inform_begin(&o->inform, t->inform, &c->start);
+    } else if (t->job) {
+        robot_job_begin(&o->job, t->job, &c->start);
     }
 }
 
 void orders_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
-                 const struct inform_inputs *in, struct order *order)
+                 const struct robot_job_inputs *in, struct order *order)
 {
     memset(order, 0, sizeof *order);
     if (!o->on) {
@@ -24,7 +24,7 @@ void orders_next(struct orders *o, const struct orders_config *c, const struct o
     if (t->gcode) {
         orders_gcode_next(o, c, t, in, order);
     } else {
-        orders_inform_next(o, c, t, in, order);
+        orders_job_next(o, c, t, in, order);
     }
     o->on = order->kind != ORDER_END && order->kind != ORDER_FAULT;
 }

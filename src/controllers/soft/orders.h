@@ -2,7 +2,7 @@
  *
  *     part program      --interpreter-->  \
  *                                           order: move, output, delay, stop, end
- *     robot language    --inform_next-->  /
+ *     robot language    --robot_job_next-->  /
  *
  * Moves are numbered 1, 2, .. as they are ordered. An output belongs behind a move: it changes once
  * that has reached its point.
@@ -10,20 +10,20 @@
 #ifndef ORDERS_H
 #define ORDERS_H
 
-#include "inform_run.h"
+#include "robot_job_run.h"
 #include "interpreter.h"
 #include "robot.h"
 
 /* The program; all of it constant while it runs. One of the languages, or none. */
 struct orders_text {
     const struct source *gcode;
-    const struct inform_program *inform;
-    const struct inform_points *points;
+    const struct robot_job_program *job;
+    const struct robot_job_points *points;
 };
 
 struct orders_config {
-    struct inform_start start;                /* of the robot language */
-    double zone[INFORM_LEVELS + 1];           /* [mm] of PL=0 .. 8; the last one of G64, too */
+    struct robot_job_start start;             /* of the robot language */
+    double zone[ROBOT_JOB_LEVELS + 1];        /* [mm] of PL=0 .. 8; the last one of G64, too */
     double rapid;                             /* share of the joints' speeds of G0 */
     double feed, feed_most;                   /* [mm/s] of a part program until F; highest */
     double origin[INTERPRETER_SYSTEMS][AXES]; /* [mm], [deg] of G54 .. G59.3 */
@@ -67,16 +67,16 @@ struct orders {
     bool passes;   /* waits of a part program are answered as in a check */
     int64_t since; /* [ns] that one waits */
     double was;    /* its input at the look before */
-    struct inform_run inform;
+    struct robot_job_run job;
 };
 
 /* Begin; a part program at a pose of the tip. */
 void orders_start(struct orders *o, const struct orders_config *c, const struct orders_text *t,
                   const struct pose *at);
 
-/* What comes next; in->reached and in->now as inform_run has them. */
+/* What comes next; in->reached and in->now as robot_job_run has them. */
 void orders_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
-                 const struct inform_inputs *in, struct order *order);
+                 const struct robot_job_inputs *in, struct order *order);
 
 /* A part program from its start to its end, nothing moves: all its faults and notes. */
 void orders_check(const struct orders_config *c, const struct orders_text *t, const struct pose *at,

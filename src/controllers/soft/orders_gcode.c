@@ -77,7 +77,7 @@ static void arm_move(struct robot_move *m, const struct orders_config *c, const 
         p->start[0] == p->end[0] && p->start[1] == p->end[1] && p->start[2] == p->end[2] && !p->arc;
     m->feed = turns ? 0.0 : k->feed;
     m->spin = turns ? k->feed / scale * DEGREE : 0.0;
-    m->zone = !k->blend ? 0.0 : k->tolerance > 0.0 ? k->tolerance : c->zone[INFORM_LEVELS];
+    m->zone = !k->blend ? 0.0 : k->tolerance > 0.0 ? k->tolerance : c->zone[ROBOT_JOB_LEVELS];
 }
 
 static bool command_switches(const struct command *k)
@@ -94,7 +94,7 @@ static void switch_outputs(struct orders *o, struct order *order, const struct c
 }
 
 /* M66: motion ends first. False: not answered yet. */
-static bool answered(struct orders *o, const struct inform_inputs *in)
+static bool answered(struct orders *o, const struct robot_job_inputs *in)
 {
     const struct waiting *w = &o->gcode.wait;
 
@@ -120,8 +120,8 @@ static bool answered(struct orders *o, const struct inform_inputs *in)
 }
 
 /* The next command, into o->kept. False: there is none, *order says why. */
-static bool next_command(struct orders *o, const struct program *p, const struct inform_inputs *in,
-                         struct order *order)
+static bool next_command(struct orders *o, const struct program *p,
+                         const struct robot_job_inputs *in, struct order *order)
 {
     struct fault_report fault;
 
@@ -162,7 +162,7 @@ static bool switch_before(struct orders *o, struct order *order)
 }
 
 void orders_gcode_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
-                       const struct inform_inputs *in, struct order *order)
+                       const struct robot_job_inputs *in, struct order *order)
 {
     const struct program p = program_of(c, t);
 

@@ -8,11 +8,10 @@
 void orders_gcode_start(struct interpreter *in, const struct orders_config *c,
                         const struct pose *at);
 void orders_gcode_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
-                       const struct inform_inputs *in, struct order *order);
+                       const struct robot_job_inputs *in, struct order *order);
 
 /* A program in the robot language: its next order. */
-void orders_inform_next(struct orders *o, const struct orders_config *c,
-                        const struct orders_text *t, const struct inform_inputs *in,
-                        struct order *order);
+void orders_job_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                     const struct robot_job_inputs *in, struct order *order);
 
 #endif

@@ -63,12 +63,12 @@ static void see_lines(struct soft *s, const struct fpga_shown *card, int64_t clo
     s->asked = -1;
 }
 
-static struct inform_inputs inputs_of(const struct soft *s, const struct fpga_shown *card,
-                                      uint32_t di, int64_t clock)
+static struct robot_job_inputs inputs_of(const struct soft *s, const struct fpga_shown *card,
+                                         uint32_t di, int64_t clock)
 {
-    struct inform_inputs in = { .now = clock * FPGA_CLOCK_NS,
-                                .reached = s->reached - s->first,
-                                .di = di };
+    struct robot_job_inputs in = { .now = clock * FPGA_CLOCK_NS,
+                                   .reached = s->reached - s->first,
+                                   .di = di };
     memcpy(in.ai, card->irq_ai, sizeof in.ai);
     return in;
 }
@@ -102,7 +102,7 @@ static void poll(struct soft *s, const struct soft_config *c, const struct order
     for (int64_t at = s->layers.poll; layers_poll(&s->layers, &c->layers, until, &seen);
          at = s->layers.poll) {
         if (c->user && soft_running(s)) {
-            const struct inform_inputs in = inputs_of(s, card, seen.inputs, at);
+            const struct robot_job_inputs in = inputs_of(s, card, seen.inputs, at);
             soft_program_poll(s, c, t, &in, at);
         }
     }
@@ -115,7 +115,7 @@ static int32_t decide(struct soft *s, const struct soft_config *c, const struct 
 {
     soft_panel_run(s, c, t, panel, clock);
     look_at_moves(s);
-    const struct inform_inputs in = inputs_of(s, card, (uint32_t)card->irq_inputs, clock);
+    const struct robot_job_inputs in = inputs_of(s, card, (uint32_t)card->irq_inputs, clock);
     s->known = -1;
     const int32_t lines = s->stopped ? 0 : soft_program_run(s, c, t, panel, &in);
     s->start.pressed = s->replay.pressed = false;
@@ -265,7 +265,7 @@ bool soft_done(const struct soft *s)
 
 void soft_rehearse(struct soft *s, const struct soft_config *c, const struct orders_text *t)
 {
-    const struct inform_inputs in = { 0 };
+    const struct robot_job_inputs in = { 0 };
     struct order order;
 
     soft_program_start(s, c, t);

@@ -83,7 +83,7 @@ struct soft_trouble {
     int32_t line;
     enum robot_status status;
     struct robot_refusal refusal;
-    enum inform_fault fault;
+    enum robot_job_fault fault;
 };
 
 /* What the layers have taken so far; the driver's times in clocks. */

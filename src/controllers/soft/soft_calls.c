@@ -42,18 +42,19 @@ enum robot_status soft_output(struct soft *s, struct order *order)
     return !taken(s) && soft_program_put(s, order) ? ROBOT_OK : ROBOT_BUSY;
 }
 
-int soft_taught(const struct soft *s, int32_t n, char line[INFORM_POINT_TEXT])
+int soft_taught(const struct soft *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT])
 {
-    struct inform_point p = { .kind = INFORM_JOINTS,
-                              .shoulder = INFORM_ANY,
-                              .elbow = INFORM_ANY,
-                              .wrist = INFORM_ANY,
-                              .turn = { INFORM_ANY_TURN, INFORM_ANY_TURN, INFORM_ANY_TURN },
-                              .tool = INFORM_ANY,
-                              .user = INFORM_ANY };
+    struct robot_job_point p = { .kind = ROBOT_JOB_JOINTS,
+                                 .shoulder = ROBOT_JOB_ANY,
+                                 .elbow = ROBOT_JOB_ANY,
+                                 .wrist = ROBOT_JOB_ANY,
+                                 .turn = { ROBOT_JOB_ANY_TURN, ROBOT_JOB_ANY_TURN,
+                                           ROBOT_JOB_ANY_TURN },
+                                 .tool = ROBOT_JOB_ANY,
+                                 .user = ROBOT_JOB_ANY };
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         p.value[i] = s->taught[n].joint[i] / DEGREE;
     }
-    return inform_point_write(n, &p, line);
+    return robot_job_point_write(n, &p, line);
 }

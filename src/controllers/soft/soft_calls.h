@@ -23,7 +23,7 @@ enum robot_status soft_jog(struct soft *s, const struct soft_config *c, struct s
  * moves given so far. */
 enum robot_status soft_output(struct soft *s, struct order *order);
 
-/* Line of a points file for a taught point, 0 .. s->taught_count - 1; as inform_point_write. */
-int soft_taught(const struct soft *s, int32_t n, char line[INFORM_POINT_TEXT]);
+/* Line of a points file for a taught point, 0 .. s->taught_count - 1; as robot_job_point_write. */
+int soft_taught(const struct soft *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT]);
 
 #endif

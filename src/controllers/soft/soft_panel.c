@@ -80,8 +80,7 @@ static bool free_to_start(const struct soft *s)
 static void start(struct soft *s, const struct soft_config *c, const struct orders_text *t,
                   const struct soft_panel *panel, int64_t clock)
 {
-    const bool program = t->gcode || t->inform,
-               due = s->program == PROGRAM_NEW && clock >= c->start;
+    const bool program = t->gcode || t->job, due = s->program == PROGRAM_NEW && clock >= c->start;
 
     if (program && free_to_start(s) && robot_idle(&s->robot) && (soft_key_take(&s->start) || due)) {
         soft_program_start(s, c, t);

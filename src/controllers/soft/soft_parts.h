@@ -23,11 +23,11 @@ static inline bool soft_key_take(struct soft_key *k)
 void soft_program_start(struct soft *s, const struct soft_config *c, const struct orders_text *t);
 void soft_program_drop(struct soft *s);
 int32_t soft_program_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                         const struct soft_panel *panel, const struct inform_inputs *in);
+                         const struct soft_panel *panel, const struct robot_job_inputs *in);
 
 /* The user program reads lines at a poll. */
 void soft_program_poll(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                       const struct inform_inputs *in, int64_t clock);
+                       const struct robot_job_inputs *in, int64_t clock);
 
 /* Outputs of the program whose moves are reached, into the copy that is complete at a clock. */
 void soft_program_outputs(struct soft *s, int64_t done);

@@ -27,7 +27,7 @@ static bool fail(struct soft *s, enum soft_error error, const struct order *orde
 {
     s->trouble.error = error;
     s->trouble.line = order->line;
-    s->trouble.fault = s->orders.inform.fault;
+    s->trouble.fault = s->orders.job.fault;
     soft_program_drop(s);
     return true;
 }
@@ -145,7 +145,7 @@ static bool pause_ahead(const struct soft *s)
 }
 
 void soft_program_poll(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                       const struct inform_inputs *in, int64_t clock)
+                       const struct robot_job_inputs *in, int64_t clock)
 {
     while (s->orders.on && s->count < c->depth) {
         struct order *o = &s->queue[(s->heads + s->count) % SOFT_QUEUE];
@@ -162,7 +162,7 @@ void soft_program_poll(struct soft *s, const struct soft_config *c, const struct
 }
 
 static bool fetch(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                  const struct inform_inputs *in)
+                  const struct robot_job_inputs *in)
 {
     if (c->user) {
         if (s->count == 0) {
@@ -190,7 +190,7 @@ static void look_what_is_next(struct soft *s)
 }
 
 int32_t soft_program_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                         const struct soft_panel *panel, const struct inform_inputs *in)
+                         const struct soft_panel *panel, const struct robot_job_inputs *in)
 {
     int32_t done = 0;
 

@@ -17,9 +17,8 @@ static void fill(double to[OPW_JOINTS], const double from[OPW_JOINTS])
 
 struct soft_settings soft_defaults(void)
 {
-    static const double ZONE[INFORM_LEVELS + 1] = {
-        0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0
-    };
+    static const double ZONE[ROBOT_JOB_LEVELS + 1] = { 0.0, 0.5,  1.0,  2.0, 4.0,
+                                                       8.0, 16.0, 32.0, 64.0 };
     struct soft_settings s;
 
 #define START(type, name, elements, unit, start, low, high) \

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "elementary.h"
-#include "inform_decimal.h"
+#include "robot_job_decimal.h"
 
 static const double DEGREE = 0.017453292519943295;
 
@@ -26,31 +26,31 @@ static const char *name_of(enum robot_status status)
 }
 
 /* Words, and a number with six digits. */
-static void add(struct inform_text *t, const char *words, double value)
+static void add(struct robot_job_text *t, const char *words, double value)
 {
     const double decades = value != 0.0 ? floor(el_log(fabs(value)) / el_log(10.0)) : 5.0;
     const double scale = el_pow(10.0, 5.0 - decades);
 
-    inform_text_add(t, words);
-    inform_text_number(t, round(value * scale) / scale);
+    robot_job_text_add(t, words);
+    robot_job_text_number(t, round(value * scale) / scale);
 }
 
-static void add_place(struct inform_text *t, const struct robot_refusal *r)
+static void add_place(struct robot_job_text *t, const struct robot_refusal *r)
 {
     add(t, " at ", 100.0 * r->part);
     add(t, " % of its path, X ", r->place[0]);
     add(t, " Y ", r->place[1]);
     add(t, " Z ", r->place[2]);
-    inform_text_add(t, " mm");
+    robot_job_text_add(t, " mm");
 }
 
 void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
                         char text[SOFT_WORDS])
 {
-    struct inform_text t = { text, SOFT_WORDS, 0 };
+    struct robot_job_text t = { text, SOFT_WORDS, 0 };
     const int flag = r->which;
 
-    inform_text_add(&t, name_of(status));
+    robot_job_text_add(&t, name_of(status));
     switch (status) {
     case ROBOT_FAR: add_place(&t, r); break;
     case ROBOT_OUTSIDE:
@@ -58,28 +58,30 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
         add(&t, " to ", r->value / DEGREE);
         add(&t, " deg, limit ", r->limit / DEGREE);
         add(&t, " deg, at ", 100.0 * r->part);
-        inform_text_add(&t, " % of its path");
+        robot_job_text_add(&t, " % of its path");
         break;
     case ROBOT_SINGULAR:
-        inform_text_add(&t, r->which == 0 ? ": shoulder" : r->which == 1 ? ": elbow" : ": wrist");
+        robot_job_text_add(&t, r->which == 0   ? ": shoulder"
+                               : r->which == 1 ? ": elbow"
+                                               : ": wrist");
         add(&t, " factor ", r->value);
         add_place(&t, r);
         break;
     case ROBOT_OTHER_BRANCH:
-        inform_text_add(&t, flag == OPW_FLIP    ? ": wrist"
-                            : flag == OPW_ELBOW ? ": elbow"
-                                                : ": shoulder");
+        robot_job_text_add(&t, flag == OPW_FLIP    ? ": wrist"
+                               : flag == OPW_ELBOW ? ": elbow"
+                                                   : ": shoulder");
         break;
     case ROBOT_OTHER_TURN:
         add(&t, ": joint ", r->which + 1);
         add(&t, " ends at ", r->value / DEGREE);
         add(&t, " deg, not within 180 deg of ", r->limit / DEGREE);
-        inform_text_add(&t, " deg");
+        robot_job_text_add(&t, " deg");
         break;
     case ROBOT_OFF_PLANE:
         add(&t, ": ", r->value);
         add(&t, " mm off it, limit ", r->limit);
-        inform_text_add(&t, " mm");
+        robot_job_text_add(&t, " mm");
         break;
     case ROBOT_NO_UNIT: add(&t, ": its length is ", r->value); break;
     default:            break;
@@ -88,13 +90,13 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
 
 void soft_words(const struct soft_trouble *t, char text[SOFT_WORDS])
 {
-    struct inform_text words = { text, SOFT_WORDS, 0 };
+    struct robot_job_text words = { text, SOFT_WORDS, 0 };
 
     if (t->error == SOFT_MOVE) {
         soft_refusal_words(t->status, &t->refusal, text);
     } else {
-        inform_text_add(&words, t->error == SOFT_PROGRAM ? inform_fault_text(t->fault)
-                                : t->error == SOFT_LOST  ? "out of reach on the path"
-                                                         : "");
+        robot_job_text_add(&words, t->error == SOFT_PROGRAM ? robot_job_fault_text(t->fault)
+                                   : t->error == SOFT_LOST  ? "out of reach on the path"
+                                                            : "");
     }
 }

@@ -253,7 +253,7 @@ static void refused(void)
     finish();
     CHECK_EQ(soft.trouble.error, SOFT_PROGRAM);
     CHECK_EQ(soft.trouble.line, 2);
-    CHECK(soft.trouble.fault != INFORM_OK);
+    CHECK(soft.trouble.fault != ROBOT_JOB_OK);
     CHECK_EQ(soft.given, 0);
     pc_run(100);
     pc_press(&panel.start); /* again, the same */

@@ -31,8 +31,8 @@ static struct orders_text text;
 static struct soft_panel panel;
 static struct fpga_shown card;
 static struct fpga_host host;
-static struct inform_program jobs;
-static struct inform_points points;
+static struct robot_job_program jobs;
+static struct robot_job_points points;
 static struct source_text given;
 static struct source source;
 static int64_t now;                /* [clocks] */
@@ -84,13 +84,13 @@ static inline struct soft_config pc_config(void)
 
 static inline void pc_start(const char *job, const char *gcode)
 {
-    struct inform_report r;
+    struct robot_job_report r;
 
     text = (struct orders_text){ .points = &points };
-    CHECK_EQ(inform_points_read(&points, POINTS, (int64_t)strlen(POINTS), &r), 0);
+    CHECK_EQ(robot_job_points_read(&points, POINTS, (int64_t)strlen(POINTS), &r), 0);
     if (job) {
-        CHECK_EQ(inform_read(&jobs, &points, job, (int64_t)strlen(job), &r), 0);
-        text.inform = &jobs;
+        CHECK_EQ(robot_job_read(&jobs, &points, job, (int64_t)strlen(job), &r), 0);
+        text.job = &jobs;
     }
     if (gcode) {
         given = (struct source_text){ gcode, (int64_t)strlen(gcode) };

@@ -24,8 +24,8 @@ static struct soft soft;
 static struct soft_config config;
 static struct soft_panel panel;
 static struct orders_text text;
-static struct inform_points points;
-static struct inform_program program;
+static struct robot_job_points points;
+static struct robot_job_program program;
 static int64_t now;
 
 static struct fpga_host host;
@@ -61,11 +61,11 @@ static inline void rig_document(void)
 
 static inline void rig_program(const char *job, const char *of_points)
 {
-    struct inform_report report;
+    struct robot_job_report report;
 
-    CHECK_EQ(inform_points_read(&points, of_points, (int64_t)strlen(of_points), &report), 0);
-    CHECK_EQ(inform_read(&program, &points, job, (int64_t)strlen(job), &report), 0);
-    text.inform = &program;
+    CHECK_EQ(robot_job_points_read(&points, of_points, (int64_t)strlen(of_points), &report), 0);
+    CHECK_EQ(robot_job_read(&program, &points, job, (int64_t)strlen(job), &report), 0);
+    text.job = &program;
     text.points = &points;
 }
 

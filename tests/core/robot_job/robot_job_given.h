@@ -1,11 +1,11 @@
 /* A program with the points that its tests use. */
-#ifndef INFORM_GIVEN_H
-#define INFORM_GIVEN_H
+#ifndef ROBOT_JOB_GIVEN_H
+#define ROBOT_JOB_GIVEN_H
 
 #include <string.h>
 
 #include "check.h"
-#include "inform_run.h"
+#include "robot_job_run.h"
 
 static const char POINTS[] = "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
                              "USER 2 X=900 Y=-300 Z=200 A=0 B=0 C=90\n"
@@ -15,25 +15,25 @@ static const char POINTS[] = "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
                              "P003 X=1100 Y=0 Z=350 A=180 B=0 C=0\n"
                              "P004 X=0 Y=0 Z=0 A=180 B=0 C=0 USER=2\n";
 
-static struct inform_points points;
-static struct inform_program program;
-static struct inform_report report;
-static char message[INFORM_MESSAGE_MAX];
+static struct robot_job_points points;
+static struct robot_job_program program;
+static struct robot_job_report report;
+static char message[ROBOT_JOB_MESSAGE_MAX];
 
 /* Read a program; what is said about it stands in `message`, empty if it is good. */
 static inline int read_program(const char *text)
 {
     message[0] = '\0';
-    CHECK_EQ(inform_points_read(&points, POINTS, (int64_t)strlen(POINTS), &report), 0);
-    const int status = inform_read(&program, &points, text, (int64_t)strlen(text), &report);
-    CHECK_EQ(status, report.fault == INFORM_OK ? 0 : -1);
+    CHECK_EQ(robot_job_points_read(&points, POINTS, (int64_t)strlen(POINTS), &report), 0);
+    const int status = robot_job_read(&program, &points, text, (int64_t)strlen(text), &report);
+    CHECK_EQ(status, report.fault == ROBOT_JOB_OK ? 0 : -1);
     if (status) {
-        inform_message(&report, text, message);
+        robot_job_message(&report, text, message);
     }
     return status;
 }
 
-static const struct inform_start START = {
+static const struct robot_job_start START = {
     .vj = 10.0, .v = 100.0, .vr = 20.0, .level = 0, .tool = 0, .user = 0
 };
 

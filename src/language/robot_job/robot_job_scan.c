@@ -1,4 +1,4 @@
-#include "inform_scan.h"
+#include "robot_job_scan.h"
 
 #include <math.h>
 
@@ -22,21 +22,21 @@ static char upper(char c)
     return c >= 'a' && c <= 'z' ? (char)(c - 'a' + 'A') : c;
 }
 
-int inform_scan_begin(struct inform_scan *s, const char *text, int64_t size,
-                      struct inform_report *r)
+int robot_job_scan_begin(struct robot_job_scan *s, const char *text, int64_t size,
+                         struct robot_job_report *r)
 {
-    *r = (struct inform_report){ .fault = INFORM_OK };
-    *s = (struct inform_scan){ .text = text, .r = r };
-    if (size > INFORM_TEXT_MAX) {
-        r->high = INFORM_TEXT_MAX;
-        r->fault = INFORM_BAD_TEXT_LENGTH;
+    *r = (struct robot_job_report){ .fault = ROBOT_JOB_OK };
+    *s = (struct robot_job_scan){ .text = text, .r = r };
+    if (size > ROBOT_JOB_TEXT_MAX) {
+        r->high = ROBOT_JOB_TEXT_MAX;
+        r->fault = ROBOT_JOB_BAD_TEXT_LENGTH;
         return -1;
     }
     s->size = (int32_t)size;
     return 0;
 }
 
-int inform_scan_fault(struct inform_scan *s, enum inform_fault f, struct inform_piece p)
+int robot_job_scan_fault(struct robot_job_scan *s, enum robot_job_fault f, struct robot_job_span p)
 {
     s->r->fault = f;
     s->r->line = s->line;
@@ -49,26 +49,26 @@ int inform_scan_fault(struct inform_scan *s, enum inform_fault f, struct inform_
     return -1;
 }
 
-int inform_scan_fault_line(struct inform_scan *s, enum inform_fault f)
+int robot_job_scan_fault_line(struct robot_job_scan *s, enum robot_job_fault f)
 {
-    return inform_scan_fault(s, f, (struct inform_piece){ s->begin, s->end - s->begin });
+    return robot_job_scan_fault(s, f, (struct robot_job_span){ s->begin, s->end - s->begin });
 }
 
-int inform_scan_unexpected(struct inform_scan *s)
+int robot_job_scan_unexpected(struct robot_job_scan *s)
 {
-    struct inform_piece p;
-    if (inform_scan_over(s)) {
-        return inform_scan_fault_line(s, INFORM_BAD_MISSING);
+    struct robot_job_span p;
+    if (robot_job_scan_over(s)) {
+        return robot_job_scan_fault_line(s, ROBOT_JOB_BAD_MISSING);
     }
-    p = (struct inform_piece){ s->at, 0 };
+    p = (struct robot_job_span){ s->at, 0 };
     while (p.at + p.length < s->end && !blank(s->text[p.at + p.length])) {
         p.length++;
     }
-    return inform_scan_fault(s, INFORM_BAD_EXTRA, p);
+    return robot_job_scan_fault(s, ROBOT_JOB_BAD_EXTRA, p);
 }
 
 /* Where a comment begins in text[at, end), or end; the // of //NAME is none. */
-static int32_t comment(const struct inform_scan *s, int32_t at, int32_t end)
+static int32_t comment(const struct robot_job_scan *s, int32_t at, int32_t end)
 {
     while (at < end && s->text[at] != '\''
            && !(s->text[at] == '/' && at + 1 < end && s->text[at + 1] == '/')) {
@@ -77,7 +77,7 @@ static int32_t comment(const struct inform_scan *s, int32_t at, int32_t end)
     return at;
 }
 
-int inform_scan_line(struct inform_scan *s)
+int robot_job_scan_line(struct robot_job_scan *s)
 {
     while (s->next < s->size) {
         const int32_t first = s->next;
@@ -85,17 +85,17 @@ int inform_scan_line(struct inform_scan *s)
         s->line++;
         while (end < s->size && s->text[end] != '\n') {
             if (s->text[end] == '\0') {
-                return inform_scan_fault(s, INFORM_BAD_BYTE,
-                                         (struct inform_piece){ first, end - first });
+                return robot_job_scan_fault(s, ROBOT_JOB_BAD_BYTE,
+                                            (struct robot_job_span){ first, end - first });
             }
             end++;
         }
         s->next = end + 1;
         end -= end > first && s->text[end - 1] == '\r';
-        if (end - first > INFORM_LINE_MAX) {
-            s->r->high = INFORM_LINE_MAX;
-            return inform_scan_fault(s, INFORM_BAD_LINE_LENGTH,
-                                     (struct inform_piece){ first, INFORM_LINE_MAX });
+        if (end - first > ROBOT_JOB_LINE_MAX) {
+            s->r->high = ROBOT_JOB_LINE_MAX;
+            return robot_job_scan_fault(s, ROBOT_JOB_BAD_LINE_LENGTH,
+                                        (struct robot_job_span){ first, ROBOT_JOB_LINE_MAX });
         }
         s->begin = first;
         while (s->begin < end && blank(s->text[s->begin])) {
@@ -104,7 +104,7 @@ int inform_scan_line(struct inform_scan *s)
         s->at = s->begin + 2;
         s->end = end;
         s->name = comment(s, s->begin, end) == s->begin && s->at < end
-                  && inform_scan_is(s, inform_scan_word(s), "NAME");
+                  && robot_job_scan_is(s, robot_job_scan_word(s), "NAME");
         s->at = s->name ? s->at : s->begin;
         s->end = comment(s, s->at, end);
         while (s->end > s->at && blank(s->text[s->end - 1])) {
@@ -117,7 +117,7 @@ int inform_scan_line(struct inform_scan *s)
     return 0;
 }
 
-bool inform_scan_over(struct inform_scan *s)
+bool robot_job_scan_over(struct robot_job_scan *s)
 {
     while (s->at < s->end && blank(s->text[s->at])) {
         s->at++;
@@ -125,19 +125,19 @@ bool inform_scan_over(struct inform_scan *s)
     return s->at >= s->end;
 }
 
-bool inform_scan_take(struct inform_scan *s, char c)
+bool robot_job_scan_take(struct robot_job_scan *s, char c)
 {
-    if (inform_scan_over(s) || s->text[s->at] != c) {
+    if (robot_job_scan_over(s) || s->text[s->at] != c) {
         return false;
     }
     s->at++;
     return true;
 }
 
-struct inform_piece inform_scan_word(struct inform_scan *s)
+struct robot_job_span robot_job_scan_word(struct robot_job_scan *s)
 {
-    struct inform_piece p = { s->at, 0 };
-    if (inform_scan_over(s) || !letter(s->text[s->at])) {
+    struct robot_job_span p = { s->at, 0 };
+    if (robot_job_scan_over(s) || !letter(s->text[s->at])) {
         return p;
     }
     p.at = s->at;
@@ -149,10 +149,10 @@ struct inform_piece inform_scan_word(struct inform_scan *s)
     return p;
 }
 
-int inform_scan_name(struct inform_scan *s, int32_t most, struct inform_piece *name)
+int robot_job_scan_name(struct robot_job_scan *s, int32_t most, struct robot_job_span *name)
 {
-    if (inform_scan_over(s)) {
-        return inform_scan_unexpected(s);
+    if (robot_job_scan_over(s)) {
+        return robot_job_scan_unexpected(s);
     }
     name->at = s->at;
     while (s->at < s->end
@@ -162,13 +162,13 @@ int inform_scan_name(struct inform_scan *s, int32_t most, struct inform_piece *n
     }
     name->length = s->at - name->at;
     if (name->length == 0) {
-        return inform_scan_unexpected(s);
+        return robot_job_scan_unexpected(s);
     }
     s->r->high = most;
-    return name->length <= most ? 0 : inform_scan_fault(s, INFORM_BAD_NAME, *name);
+    return name->length <= most ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_NAME, *name);
 }
 
-bool inform_scan_is(const struct inform_scan *s, struct inform_piece p, const char *word)
+bool robot_job_scan_is(const struct robot_job_scan *s, struct robot_job_span p, const char *word)
 {
     int32_t i = 0;
     while (i < p.length && word[i] != '\0' && upper(s->text[p.at + i]) == word[i]) {
@@ -177,7 +177,7 @@ bool inform_scan_is(const struct inform_scan *s, struct inform_piece p, const ch
     return i == p.length && word[i] == '\0';
 }
 
-bool inform_scan_same(const char *text, struct inform_piece a, struct inform_piece b)
+bool robot_job_scan_same(const char *text, struct robot_job_span a, struct robot_job_span b)
 {
     int32_t i = 0;
     while (i < a.length && i < b.length && text[a.at + i] == text[b.at + i]) {
@@ -186,7 +186,7 @@ bool inform_scan_same(const char *text, struct inform_piece a, struct inform_pie
     return i == a.length && i == b.length;
 }
 
-int32_t inform_scan_digits(const struct inform_scan *s, struct inform_piece p)
+int32_t robot_job_scan_digits(const struct robot_job_scan *s, struct robot_job_span p)
 {
     int32_t n = 0;
     for (int32_t i = 1; i < p.length; i++) {
@@ -200,15 +200,15 @@ int32_t inform_scan_digits(const struct inform_scan *s, struct inform_piece p)
 
 /* A number of at most 15 digits: the mantissa is exact, powers of ten to 10^22 are, so the one
  * division gives the nearest double. */
-static int number(struct inform_scan *s, struct inform_piece *p, double *value)
+static int number(struct robot_job_scan *s, struct robot_job_span *p, double *value)
 {
     int64_t mantissa = 0;
     double scale = 1.0;
     int32_t digits = 0;
     bool point = false, negative;
 
-    if (inform_scan_over(s)) {
-        return inform_scan_unexpected(s);
+    if (robot_job_scan_over(s)) {
+        return robot_job_scan_unexpected(s);
     }
     p->at = s->at;
     negative = s->text[s->at] == '-';
@@ -224,14 +224,14 @@ static int number(struct inform_scan *s, struct inform_piece *p, double *value)
     }
     if (digits == 0) {
         s->at = p->at;
-        return inform_scan_unexpected(s);
+        return robot_job_scan_unexpected(s);
     }
     p->length = s->at - p->at;
     *value = negative ? -((double)mantissa / scale) : (double)mantissa / scale;
-    return digits <= 15 ? 0 : inform_scan_fault(s, INFORM_BAD_NUMBER, *p);
+    return digits <= 15 ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_NUMBER, *p);
 }
 
-static int within(struct inform_scan *s, struct inform_piece p, double low, double high,
+static int within(struct robot_job_scan *s, struct robot_job_span p, double low, double high,
                   double value)
 {
     if (value >= low && value <= high) {
@@ -239,24 +239,24 @@ static int within(struct inform_scan *s, struct inform_piece p, double low, doub
     }
     s->r->low = low;
     s->r->high = high;
-    return inform_scan_fault(s, INFORM_BAD_VALUE, p);
+    return robot_job_scan_fault(s, ROBOT_JOB_BAD_VALUE, p);
 }
 
-int inform_scan_number(struct inform_scan *s, double low, double high, double *value)
+int robot_job_scan_number(struct robot_job_scan *s, double low, double high, double *value)
 {
-    struct inform_piece p;
+    struct robot_job_span p;
     return number(s, &p, value) || within(s, p, low, high, *value) ? -1 : 0;
 }
 
-int inform_scan_whole(struct inform_scan *s, int32_t low, int32_t high, int32_t *value)
+int robot_job_scan_whole(struct robot_job_scan *s, int32_t low, int32_t high, int32_t *value)
 {
-    struct inform_piece p;
+    struct robot_job_span p;
     double x;
     if (number(s, &p, &x)) {
         return -1;
     }
     if (x != floor(x)) {
-        return inform_scan_fault(s, INFORM_BAD_WHOLE, p);
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_WHOLE, p);
     }
     if (within(s, p, low, high, x)) {
         return -1;

@@ -1,5 +1,5 @@
 /* Every way in which a program can be wrong, with the whole message. */
-#include "inform_given.h"
+#include "robot_job_given.h"
 
 static const struct {
     const char *text, *message;
@@ -164,20 +164,20 @@ static const struct {
 
 static void refused(void)
 {
-    bool seen[INFORM_FAULT_COUNT] = { false };
+    bool seen[ROBOT_JOB_FAULT_COUNT] = { false };
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         CHECK_EQ(read_program(BAD[i].text), -1);
         CHECK_TEXT(message, BAD[i].message);
         seen[report.fault] = true;
     }
-    for (int f = INFORM_BAD_WORD; f < INFORM_BAD_EMPTY; f++) {
-        if (!seen[f] && (f < INFORM_BAD_POINT_TWICE || f > INFORM_BAD_POINT_FRAME)) {
+    for (int f = ROBOT_JOB_BAD_WORD; f < ROBOT_JOB_BAD_EMPTY; f++) {
+        if (!seen[f] && (f < ROBOT_JOB_BAD_POINT_TWICE || f > ROBOT_JOB_BAD_POINT_FRAME)) {
             printf("fault %d is in no test\n", f);
             CHECK(false);
         }
     }
-    for (int f = 0; f < INFORM_FAULT_COUNT; f++) {
-        CHECK(inform_fault_text((enum inform_fault)f)[0]);
+    for (int f = 0; f < ROBOT_JOB_FAULT_COUNT; f++) {
+        CHECK(robot_job_fault_text((enum robot_job_fault)f)[0]);
     }
 }
 
@@ -200,23 +200,23 @@ static void places(void)
 /* Bytes and lengths that are no text. */
 static void shapes(void)
 {
-    static char text[INFORM_TEXT_MAX + 1];
-    struct inform_report r;
+    static char text[ROBOT_JOB_TEXT_MAX + 1];
+    struct robot_job_report r;
     memset(text, ' ', sizeof text);
-    CHECK_EQ(inform_read(&program, &points, "NOP\nN\0P", 7, &r), -1);
-    inform_message(&r, "NOP\nN\0P", message);
+    CHECK_EQ(robot_job_read(&program, &points, "NOP\nN\0P", 7, &r), -1);
+    robot_job_message(&r, "NOP\nN\0P", message);
     CHECK_TEXT(message, "line 2: byte 0, which no text has, behind \"N\"");
     memcpy(text, "NOP", 3);
     memcpy(text + 256, "\r\nNOP", 5);
-    CHECK_EQ(inform_read(&program, &points, text, 300, &r), 0);
+    CHECK_EQ(robot_job_read(&program, &points, text, 300, &r), 0);
     memcpy(text + 256, " \n", 2);
-    CHECK_EQ(inform_read(&program, &points, text, 300, &r), -1);
-    CHECK_EQ(r.fault, INFORM_BAD_LINE_LENGTH);
+    CHECK_EQ(robot_job_read(&program, &points, text, 300, &r), -1);
+    CHECK_EQ(r.fault, ROBOT_JOB_BAD_LINE_LENGTH);
     CHECK_EQ(r.line, 1);
-    inform_message(&r, text, message);
+    robot_job_message(&r, text, message);
     CHECK(strstr(message, "line too long \"NOP   ") && strstr(message, "\" (at most 256)"));
-    CHECK_EQ(inform_read(&program, &points, text, INFORM_TEXT_MAX + 1, &r), -1);
-    inform_message(&r, text, message);
+    CHECK_EQ(robot_job_read(&program, &points, text, ROBOT_JOB_TEXT_MAX + 1, &r), -1);
+    robot_job_message(&r, text, message);
     CHECK_TEXT(message, "text too long (at most 4194304)");
 }
 
@@ -228,12 +228,12 @@ static void limits(void)
         int most;
         const char *tail, *message;
     } LIMIT[] = {
-        { "", "NOP", INFORM_CODES - 1, "", "line 4096: too many \"NOP\" (at most 4096)" },
-        { "", "JOB A#", INFORM_JOBS, "", "line 65: too many \"JOB A65\" (at most 64)" },
-        { "", "*A#", INFORM_LABELS, "", "line 1025: too many \"*A1025\" (at most 1024)" },
-        { "", "IF B000=1", INFORM_BLOCKS, "ENDIF\n",
+        { "", "NOP", ROBOT_JOB_INSTRUCTIONS - 1, "", "line 4096: too many \"NOP\" (at most 4096)" },
+        { "", "JOB A#", ROBOT_JOB_JOBS, "", "line 65: too many \"JOB A65\" (at most 64)" },
+        { "", "*A#", ROBOT_JOB_LABELS, "", "line 1025: too many \"*A1025\" (at most 1024)" },
+        { "", "IF B000=1", ROBOT_JOB_BLOCKS, "ENDIF\n",
           "line 17: too many \"IF B000=1\" (at most 16)" },
-        { "", "LOOP", INFORM_LOOPS, "ENDLOOP\n", "line 9: too many \"LOOP\" (at most 8)" },
+        { "", "LOOP", ROBOT_JOB_LOOPS, "ENDLOOP\n", "line 9: too many \"LOOP\" (at most 8)" },
     };
     static char text[1 << 17];
     for (size_t k = 0; k < sizeof LIMIT / sizeof *LIMIT; k++) {

@@ -1,13 +1,13 @@
 /* The points file: what is read, what is refused with its message, and what is written. */
-#include "inform_given.h"
+#include "robot_job_given.h"
 
 static const char *read_points(const char *text)
 {
-    const int status = inform_points_read(&points, text, (int64_t)strlen(text), &report);
-    CHECK_EQ(status, report.fault == INFORM_OK ? 0 : -1);
+    const int status = robot_job_points_read(&points, text, (int64_t)strlen(text), &report);
+    CHECK_EQ(status, report.fault == ROBOT_JOB_OK ? 0 : -1);
     message[0] = '\0';
     if (status) {
-        inform_message(&report, text, message);
+        robot_job_message(&report, text, message);
     }
     return message;
 }
@@ -21,24 +21,24 @@ static void read_all(void)
                            "P999 X=100 Y=50 Z=.5 A=180 B=0 C=-0.000001 BACK DOWN FLIP TURN1=0 "
                            "TURN4=-1 TURN6=100 TOOL=1 USER=0"),
                "");
-    const struct inform_point *p = &points.point[7];
+    const struct robot_job_point *p = &points.point[7];
     static const double JOINT[6] = { 0, -20.5, 10, 400, 90, -0.25 };
     static const double PLACE[6] = { 100, 50, 0.5, 180, 0, -0.000001 };
     static const double FRAME[6] = { 900, -300, 200, 1, 2, 90 };
-    CHECK(p->kind == INFORM_JOINTS && !memcmp(p->value, JOINT, sizeof JOINT) && p->line == 5);
-    CHECK(p->tool == INFORM_ANY && p->user == 63 && p->shoulder == INFORM_ANY
-          && p->turn[1] == INFORM_ANY_TURN);
+    CHECK(p->kind == ROBOT_JOB_JOINTS && !memcmp(p->value, JOINT, sizeof JOINT) && p->line == 5);
+    CHECK(p->tool == ROBOT_JOB_ANY && p->user == 63 && p->shoulder == ROBOT_JOB_ANY
+          && p->turn[1] == ROBOT_JOB_ANY_TURN);
     p = &points.point[999];
-    CHECK(p->kind == INFORM_POSE && !memcmp(p->value, PLACE, sizeof PLACE) && p->line == 6);
+    CHECK(p->kind == ROBOT_JOB_POSE && !memcmp(p->value, PLACE, sizeof PLACE) && p->line == 6);
     CHECK(p->shoulder == 1 && p->elbow == 1 && p->wrist == 1 && p->tool == 1 && p->user == 0);
     CHECK(p->turn[0] == 0 && p->turn[1] == -1 && p->turn[2] == 100);
     CHECK(points.user[63].defined && !memcmp(points.user[63].value, FRAME, sizeof FRAME));
     CHECK(points.tool[0].defined && points.user[0].defined && !points.tool[2].defined);
-    CHECK_EQ(points.point[8].kind, INFORM_NO_POINT);
+    CHECK_EQ(points.point[8].kind, ROBOT_JOB_NO_POINT);
     CHECK_TEXT(read_points("P0 X=1 Y=2 Z=3 A=0 B=0 C=0 FRONT UP NOFLIP"), "");
     p = &points.point[0];
     CHECK(p->shoulder == 0 && p->elbow == 0 && p->wrist == 0);
-    CHECK_EQ(points.point[7].kind, INFORM_NO_POINT); /* nothing is left of the file before */
+    CHECK_EQ(points.point[7].kind, ROBOT_JOB_NO_POINT); /* nothing is left of the file before */
     CHECK_TEXT(read_points("P0 X=12345.1234567891 Y=2 Z=3 A=0 B=0 C=0"), "");
     CHECK(points.point[0].value[0] == 12345.1234567891);
     CHECK_TEXT(read_points(""), "");
@@ -102,12 +102,12 @@ static const struct {
 
 static void refused(void)
 {
-    bool seen[INFORM_FAULT_COUNT] = { false };
+    bool seen[ROBOT_JOB_FAULT_COUNT] = { false };
     for (size_t i = 0; i < sizeof BAD / sizeof *BAD; i++) {
         CHECK_TEXT(read_points(BAD[i].text), BAD[i].message);
         seen[report.fault] = true;
     }
-    for (int f = INFORM_BAD_WORD; f <= INFORM_BAD_POINT_FRAME; f++) {
+    for (int f = ROBOT_JOB_BAD_WORD; f <= ROBOT_JOB_BAD_POINT_FRAME; f++) {
         CHECK(seen[f]);
     }
 }
@@ -117,32 +117,32 @@ static void round_trip(void)
 {
     uint64_t seed = 7;
     for (int n = 0; n < 20000; n++) {
-        char text[INFORM_POINT_TEXT], again[INFORM_POINT_TEXT];
-        const int32_t number = (int32_t)check_random(&seed, 0, INFORM_POINTS - 1);
-        struct inform_point p = { .kind = n % 2 ? INFORM_POSE : INFORM_JOINTS };
+        char text[ROBOT_JOB_POINT_TEXT], again[ROBOT_JOB_POINT_TEXT];
+        const int32_t number = (int32_t)check_random(&seed, 0, ROBOT_JOB_POINTS - 1);
+        struct robot_job_point p = { .kind = n % 2 ? ROBOT_JOB_POSE : ROBOT_JOB_JOINTS };
         for (int i = 0; i < 6; i++) {
             const double most = n % 2 == 0 ? 3600.0 : i < 3 ? 100000.0 : 360.0;
             p.value[i] =
                 n % 5 ? check_real(&seed, -most, most) : (double)check_random(&seed, -1, 1) * most;
         }
-        p.shoulder = n % 2 ? (int32_t)check_random(&seed, -1, 1) : INFORM_ANY;
-        p.elbow = n % 2 ? (int32_t)check_random(&seed, -1, 1) : INFORM_ANY;
-        p.wrist = n % 2 ? (int32_t)check_random(&seed, -1, 1) : INFORM_ANY;
+        p.shoulder = n % 2 ? (int32_t)check_random(&seed, -1, 1) : ROBOT_JOB_ANY;
+        p.elbow = n % 2 ? (int32_t)check_random(&seed, -1, 1) : ROBOT_JOB_ANY;
+        p.wrist = n % 2 ? (int32_t)check_random(&seed, -1, 1) : ROBOT_JOB_ANY;
         for (int i = 0; i < 3; i++) {
             const int32_t turn = (int32_t)check_random(&seed, -101, 100);
-            p.turn[i] = n % 2 && turn >= -100 ? turn : INFORM_ANY_TURN;
+            p.turn[i] = n % 2 && turn >= -100 ? turn : ROBOT_JOB_ANY_TURN;
         }
         p.tool = p.user = (int32_t)check_random(&seed, -1, 0);
-        CHECK_EQ(inform_point_write(number, &p, text), 0);
+        CHECK_EQ(robot_job_point_write(number, &p, text), 0);
         CHECK_TEXT(read_points(text), "");
-        const struct inform_point first = points.point[number];
+        const struct robot_job_point first = points.point[number];
         for (int i = 0; i < 6; i++) {
             CHECK(fabs(first.value[i] - p.value[i]) <= 0.5e-6 + 1e-10);
             p.value[i] = first.value[i];
         }
         p.line = 1;
         CHECK(!memcmp(&first, &p, sizeof p));
-        CHECK_EQ(inform_point_write(number, &first, again), 0);
+        CHECK_EQ(robot_job_point_write(number, &first, again), 0);
         CHECK_TEXT(again, text);
         CHECK_TEXT(read_points(again), "");
         CHECK(!memcmp(&points.point[number], &first, sizeof first));
@@ -151,40 +151,40 @@ static void round_trip(void)
 
 static void written(void)
 {
-    char text[INFORM_POINT_TEXT];
-    struct inform_point p = { .kind = INFORM_POSE,
-                              .value = { 900, -0.0000004, -0.5, 180, 1e-6, -359.999999 },
-                              .shoulder = 0,
-                              .elbow = 1,
-                              .wrist = 0,
-                              .turn = { INFORM_ANY_TURN, -1, 2 },
-                              .tool = 3,
-                              .user = INFORM_ANY };
-    CHECK_EQ(inform_point_write(12, &p, text), 0);
+    char text[ROBOT_JOB_POINT_TEXT];
+    struct robot_job_point p = { .kind = ROBOT_JOB_POSE,
+                                 .value = { 900, -0.0000004, -0.5, 180, 1e-6, -359.999999 },
+                                 .shoulder = 0,
+                                 .elbow = 1,
+                                 .wrist = 0,
+                                 .turn = { ROBOT_JOB_ANY_TURN, -1, 2 },
+                                 .tool = 3,
+                                 .user = ROBOT_JOB_ANY };
+    CHECK_EQ(robot_job_point_write(12, &p, text), 0);
     CHECK_TEXT(text, "P012 X=900 Y=0 Z=-0.5 A=180 B=0.000001 C=-359.999999 FRONT DOWN NOFLIP "
                      "TURN4=-1 TURN6=2 TOOL=3");
     strcpy(text, "as before");
     static const double WRONG[] = { NAN, INFINITY, 360.1 };
     for (int i = 0; i < 3; i++) {
         p.value[4] = WRONG[i];
-        CHECK_EQ(inform_point_write(12, &p, text), -1);
+        CHECK_EQ(robot_job_point_write(12, &p, text), -1);
     }
     p.value[4] = 0.0;
-    CHECK_EQ(inform_point_write(1000, &p, text), -1);
-    CHECK_EQ(inform_point_write(-1, &p, text), -1);
+    CHECK_EQ(robot_job_point_write(1000, &p, text), -1);
+    CHECK_EQ(robot_job_point_write(-1, &p, text), -1);
     p.tool = 64;
-    CHECK_EQ(inform_point_write(12, &p, text), -1);
+    CHECK_EQ(robot_job_point_write(12, &p, text), -1);
     p.tool = 0;
     p.turn[0] = 101;
-    CHECK_EQ(inform_point_write(12, &p, text), -1);
+    CHECK_EQ(robot_job_point_write(12, &p, text), -1);
     p.turn[0] = -101;
-    CHECK_EQ(inform_point_write(12, &p, text), -1);
+    CHECK_EQ(robot_job_point_write(12, &p, text), -1);
     p.turn[0] = 0;
     p.elbow = 2;
-    CHECK_EQ(inform_point_write(12, &p, text), -1);
+    CHECK_EQ(robot_job_point_write(12, &p, text), -1);
     p.elbow = 0;
-    p.kind = INFORM_NO_POINT;
-    CHECK_EQ(inform_point_write(12, &p, text), -1);
+    p.kind = ROBOT_JOB_NO_POINT;
+    CHECK_EQ(robot_job_point_write(12, &p, text), -1);
     CHECK_TEXT(text, "as before");
 }
 

@@ -6,10 +6,10 @@ from typing import Any
 import hypothesis.strategies as st
 from conftest import ROOT
 from hypothesis import HealthCheck, event, given, settings
-from inform_brute import Brute, Endless
+from robot_job_brute import Brute, Endless
 
-LIBRARY = ctypes.CDLL(str(ROOT / "build/lib/inform_steps.so"))
-LIBRARY.inform_steps_fault.restype = ctypes.c_char_p
+LIBRARY = ctypes.CDLL(str(ROOT / "build/lib/robot_job_steps.so"))
+LIBRARY.robot_job_steps_fault.restype = ctypes.c_char_p
 ANSWERS = ("move", "dout", "aout", "reach", "wait", "busy", "pause", "end", "fault")
 POINTS = """
 TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0
@@ -150,14 +150,14 @@ class Core:
 
     def load(self, text: str) -> str:
         message = ctypes.create_string_buffer(420)
-        LIBRARY.inform_steps_load(POINTS.encode(), text.encode(), message)
+        LIBRARY.robot_job_steps_load(POINTS.encode(), text.encode(), message)
         return message.value.decode()
 
     def next(self, brute: Brute) -> tuple[object, ...]:
         """The next request, in the terms of the other one."""
         w = brute.world
         r = (ctypes.c_double * 16)()
-        LIBRARY.inform_steps_next(
+        LIBRARY.robot_job_steps_next(
             ctypes.c_int64(w.now),
             ctypes.c_int64(w.reached),
             ctypes.c_uint32(w.di),
@@ -171,12 +171,12 @@ class Core:
         if kind in ("dout", "aout"):
             return (*head, r[12], r[13 if kind == "dout" else 14])
         if kind == "fault":
-            return (*head, LIBRARY.inform_steps_fault(int(r[15])).decode())
+            return (*head, LIBRARY.robot_job_steps_fault(int(r[15])).decode())
         return head
 
     def variables(self) -> dict[str, float]:
         v = (ctypes.c_double * 400)()
-        LIBRARY.inform_steps_variables(v)
+        LIBRARY.robot_job_steps_variables(v)
         return {f"{'BIDR'[i // 100]}{i % 100}": x for i, x in enumerate(v)}
 
 

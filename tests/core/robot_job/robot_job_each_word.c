@@ -1,19 +1,19 @@
 /* Every word: what it asks for, in order and with its line. */
-#include "inform_given.h"
+#include "robot_job_given.h"
 
 enum { CYCLE = 100000, SWITCH = 5 * CYCLE }; /* [ns]; when the inputs change */
 
-static struct inform_run run;
+static struct robot_job_run run;
 static char trace[4000];
 
-static void say(const struct inform_request *r, const struct inform_inputs *in)
+static void say(const struct robot_job_request *r, const struct robot_job_inputs *in)
 {
     static const char *const UNIT[] = { "", "%", "mm/s", "deg/s" };
     const size_t at = strlen(trace), left = sizeof trace - at;
     char via[16] = "", corner[32] = "";
     switch (r->answer) {
-    case INFORM_MOVE:
-        if (r->path == INFORM_CIRCLE) {
+    case ROBOT_JOB_MOVE:
+        if (r->path == ROBOT_JOB_CIRCLE) {
             snprintf(via, sizeof via, "P%d ", (int)r->via);
         }
         if (r->corner > 0.0) {
@@ -23,26 +23,26 @@ static void say(const struct inform_request *r, const struct inform_inputs *in)
                  (int)r->after, "JLC"[r->path], via, (int)r -> point, r -> speed, UNIT[r->tag],
                  (int)r -> level, corner, (int)r -> tool, (int)r -> user);
         break;
-    case INFORM_DOUT:
+    case ROBOT_JOB_DOUT:
         snprintf(trace + at, left, "%d: after %d OT%d %d\n", (int)r->line, (int)r->after,
                  (int)r->index + 1, (int)r->on);
         break;
-    case INFORM_AOUT:
+    case ROBOT_JOB_AOUT:
         snprintf(trace + at, left, "%d: after %d AO%d %g\n", (int)r->line, (int)r->after,
                  (int)r->index + 1, r->volt);
         break;
-    case INFORM_REACH:
+    case ROBOT_JOB_REACH:
         snprintf(trace + at, left, "%d: reach %d\n", (int)r->line, (int)r->after);
         break;
-    case INFORM_PAUSE: snprintf(trace + at, left, "%d: pause\n", (int)r->line); break;
-    case INFORM_END:
+    case ROBOT_JOB_PAUSE: snprintf(trace + at, left, "%d: pause\n", (int)r->line); break;
+    case ROBOT_JOB_END:
         snprintf(trace + at, left, "%d: end %d us\n", (int)r->line, (int)(in->now / 1000));
         break;
-    case INFORM_FAULT:
-        snprintf(trace + at, left, "%d: %s\n", (int)r->line, inform_fault_text(r->fault));
+    case ROBOT_JOB_FAULT:
+        snprintf(trace + at, left, "%d: %s\n", (int)r->line, robot_job_fault_text(r->fault));
         break;
-    case INFORM_WAIT:
-    case INFORM_BUSY: break;
+    case ROBOT_JOB_WAIT:
+    case ROBOT_JOB_BUSY: break;
     }
 }
 
@@ -50,26 +50,26 @@ static void say(const struct inform_request *r, const struct inform_inputs *in)
  * -2.5 V. All moves are reached a cycle after someone asks. */
 static const char *run_text(const char *text)
 {
-    struct inform_inputs in = { .ai = { 2.5, -2.5 } };
+    struct robot_job_inputs in = { .ai = { 2.5, -2.5 } };
     trace[0] = '\0';
     if (read_program(text)) {
         return message;
     }
-    inform_begin(&run, &program, &START);
+    robot_job_begin(&run, &program, &START);
     for (int n = 0; n < 100000; n++) {
-        struct inform_request r;
+        struct robot_job_request r;
         in.di = in.now < SWITCH ? 1 : 2;
-        inform_next(&run, &program, &points, &in, 100, &r);
+        robot_job_next(&run, &program, &points, &in, 100, &r);
         say(&r, &in);
-        if (r.answer == INFORM_END || r.answer == INFORM_FAULT) {
-            const struct inform_request last = r;
-            inform_next(&run, &program, &points, &in, 100, &r);
+        if (r.answer == ROBOT_JOB_END || r.answer == ROBOT_JOB_FAULT) {
+            const struct robot_job_request last = r;
+            robot_job_next(&run, &program, &points, &in, 100, &r);
             CHECK(r.answer == last.answer && r.fault == last.fault && r.line == last.line);
             return trace;
         }
-        if (r.answer >= INFORM_REACH) {
+        if (r.answer >= ROBOT_JOB_REACH) {
             in.now += CYCLE;
-            in.reached = r.answer == INFORM_REACH ? r.after : in.reached;
+            in.reached = r.answer == ROBOT_JOB_REACH ? r.after : in.reached;
         }
     }
     return "never ends";
@@ -191,51 +191,51 @@ static void each_word(void)
 /* A call does no more than it may, and says so. */
 static void bounded(void)
 {
-    const struct inform_inputs in = { 0 };
-    struct inform_request r;
+    const struct robot_job_inputs in = { 0 };
+    struct robot_job_request r;
     CHECK_EQ(read_program("LOOP 10\nINC D000\nENDLOOP\nDOUT OT#(1) ON"), 0);
-    inform_begin(&run, &program, &START);
+    robot_job_begin(&run, &program, &START);
     for (int n = 1; n <= 3; n++) {
-        inform_next(&run, &program, &points, &in, 7, &r);
-        CHECK_EQ(r.answer, INFORM_BUSY);
+        robot_job_next(&run, &program, &points, &in, 7, &r);
+        CHECK_EQ(r.answer, ROBOT_JOB_BUSY);
         CHECK_EQ(run.idle, 7 * n);
     }
-    inform_next(&run, &program, &points, &in, 0, &r);
-    CHECK_EQ(r.answer, INFORM_BUSY);
+    robot_job_next(&run, &program, &points, &in, 0, &r);
+    CHECK_EQ(r.answer, ROBOT_JOB_BUSY);
     CHECK_EQ(run.idle, 21);
-    inform_next(&run, &program, &points, &in, 1, &r);
-    CHECK_EQ(r.answer, INFORM_DOUT);
+    robot_job_next(&run, &program, &points, &in, 1, &r);
+    CHECK_EQ(r.answer, ROBOT_JOB_DOUT);
     CHECK_EQ(run.idle, 0);
     CHECK_EQ(run.whole[2][0], 10);
     int32_t line;
-    CHECK_EQ(inform_running(&run, &program, &line), 0);
+    CHECK_EQ(robot_job_running(&run, &program, &line), 0);
     CHECK_EQ(line, 4);
 }
 
 /* Which job runs; a program may begin with any. */
 static void jobs(void)
 {
-    const struct inform_inputs in = { 0 };
-    struct inform_start start = START;
-    struct inform_request r;
+    const struct robot_job_inputs in = { 0 };
+    struct robot_job_start start = START;
+    struct robot_job_request r;
     int32_t line;
     CHECK_EQ(read_program("TIMER T=0.000100001"), 0);
-    CHECK_EQ(program.code[0].time, 100001);
+    CHECK_EQ(program.instruction[0].time, 100001);
     CHECK_EQ(read_program("JOB ONE\nCALL JOB:TWO\nJOB TWO\nDOUT OT#(1) ON\nDOUT OT#(2) ON"), 0);
-    CHECK_EQ(inform_job(&program, "ONE"), 0);
-    CHECK_EQ(inform_job(&program, "TWO"), 1);
-    CHECK_EQ(inform_job(&program, "TW"), -1);
-    CHECK_EQ(inform_job(&program, "TWOO"), -1);
-    CHECK_EQ(inform_job(&program, ""), -1);
-    inform_begin(&run, &program, &START);
-    CHECK_EQ(inform_running(&run, &program, &line), 0);
-    inform_next(&run, &program, &points, &in, 9, &r);
-    CHECK_EQ(inform_running(&run, &program, &line), 1);
+    CHECK_EQ(robot_job_find(&program, "ONE"), 0);
+    CHECK_EQ(robot_job_find(&program, "TWO"), 1);
+    CHECK_EQ(robot_job_find(&program, "TW"), -1);
+    CHECK_EQ(robot_job_find(&program, "TWOO"), -1);
+    CHECK_EQ(robot_job_find(&program, ""), -1);
+    robot_job_begin(&run, &program, &START);
+    CHECK_EQ(robot_job_running(&run, &program, &line), 0);
+    robot_job_next(&run, &program, &points, &in, 9, &r);
+    CHECK_EQ(robot_job_running(&run, &program, &line), 1);
     CHECK_EQ(line, 5);
     start.job = 1;
     start.out = 1u << 4;
-    inform_begin(&run, &program, &start);
-    inform_next(&run, &program, &points, &in, 9, &r);
+    robot_job_begin(&run, &program, &start);
+    robot_job_next(&run, &program, &points, &in, 9, &r);
     CHECK_EQ(r.line, 4);
     CHECK_EQ(run.out, 1u << 4 | 1u);
 }
