@@ -6,7 +6,7 @@
 #include "binding.h"
 #include "binding_text.h"
 #include "robot_station.h"
-#include "soft_words.h"
+#include "controller_words.h"
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
@@ -24,14 +24,15 @@ struct robot_program {
 #define SETTING(type, m, elements, unit, start, low, high) \
     { #m, \
       unit, \
-      KIND(((struct soft_settings *)0)->m), \
-      OFFSET(robot_station_config, soft.m), \
-      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), \
+      KIND(((struct controller_settings *)0)->m), \
+      OFFSET(robot_station_config, controller.m), \
+      SIZE(robot_station_config, controller.m) / (int32_t)sizeof(type), \
       sizeof(type), \
       SAME },
 #define CARD(m, unit) ONE(robot_station_config, card.m, #m, unit)
 static const struct field config_fields[] = {
-    SOFT_SETTINGS(SETTING) ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
+    CONTROLLER_SETTINGS(SETTING)
+        ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
     CARD(input_irq_mask, "bits"),
     CARD(follow_mask, "bits"),
     CARD(stop_mask, "bits"),
@@ -58,18 +59,18 @@ static const struct field reading_fields[] = {
 
 #define SEEN(m, name, unit) ONE(robot_station, m, name, unit)
 /* Names and units of the FMU's outputs. */
-#define REPORT(m, name) ONE(robot_station, soft.report.m, name, "")
-#define TIME(m, name)   ONE_IN(robot_station, soft.report.m, name, "s", SECONDS)
+#define REPORT(m, name) ONE(robot_station, controller.report.m, name, "")
+#define TIME(m, name)   ONE_IN(robot_station, controller.report.m, name, "s", SECONDS)
 static const struct field seen_fields[] = {
     SEEN(clock, "clock", "clocks"),
-    SEEN(soft.robot.speed, "path_feed", "mm/s"),
-    SEEN(soft.robot.length, "path_length", "mm"),
-    SEEN(soft.given, "move", ""),
-    SEEN(soft.reached, "reached", ""),
-    SEEN(soft.taught_count, "taught", ""),
-    SEEN(soft.trouble.error, "error", ""),
-    SEEN(soft.trouble.line, "error_line", ""),
-    SEEN(soft.count, "queue", ""),
+    SEEN(controller.robot.speed, "path_feed", "mm/s"),
+    SEEN(controller.robot.length, "path_length", "mm"),
+    SEEN(controller.given, "move", ""),
+    SEEN(controller.reached, "reached", ""),
+    SEEN(controller.taught_count, "taught", ""),
+    SEEN(controller.trouble.error, "error", ""),
+    SEEN(controller.trouble.line, "error_line", ""),
+    SEEN(controller.count, "queue", ""),
     SEEN(card.inputs.image, "inputs", "bits"),
     SEEN(card.outputs, "outputs", "bits"),
     ROW(robot_station, card.output_clock, "output_clock", "clocks"),
@@ -102,7 +103,7 @@ static const struct field seen_fields[] = {
     TIME(told_most, "line_known_most"),
 };
 
-#define KEY(m)         ONE(robot_station, soft.m.pressed, "press_" #m, "")
+#define KEY(m)         ONE(robot_station, controller.m.pressed, "press_" #m, "")
 #define PANEL(m, unit) ONE(robot_station, panel.m, #m, unit)
 static const struct field panel_fields[] = {
     PANEL(hold, ""),
@@ -148,7 +149,7 @@ const struct table ROBOT_TABLES[] = {
     { "robot_move", move_fields, sizeof move_fields, sizeof(struct robot_move) },
     { "robot_refusal", refusal_fields, sizeof refusal_fields, sizeof(struct robot_refusal) },
     { "robot_program", NULL, 0, sizeof(struct robot_program) },
-    { "robot_soft", NULL, 0, sizeof(struct soft) },
+    { "robot_controller", NULL, 0, sizeof(struct controller) },
     { "robot_arm", NULL, 0, sizeof(struct manipulator) },
     { NULL, NULL, 0, 0 },
 };
@@ -162,7 +163,7 @@ void binding_robot_defaults(struct robot_station_config *c)
 int binding_robot_on(struct robot_station *s, const struct robot_station_config *c,
                      double number[2], char message[MESSAGE])
 {
-    struct soft_wrong w;
+    struct controller_wrong w;
 
     if (robot_station_start(s, c, &w)) {
         return 0;
@@ -213,14 +214,14 @@ int binding_robot_read(struct robot_program *p, const char *const text[2], const
     return 0;
 }
 
-static int check_gcode(struct robot_station *s, const struct robot_program *p, struct soft *trial,
-                       char message[MESSAGE])
+static int check_gcode(struct robot_station *s, const struct robot_program *p,
+                       struct controller *trial, char message[MESSAGE])
 {
-    char words[SOFT_WORDS];
+    char words[CONTROLLER_WORDS];
     struct fault_list all;
     int count = 0;
 
-    orders_check(&s->config.orders, &p->orders, &s->soft.robot.pose, &all);
+    orders_check(&s->config.orders, &p->orders, &s->controller.robot.pose, &all);
     for (int i = 0; i < all.count && count < MESSAGE; i++) {
         const struct fault_report *r = &all.of[i];
         const char *text = "";
@@ -234,8 +235,8 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
         return 1;
     }
     robot_station_rehearse(s, &p->orders, trial);
-    if (trial->trouble.error != SOFT_OK) {
-        soft_words(&trial->trouble, words);
+    if (trial->trouble.error != CONTROLLER_OK) {
+        controller_words(&trial->trouble, words);
         snprintf(message, MESSAGE, "line %d: %s", (int)trial->trouble.line, words);
         return 1;
     }
@@ -244,7 +245,7 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
 
 /* Start a program that was read, all rests; a part program is planned beforehand. */
 int binding_robot_start(struct robot_station *s, const struct robot_program *p, const char *job,
-                        struct soft *trial, char message[MESSAGE])
+                        struct controller *trial, char message[MESSAGE])
 {
     struct robot_job_start *start = &s->config.orders.start;
 
@@ -261,7 +262,7 @@ int binding_robot_start(struct robot_station *s, const struct robot_program *p, 
             return 1;
         }
     }
-    s->soft.start.pressed = true;
+    s->controller.start.pressed = true;
     return 0;
 }
 
@@ -279,20 +280,20 @@ int binding_robot_move(struct robot_station *s, struct robot_move *m, const doub
     }
     m->target.pose = m->target.by_joints ? pose_none() : pose_of(target, target + 3);
     m->spin *= DEGREE;
-    const enum robot_status status = soft_move(&s->soft, &s->config, m, &s->tool, why);
-    soft_refusal_words(status, why, message);
+    const enum robot_status status = controller_move(&s->controller, &s->config, m, &s->tool, why);
+    controller_refusal_words(status, why, message);
     return (int)status;
 }
 
 int binding_robot_running(const struct robot_station *s)
 {
-    return soft_running(&s->soft);
+    return controller_running(&s->controller);
 }
 
 int binding_robot_jog(struct robot_station *s, struct robot_refusal *why, char message[MESSAGE])
 {
-    const enum robot_status status = soft_jog(&s->soft, &s->config, &s->panel, why);
-    soft_refusal_words(status, why, message);
+    const enum robot_status status = controller_jog(&s->controller, &s->config, &s->panel, why);
+    controller_refusal_words(status, why, message);
     return (int)status;
 }
 
@@ -305,26 +306,26 @@ int binding_robot_output(struct robot_station *s, uint32_t mask, uint32_t value,
                        .value = value,
                        .index = index,
                        .amount = volt };
-    return (int)soft_output(&s->soft, &o);
+    return (int)controller_output(&s->controller, &o);
 }
 
 int binding_robot_tool(struct robot_station *s, const double tool[6])
 {
-    if (!robot_idle(&s->soft.robot)) {
+    if (!robot_idle(&s->controller.robot)) {
         return 1;
     }
     s->tool = pose_of(tool, tool + 3);
-    return (int)robot_tool(&s->soft.robot, &s->config.robot, &s->tool);
+    return (int)robot_tool(&s->controller.robot, &s->config.robot, &s->tool);
 }
 
 void binding_robot_words(const struct robot_station *s, char message[MESSAGE])
 {
-    soft_words(&s->soft.trouble, message);
+    controller_words(&s->controller.trouble, message);
 }
 
 int binding_robot_taught(const struct robot_station *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT])
 {
-    return soft_taught(&s->soft, n, line);
+    return controller_taught(&s->controller, n, line);
 }
 
 /* A tool as a matrix, the other way round if asked for. */

@@ -194,7 +194,7 @@ def test_a_header_that_cannot_be_installed_is_told(tmp_path: Path) -> None:
 
 def test_nine_cores_or_more_serve_any_controller() -> None:
     assert len(SHARED) >= 9 and {"elementary", "path", "mover", "tasks"} <= set(SHARED)
-    assert not {"mcc", "epcio", "soft", "netcard"} & set(SHARED)
+    assert not {"mcc", "epcio", "robot_controller", "netcard"} & set(SHARED)
 
 
 def test_a_drawing_has_each_core_above_all_that_it_uses() -> None:

@@ -1,15 +1,15 @@
-/* soft_settings - what a user sets of a soft controller, in a user's units: each setting declared
- * once, with its start value and range, for whoever offers it under this name.
+/* controller_settings - what a user sets of a robot controller, in a user's units. Each setting is
+ * declared once, with its start value and range, for whoever offers it under this name.
  *
  *     X(type, name, elements, unit, start, low, high)
  */
-#ifndef SOFT_SETTINGS_H
-#define SOFT_SETTINGS_H
+#ifndef CONTROLLER_SETTINGS_H
+#define CONTROLLER_SETTINGS_H
 
-#include "soft.h"
+#include "controller.h"
 
 /* Cycle, card, copies, processor times. */
-#define SOFT_TIMES(X) \
+#define CONTROLLER_TIMES(X) \
     X(double, bus_period, , "s", 5e-5, 25e-9, 1e-2) /* whole clocks */ \
     X(double, start_delay, , "s", 0.0, 0.0, 1e6) \
     X(int32_t, slot_clocks, , "clocks", 200, 8, 4000) \
@@ -30,7 +30,7 @@
     X(double, pitch, , "mm", 0.1, 1e-6, 1e6) \
     X(int32_t, lines, , "", 4, 1, 1000)
 
-#define SOFT_LAYERS(X) \
+#define CONTROLLER_LAYERS(X) \
     X(double, timer_period, , "s", 1e-2, 1e-4, 10.0) \
     X(double, poll_period, , "s", 36e-3, 1e-4, 10.0) \
     X(double, quantum, , "s", 36e-3, 0.0, 10.0) \
@@ -40,10 +40,10 @@
     X(int32_t, follow_timer, , "", 0, INT32_MIN, INT32_MAX) \
     X(int32_t, follow_user, , "", 0, INT32_MIN, INT32_MAX) \
     X(int32_t, program_layer, , "", 0, 0, 1) \
-    X(int32_t, queue_depth, , "", 32, 1, SOFT_QUEUE) \
+    X(int32_t, queue_depth, , "", 32, 1, CONTROLLER_QUEUE) \
     X(int32_t, seed, , "", 1, INT32_MIN, INT32_MAX)
 
-#define SOFT_ARM(X) \
+#define CONTROLLER_ARM(X) \
     X(double, a1, , "m", 0.150, -10.0, 10.0) \
     X(double, a2, , "m", -0.115, -10.0, 10.0) \
     X(double, b, , "m", 0.0, -10.0, 10.0) \
@@ -62,7 +62,7 @@
     X(double, start_joint, [6], "deg", 0.0, -3600.0, 3600.0) \
     X(double, tool, [6], "mm, deg", 0.0, -1e4, 1e4)
 
-#define SOFT_PATH(X) \
+#define CONTROLLER_PATH(X) \
     X(double, origin, [6], "mm, deg", 0.0, -1e5, 1e5) /* of G54 */ \
     X(double, feed, , "mm/min", 600.0, 1e-6, 1e6) \
     X(double, max_feed, , "mm/min", 180000.0, 1e-6, 1e6) \
@@ -76,26 +76,27 @@
     X(bool, optional_stop, , "", false, false, true) \
     X(bool, tool_stop, , "", true, false, true)
 
-#define SOFT_SETTINGS(X) SOFT_TIMES(X) SOFT_LAYERS(X) SOFT_ARM(X) SOFT_PATH(X)
+#define CONTROLLER_SETTINGS(X) \
+    CONTROLLER_TIMES(X) CONTROLLER_LAYERS(X) CONTROLLER_ARM(X) CONTROLLER_PATH(X)
 
-#define SOFT_MEMBER(type, name, elements, unit, start, low, high) type name elements;
-struct soft_settings {
-    SOFT_SETTINGS(SOFT_MEMBER)
+#define CONTROLLER_MEMBER(type, name, elements, unit, start, low, high) type name elements;
+struct controller_settings {
+    CONTROLLER_SETTINGS(CONTROLLER_MEMBER)
 };
 
 /* The document's times; an IRB 2600-12/1.65. Starts of joints that differ stand here. */
-struct soft_settings soft_defaults(void);
+struct controller_settings controller_defaults(void);
 
 /* What is wrong with a setting. */
-struct soft_wrong {
+struct controller_wrong {
     const char *name, *why; /* why NULL: not within low .. high */
     int32_t index;          /* from 0 */
     double value, low, high;
 };
 
 /* Whether settings can be configured; if not, the first that is wrong. */
-bool soft_settings_good(const struct soft_settings *s, struct soft_wrong *wrong);
+bool controller_settings_good(const struct controller_settings *s, struct controller_wrong *wrong);
 
-void soft_configure(const struct soft_settings *s, struct soft_config *c);
+void controller_configure(const struct controller_settings *s, struct controller_config *c);
 
 #endif

@@ -1,4 +1,4 @@
-#include "soft_words.h"
+#include "controller_words.h"
 
 #include <math.h>
 
@@ -44,10 +44,10 @@ static void add_place(struct robot_job_text *t, const struct robot_refusal *r)
     robot_job_text_add(t, " mm");
 }
 
-void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
-                        char text[SOFT_WORDS])
+void controller_refusal_words(enum robot_status status, const struct robot_refusal *r,
+                              char text[CONTROLLER_WORDS])
 {
-    struct robot_job_text t = { text, SOFT_WORDS, 0 };
+    struct robot_job_text t = { text, CONTROLLER_WORDS, 0 };
     const int flag = r->which;
 
     robot_job_text_add(&t, name_of(status));
@@ -88,15 +88,15 @@ void soft_refusal_words(enum robot_status status, const struct robot_refusal *r,
     }
 }
 
-void soft_words(const struct soft_trouble *t, char text[SOFT_WORDS])
+void controller_words(const struct controller_trouble *t, char text[CONTROLLER_WORDS])
 {
-    struct robot_job_text words = { text, SOFT_WORDS, 0 };
+    struct robot_job_text words = { text, CONTROLLER_WORDS, 0 };
 
-    if (t->error == SOFT_MOVE) {
-        soft_refusal_words(t->status, &t->refusal, text);
+    if (t->error == CONTROLLER_MOVE) {
+        controller_refusal_words(t->status, &t->refusal, text);
     } else {
-        robot_job_text_add(&words, t->error == SOFT_PROGRAM ? robot_job_fault_text(t->fault)
-                                   : t->error == SOFT_LOST  ? "out of reach on the path"
-                                                            : "");
+        robot_job_text_add(&words, t->error == CONTROLLER_PROGRAM ? robot_job_fault_text(t->fault)
+                                   : t->error == CONTROLLER_LOST  ? "out of reach on the path"
+                                                                  : "");
     }
 }

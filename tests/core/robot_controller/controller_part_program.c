@@ -1,5 +1,5 @@
 /* Part programs whose A B C turn the tool: every kind of order, on its path. */
-#include "soft_pc.h"
+#include "controller_pc.h"
 
 static const int64_t LONG = 60LL * FPGA_CLOCK_HZ; /* [clocks] no program takes so long */
 
@@ -8,27 +8,27 @@ static void begin(const char *program)
 {
     config = pc_config();
     pc_start(NULL, program);
-    soft_rehearse(&soft, &config, &text);
-    CHECK_EQ(soft.trouble.error, SOFT_OK);
-    soft_start(&soft, &config);
+    controller_rehearse(&controller, &config, &text);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
+    controller_start(&controller, &config);
 }
 
 static void lines(void)
 {
     begin("G0 X900 Y0 Z500 A180 B0 C180\nG1 X1000 F6000\nA170 F600\nG20 X40 F100\nA180 F600\n"
           "G21 X900 Y50 B10 F6000\n");
-    const double from = soft.robot.pose.at[2];
+    const double from = controller.robot.pose.at[2];
     CHECK(from > 1000.0);
     double most = 0.0, turn = 0.0, time[8] = { 0 };
-    while (!soft_done(&soft) && now < LONG) {
+    while (!controller_done(&controller) && now < LONG) {
         double before[4], v[3];
-        memcpy(before, soft.robot.pose.turn, sizeof before);
+        memcpy(before, controller.robot.pose.turn, sizeof before);
         pc_cycle();
-        const int line = soft.robot.line;
+        const int line = controller.robot.line;
         time[line < 8 ? line : 0] += CYCLE;
-        most = line == 2 ? fmax(most, soft.robot.speed) : most;
+        most = line == 2 ? fmax(most, controller.robot.speed) : most;
         quaternion_inverse(before, before);
-        quaternion_product(soft.robot.pose.turn, before, before);
+        quaternion_product(controller.robot.pose.turn, before, before);
         quaternion_vector(before, v);
         const double spin = hypot(hypot(v[0], v[1]), v[2]) / CYCLE / DEGREE;
         turn = line == 3 || line == 5 ? fmax(turn, spin) : turn;
@@ -40,7 +40,7 @@ static void lines(void)
     CHECK_NEAR(time[5], time[3], 2e-4);
     pc_at(900.0, 50.0, 500.0, 1e-6);
     CHECK_NEAR(pc_off(180.0, 10.0, 180.0), 0.0, 1e-6);
-    CHECK_EQ(soft.trouble.error, SOFT_OK);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
 }
 
 /* Arcs and helices in the three planes keep their radius and their rise, at the feed. */
@@ -69,23 +69,23 @@ static void arcs(void)
             centre[0] = 900.0;
             centre[1] = 50.0;
         }
-        while (!soft_done(&soft) && now < LONG) {
+        while (!controller_done(&controller) && now < LONG) {
             pc_cycle();
-            const double *at = soft.robot.pose.at;
-            if (soft.robot.line < 2) {
-                way = soft.robot.length;
+            const double *at = controller.robot.pose.at;
+            if (controller.robot.line < 2) {
+                way = controller.robot.length;
                 continue;
             }
-            most = fmax(most, soft.robot.speed);
+            most = fmax(most, controller.robot.speed);
             off = fmax(off, fabs(hypot(at[i] - centre[i], at[j] - centre[j]) - 50.0));
         }
-        way = soft.robot.length - way;
+        way = controller.robot.length - way;
         CHECK_NEAR(way, hypot(a[n].length * 314.159265358979, a[n].rise), 0.02);
         CHECK(off < 1e-6);
         CHECK_NEAR(most, 50.0, 1e-3);
-        CHECK_NEAR(soft.robot.pose.at[k] - start[k], a[n].rise, 1e-6);
-        CHECK_EQ(soft.trouble.error, SOFT_OK);
-        CHECK(soft_done(&soft));
+        CHECK_NEAR(controller.robot.pose.at[k] - start[k], a[n].rise, 1e-6);
+        CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
+        CHECK(controller_done(&controller));
     }
 }
 
@@ -95,12 +95,12 @@ static void winding(void)
     double off = 0.0, most = 0.0;
     int pieces = 0;
     begin("G0 X500 Y0 Z500 A180 C180\nG17 G3 Z560 I350 J0 P2 F60000\n");
-    while (!soft_done(&soft) && now < LONG) {
+    while (!controller_done(&controller) && now < LONG) {
         pc_cycle();
-        const double *at = soft.robot.pose.at;
-        pieces = soft.robot.way.count > pieces ? soft.robot.way.count : pieces;
-        most = fmax(most, soft.robot.line == 2 ? soft.robot.speed : 0.0);
-        if (soft.robot.line == 2) {
+        const double *at = controller.robot.pose.at;
+        pieces = controller.robot.way.count > pieces ? controller.robot.way.count : pieces;
+        most = fmax(most, controller.robot.line == 2 ? controller.robot.speed : 0.0);
+        if (controller.robot.line == 2) {
             const double angle = atan2(-at[1], 850.0 - at[0]);
             const double turns = (at[2] - 500.0) / 30.0;
             off = fmax(off, fabs(hypot(at[0] - 850.0, at[1]) - 350.0));
@@ -122,12 +122,12 @@ static void corners(void)
               : n == 2 ? "G0 X900 Y0 Z500 A180 C180\nG64\nG1 X950 F6000\nY50\n"
                        : "G0 X900 Y0 Z500 A180 C180\nG61\nG1 X950 F6000\nY50\n");
         double nearest = 1e9, slowest = 1e9;
-        while (!soft_done(&soft) && now < LONG) {
+        while (!controller_done(&controller) && now < LONG) {
             pc_cycle();
-            const double *at = soft.robot.pose.at;
+            const double *at = controller.robot.pose.at;
             const double off = hypot(hypot(at[0] - 950.0, at[1]), at[2] - 500.0);
             nearest = fmin(nearest, off);
-            slowest = off < 20.0 ? fmin(slowest, soft.robot.speed) : slowest;
+            slowest = off < 20.0 ? fmin(slowest, controller.robot.speed) : slowest;
         }
         CHECK(n == 1   ? nearest > 0.5 && nearest <= 2.0001
               : n == 2 ? nearest > 3.0 && nearest < 64.0
@@ -143,15 +143,15 @@ static void switches(void)
           "M65 P3\nG4 P0.05\nM0\nX940\n");
     double at[4] = { 0 }, rest = 0.0;
     int before = 0;
-    while (soft_status(&soft, &panel) != SOFT_PAUSED && now < LONG) {
+    while (controller_status(&controller, &panel) != CONTROLLER_PAUSED && now < LONG) {
         pc_cycle();
         for (int bit = 0; bit < 4; bit += 3) { /* where output 0, 3 goes on, off */
             if (((card.inputs ^ before) >> bit) & 1) {
-                at[bit / 3 * 2 + (before >> bit & 1)] = soft.robot.pose.at[0];
+                at[bit / 3 * 2 + (before >> bit & 1)] = controller.robot.pose.at[0];
             }
         }
         before = card.inputs;
-        rest += soft_status(&soft, &panel) == SOFT_DELAY ? CYCLE : 0.0;
+        rest += controller_status(&controller, &panel) == CONTROLLER_DELAY ? CYCLE : 0.0;
     }
     CHECK_NEAR(at[0], 910.0, 1e-4); /* M62 with the motion to 920, M63 with that to 930 */
     CHECK_NEAR(at[1], 920.0, 1e-4);
@@ -162,8 +162,8 @@ static void switches(void)
     pc_at(930.0, 0.0, 500.0, 1e-6); /* M0 lasts */
     pc_press(&panel.start);
     pc_run(5);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_RUNNING);
-    while (!soft_done(&soft) && now < LONG) {
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_RUNNING);
+    while (!controller_done(&controller) && now < LONG) {
         pc_cycle();
     }
     pc_at(940.0, 0.0, 500.0, 1e-6);
@@ -185,10 +185,10 @@ static void refused(void)
     for (size_t n = 0; n < sizeof r / sizeof *r; n++) {
         config = pc_config();
         pc_start(NULL, r[n].program);
-        soft_rehearse(&soft, &config, &text);
-        CHECK_EQ(soft.trouble.error, SOFT_MOVE);
-        CHECK_EQ(soft.trouble.line, r[n].line);
-        CHECK_EQ(soft.trouble.status, r[n].status);
+        controller_rehearse(&controller, &config, &text);
+        CHECK_EQ(controller.trouble.error, CONTROLLER_MOVE);
+        CHECK_EQ(controller.trouble.line, r[n].line);
+        CHECK_EQ(controller.trouble.status, r[n].status);
     }
 }
 
@@ -213,41 +213,41 @@ static void asked(void)
                  w[n].words);
         begin(program);
         double stood = 0.0;
-        while (!soft_done(&soft) && now < LONG) {
+        while (!controller_done(&controller) && now < LONG) {
             pc_cycle();
             card.irq_ai[3] = 2.5;
             card.irq_inputs = card.inputs;
-            const double x = soft.robot.pose.at[0];
-            CHECK(x > 909.999 || fabs(soft.volt[3]) == 0.0);
+            const double x = controller.robot.pose.at[0];
+            CHECK(x > 909.999 || fabs(controller.volt[3]) == 0.0);
             stood += fabs(x - 910.0) < 1e-6 ? CYCLE : 0.0;
         }
-        CHECK_EQ(soft.trouble.error, SOFT_OK);
-        CHECK_NEAR(soft.orders.gcode.input, w[n].result, 0.0);
+        CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
+        CHECK_NEAR(controller.orders.gcode.input, w[n].result, 0.0);
         CHECK(stood >= w[n].least && stood < w[n].least + 0.05);
-        CHECK(soft.volt[1] == 1.5 && soft.volt[3] == -2.0);
+        CHECK(controller.volt[1] == 1.5 && controller.volt[3] == -2.0);
         pc_at(920.0, 0.0, 500.0, 1e-6);
     }
     begin("G0 X900 Y0 Z500 A180 C180\nT3 M6\nG43.1 Z10\nG1 X910 F6000 Z500\n");
     for (int stops = 0; stops < 2; stops++) {
         config.orders.tool_stop = stops;
         pc_start(NULL, given.text);
-        soft_rehearse(&soft, &config, &text);
-        soft_start(&soft, &config);
-        for (int n = 0; n < 60000 && !soft_done(&soft); n++) {
+        controller_rehearse(&controller, &config, &text);
+        controller_start(&controller, &config);
+        for (int n = 0; n < 60000 && !controller_done(&controller); n++) {
             pc_cycle();
         }
-        CHECK_EQ(soft_done(&soft), !stops);
-        CHECK_EQ(soft_status(&soft, &panel) == SOFT_PAUSED, stops);
+        CHECK_EQ(controller_done(&controller), !stops);
+        CHECK_EQ(controller_status(&controller, &panel) == CONTROLLER_PAUSED, stops);
     }
     pc_press(&panel.start);
-    while (!soft_done(&soft) && now < LONG) {
+    while (!controller_done(&controller) && now < LONG) {
         pc_cycle();
     }
     pc_at(910.0, 0.0, 510.0, 1e-6);
 
     struct fault_list all;
     begin("G0 X900 Y0 Z500 A180 C180\nG38.2 X910 F100\nX1 Q2\nM19\n");
-    orders_check(&config.orders, &text, &soft.robot.pose, &all);
+    orders_check(&config.orders, &text, &controller.robot.pose, &all);
     CHECK(all.count == 2 && all.of[0].fault == FAULT_NO_PROBE && all.of[0].line == 2);
     CHECK(all.of[1].fault == FAULT_UNUSED && all.of[1].line == 3 && all.notes == 1);
 }

@@ -1,6 +1,6 @@
 /* Jog in three frames against differences of poses, increments, keys that change, teach and replay,
  * limits and back, and the emergency stop of the card. */
-#include "soft_pc.h"
+#include "controller_pc.h"
 
 static void begin(void)
 {
@@ -18,10 +18,10 @@ static void release(void)
 {
     memset(panel.jog, 0, sizeof panel.jog);
     pc_run(1);
-    for (int n = 0; n < 30000 && !robot_idle(&soft.robot); n++) {
+    for (int n = 0; n < 30000 && !robot_idle(&controller.robot); n++) {
         pc_cycle();
     }
-    CHECK(robot_idle(&soft.robot) && !soft.jogs);
+    CHECK(robot_idle(&controller.robot) && !controller.jogs);
 }
 
 /* Each direction, forward and back, in each frame: its coordinate changes and nothing else. */
@@ -32,19 +32,19 @@ static void directions(void)
         const int k = n % 12 / 2;
         const double sign = n % 2 ? -1.0 : 1.0;
         begin();
-        const struct pose from = soft.robot.pose;
+        const struct pose from = controller.robot.pose;
         double joint[OPW_JOINTS], back[4], v[3], moved[6], motion[6], way;
-        memcpy(joint, soft.robot.joint, sizeof joint);
+        memcpy(joint, controller.robot.joint, sizeof joint);
         panel.frame = frame;
         panel.jog[k] = sign;
         pc_run(2000);
-        CHECK_EQ(soft_status(&soft, &panel), SOFT_JOG);
+        CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_JOG);
         release();
         quaternion_inverse(from.turn, back);
-        quaternion_product(soft.robot.pose.turn, back, back);
+        quaternion_product(controller.robot.pose.turn, back, back);
         quaternion_vector(back, v);
         for (int i = 0; i < 3; i++) {
-            moved[i] = soft.robot.pose.at[i] - from.at[i];
+            moved[i] = controller.robot.pose.at[i] - from.at[i];
             moved[3 + i] = v[i] / DEGREE;
         }
         if (frame == ROBOT_IN_TOOL) { /* as seen from the tool */
@@ -53,8 +53,8 @@ static void directions(void)
             quaternion_turn(back, moved + 3, moved + 3);
         }
         for (int i = 0; i < 6; i++) {
-            motion[i] =
-                frame == ROBOT_IN_JOINTS ? (soft.robot.joint[i] - joint[i]) / DEGREE : moved[i];
+            motion[i] = frame == ROBOT_IN_JOINTS ? (controller.robot.joint[i] - joint[i]) / DEGREE
+                                                 : moved[i];
         }
         way = motion[k] * sign;
         CHECK(way > (frame == ROBOT_IN_JOINTS || k > 2 ? 1.0 : 20.0));
@@ -74,25 +74,25 @@ static void increments(void)
     } a[] = { { ROBOT_IN_BASE, 1, 7.5 }, { ROBOT_IN_JOINTS, 4, 3.0 }, { ROBOT_IN_TOOL, 5, 4.0 } };
     for (int n = 0; n < 3; n++) {
         begin();
-        const struct pose from = soft.robot.pose;
-        const double joint = soft.robot.joint[4];
+        const struct pose from = controller.robot.pose;
+        const double joint = controller.robot.joint[4];
         double back[4], v[3];
         panel.frame = a[n].frame;
         panel.jog_way = a[n].way;
         panel.jog[a[n].k] = 1.0;
         pc_run(30000); /* the key stays down */
         quaternion_inverse(from.turn, back);
-        quaternion_product(soft.robot.pose.turn, back, back);
+        quaternion_product(controller.robot.pose.turn, back, back);
         quaternion_vector(back, v);
-        const double got = n == 0   ? soft.robot.pose.at[1] - from.at[1]
-                           : n == 1 ? (soft.robot.joint[4] - joint) / DEGREE
+        const double got = n == 0   ? controller.robot.pose.at[1] - from.at[1]
+                           : n == 1 ? (controller.robot.joint[4] - joint) / DEGREE
                                     : sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / DEGREE;
         CHECK_NEAR(got, a[n].way, 1e-6);
         release();
         panel.jog[a[n].k] = 1.0; /* once more */
         pc_run(30000);
         release();
-        CHECK(n != 1 || fabs((soft.robot.joint[4] - joint) / DEGREE - 6.0) < 1e-6);
+        CHECK(n != 1 || fabs((controller.robot.joint[4] - joint) / DEGREE - 6.0) < 1e-6);
     }
 }
 
@@ -106,16 +106,16 @@ static void changes(void)
     panel.jog[0] = 0.0;
     panel.jog[2] = -1.0;
     pc_run(5000);
-    const struct pose at = soft.robot.pose;
+    const struct pose at = controller.robot.pose;
     pc_run(100);
-    CHECK_NEAR(soft.robot.pose.at[0], at.at[0], 1e-9);
-    CHECK(soft.robot.pose.at[2] < at.at[2] - 1.0);
+    CHECK_NEAR(controller.robot.pose.at[0], at.at[0], 1e-9);
+    CHECK(controller.robot.pose.at[2] < at.at[2] - 1.0);
     panel.hold = true; /* hold keeps it, and it goes on */
     pc_run(5000);
-    CHECK_EQ(soft.robot.speed, 0.0);
+    CHECK_EQ(controller.robot.speed, 0.0);
     panel.hold = false;
     pc_run(2000);
-    CHECK(soft.robot.speed > 100.0);
+    CHECK(controller.robot.speed > 100.0);
     release();
 }
 
@@ -126,26 +126,26 @@ static void limits(void)
     panel.jog[4] = 1.0;
     panel.jog_speed = 0.5;
     pc_run(30000);
-    CHECK_NEAR(soft.robot.joint[4] / DEGREE, 120.0, 1e-6);
-    CHECK_EQ(soft.robot.speed, 0.0);
+    CHECK_NEAR(controller.robot.joint[4] / DEGREE, 120.0, 1e-6);
+    CHECK_EQ(controller.robot.speed, 0.0);
     release();
     panel.jog[4] = 1.0; /* no further */
     pc_run(1000);
-    CHECK_NEAR(soft.robot.joint[4] / DEGREE, 120.0, 1e-6);
+    CHECK_NEAR(controller.robot.joint[4] / DEGREE, 120.0, 1e-6);
     panel.jog[4] = -1.0;
     pc_run(5000);
-    CHECK(soft.robot.joint[4] / DEGREE < 110.0);
+    CHECK(controller.robot.joint[4] / DEGREE < 110.0);
     release();
     begin();
     panel.frame = ROBOT_IN_BASE;
     panel.jog[0] = 1.0;
     pc_run(200000);
-    const double edge = soft.robot.pose.at[0];
-    CHECK_EQ(soft.robot.speed, 0.0);
+    const double edge = controller.robot.pose.at[0];
+    CHECK_EQ(controller.robot.speed, 0.0);
     release();
     panel.jog[0] = -1.0; /* slowly at first: the elbow is stretched */
     pc_run(20000);
-    CHECK(soft.robot.pose.at[0] < edge - 50.0);
+    CHECK(controller.robot.pose.at[0] < edge - 50.0);
     release();
 }
 
@@ -164,24 +164,24 @@ static void replays(void)
 
     begin();
     pc_start("MOVJ P008\nEND\n", NULL);
-    pc_until(SOFT_ERROR);
+    pc_until(CONTROLLER_ERROR);
     jog_to(0, 1.0, 5000);
     jog_to(4, -1.0, 5000);
     jog_to(5, 1.0, 9000);
-    CHECK_EQ(soft.taught_count, 3);
+    CHECK_EQ(controller.taught_count, 3);
     for (int n = 0; n < 3; n++) {
-        CHECK(soft.taught[n].by_joints);
-        memcpy(taught[n], soft.taught[n].joint, sizeof taught[n]);
+        CHECK(controller.taught[n].by_joints);
+        memcpy(taught[n], controller.taught[n].joint, sizeof taught[n]);
     }
     panel.jog_speed = 0.5;
     pc_press(&panel.replay);
     pc_press(&panel.replay); /* while it goes: nothing */
-    for (int k = 0; k < 200000 && soft_status(&soft, &panel) != SOFT_IDLE; k++) {
+    for (int k = 0; k < 200000 && controller_status(&controller, &panel) != CONTROLLER_IDLE; k++) {
         pc_cycle();
         for (int n = 0; n < 3; n++) {
             double off = 0.0;
             for (int i = 0; i < OPW_JOINTS; i++) {
-                off = fmax(off, fabs(soft.robot.joint[i] - taught[n][i]));
+                off = fmax(off, fabs(controller.robot.joint[i] - taught[n][i]));
             }
             least[n] = fmin(least[n], off);
         }
@@ -190,11 +190,11 @@ static void replays(void)
         CHECK(least[n] < 1e-5);
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
-        CHECK_NEAR(soft.robot.joint[i], taught[2][i], 1e-12);
+        CHECK_NEAR(controller.robot.joint[i], taught[2][i], 1e-12);
     }
     pc_run(3000);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_IDLE);
-    CHECK_EQ(soft.trouble.error, SOFT_OK);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_IDLE);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
 }
 
 /* The card stops in the middle: pulses of a memory are lost, the joints are what it has counted;
@@ -204,10 +204,10 @@ static void stop(void)
     config = pc_config();
     pc_start("MOVJ P001\nMOVJ P000\nEND\n", NULL);
     pc_run(3000);
-    CHECK(soft.robot.speed > 10.0);
+    CHECK(controller.robot.speed > 10.0);
     card.stopped = true;
     pc_run(50);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_STOPPED);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_STOPPED);
     pc_press(&panel.start);
     pc_press(&panel.replay);
     panel.jog[0] = 1.0;
@@ -219,19 +219,20 @@ static void stop(void)
     card.pulse_count[2] += 7; /* what the card has counted and the PC has not */
     card.stopped = false;
     pc_run(5);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_IDLE);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_IDLE);
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double zero = (double)llround(config.zero[i] * config.robot.scale[i]);
-        CHECK_NEAR(soft.robot.joint[i] * config.robot.scale[i], zero + card.pulse_count[i], 1e-6);
+        CHECK_NEAR(controller.robot.joint[i] * config.robot.scale[i], zero + card.pulse_count[i],
+                   1e-6);
     }
     pc_run(2000);
-    CHECK_EQ(soft.robot.speed, 0.0);
+    CHECK_EQ(controller.robot.speed, 0.0);
     pc_press(&panel.start);
-    for (int n = 0; n < 200000 && !soft_done(&soft); n++) {
+    for (int n = 0; n < 200000 && !controller_done(&controller); n++) {
         pc_cycle();
     }
-    CHECK(soft_done(&soft));
-    CHECK_NEAR(soft.robot.joint[1] / DEGREE, -20.0, 1e-9);
+    CHECK(controller_done(&controller));
+    CHECK_NEAR(controller.robot.joint[1] / DEGREE, -20.0, 1e-9);
 }
 
 int main(void)

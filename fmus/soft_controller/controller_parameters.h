@@ -1,6 +1,6 @@
 /* Parameters of the soft_controller FMU as its core takes them. Included behind fmi_model.h. */
-#ifndef SOFT_PARAMETERS_H
-#define SOFT_PARAMETERS_H
+#ifndef CONTROLLER_PARAMETERS_H
+#define CONTROLLER_PARAMETERS_H
 
 #include <math.h>
 
@@ -14,7 +14,7 @@ static const struct pc_wait {
     { "graphics", 2.7e-6, 1e-5, 667e-6 },
 };
 
-static int set_wait(struct fmu *f, struct soft_settings *s)
+static int set_wait(struct fmu *f, struct controller_settings *s)
 {
     const char *pc = f->s.v.pc;
 
@@ -31,22 +31,22 @@ static int set_wait(struct fmu *f, struct soft_settings *s)
                : fmu_fail(f, "pc = \"%s\": one of document, good, graphics, own is wanted", pc);
 }
 
-static int config_of(struct fmu *f, struct soft_config *c)
+static int config_of(struct fmu *f, struct controller_config *c)
 {
     const struct vars *v = &f->s.v;
-    struct soft_settings s;
-    struct soft_wrong w;
+    struct controller_settings s;
+    struct controller_wrong w;
 
 #define SETTING(type, name, elements, unit, start, low, high) LINK_CARRY(s.name, v->name)
-    SOFT_SETTINGS(SETTING)
-    if (!soft_settings_good(&s, &w)) {
+    CONTROLLER_SETTINGS(SETTING)
+    if (!controller_settings_good(&s, &w)) {
         return fmu_fail(f, "%s = %.17g (element %d): %s", w.name, w.value, (int)w.index + 1,
                         w.why ? w.why : "out of range");
     }
     if (set_wait(f, &s)) {
         return -1;
     }
-    soft_configure(&s, c);
+    controller_configure(&s, c);
     if (2 * c->bus > c->slots * c->slot) {
         fmu_warn(f,
                  "bus_period = %g s is more than half of the %g s that a memory plays: its "

@@ -1,15 +1,15 @@
 /* The files of the soft_controller FMU: program, points, and what was taught. Included behind
  * fmi_model.h. */
-#ifndef SOFT_TEXT_H
-#define SOFT_TEXT_H
+#ifndef CONTROLLER_TEXT_H
+#define CONTROLLER_TEXT_H
 
 #include "fmu_input.h"
 #include "fmu_output.h"
 #include "program_fault.h"
 
 /* All that is constant in a run. */
-struct soft_blob {
-    struct soft_config config;
+struct controller_blob {
+    struct controller_config config;
     struct program_file *gcode;
     struct source source;
     bool has_job;
@@ -18,7 +18,7 @@ struct soft_blob {
     uint64_t text; /* digest of the jobs' text, 0 without jobs */
 };
 
-static struct orders_text text_of(const struct soft_blob *b)
+static struct orders_text text_of(const struct controller_blob *b)
 {
     return (struct orders_text){ b->gcode ? &b->source : NULL, b->has_job ? &b->job : NULL,
                                  &b->points };
@@ -67,7 +67,7 @@ static int refuse_text(struct fmu *f, const char *name, const char *text,
     return fmu_fail(f, "%s: %s", name, message);
 }
 
-static int read_points(struct fmu *f, struct soft_blob *b)
+static int read_points(struct fmu *f, struct controller_blob *b)
 {
     const char *name = f->s.v.points;
     struct robot_job_report r;
@@ -87,7 +87,7 @@ static int read_points(struct fmu *f, struct soft_blob *b)
     return code;
 }
 
-static int read_jobs(struct fmu *f, struct soft_blob *b)
+static int read_jobs(struct fmu *f, struct controller_blob *b)
 {
     const char *name = f->s.v.program, *job = f->s.v.job;
     struct robot_job_report r;
@@ -127,7 +127,7 @@ static int language_of(struct fmu *f, bool *gcode)
                : fmu_fail(f, "language = \"%s\": auto, inform or gcode is wanted", v->language);
 }
 
-static int read_files(struct fmu *f, struct soft_blob *b)
+static int read_files(struct fmu *f, struct controller_blob *b)
 {
     const struct vars *v = &f->s.v;
     bool gcode = false;
@@ -143,38 +143,39 @@ static int read_files(struct fmu *f, struct soft_blob *b)
     return code;
 }
 
-enum { SOFT_INPUTS = 2 };
-struct soft_inputs {
-    struct output_input of[SOFT_INPUTS];
+enum { CONTROLLER_INPUTS = 2 };
+struct controller_inputs {
+    struct output_input of[CONTROLLER_INPUTS];
 };
 
 /* What teach_file must not replace. */
-static struct soft_inputs inputs_of(const struct fmu *f)
+static struct controller_inputs inputs_of(const struct fmu *f)
 {
-    return (struct soft_inputs){ { { fmu_path(f, f->s.v.program, FMU_READ), "it is program" },
-                                   { fmu_path(f, f->s.v.points, FMU_READ), "it is points" } } };
+    return (
+        struct controller_inputs){ { { fmu_path(f, f->s.v.program, FMU_READ), "it is program" },
+                                     { fmu_path(f, f->s.v.points, FMU_READ), "it is points" } } };
 }
 
 /* As joints: they say the same whatever the tool, and where axes 4 and 6 are in line, too. */
-static void put_points(FILE *file, const struct soft *s)
+static void put_points(FILE *file, const struct controller *s)
 {
     for (int n = 0; n < s->taught_count; n++) {
         char line[ROBOT_JOB_POINT_TEXT];
-        if (soft_taught(s, n, line) == 0) {
+        if (controller_taught(s, n, line) == 0) {
             fprintf(file, "%s\n", line);
         }
     }
 }
 
 /* NULL, or why it cannot be written. */
-static const char *write_points(const struct fmu *f, const struct soft *s)
+static const char *write_points(const struct fmu *f, const struct controller *s)
 {
-    const struct soft_inputs in = inputs_of(f);
+    const struct controller_inputs in = inputs_of(f);
     const struct fmu_path path = fmu_path(f, f->s.v.teach_file, FMU_WRITTEN);
     struct output o;
     int bad;
 
-    const char *why = output_check(path.text, in.of, SOFT_INPUTS);
+    const char *why = output_check(path.text, in.of, CONTROLLER_INPUTS);
     why = why ? why : output_begin(&o, path.text);
     if (why) {
         return why;

@@ -1,11 +1,12 @@
-#include "soft_parts.h"
+#include "controller_parts.h"
 
 #include <math.h>
 
-void soft_program_start(struct soft *s, const struct soft_config *c, const struct orders_text *t)
+void controller_program_start(struct controller *s, const struct controller_config *c,
+                              const struct orders_text *t)
 {
-    soft_program_drop(s);
-    s->trouble = (struct soft_trouble){ 0 };
+    controller_program_drop(s);
+    s->trouble = (struct controller_trouble){ 0 };
     s->first = s->given;
     struct orders_config now = c->orders;
     now.start.out = s->out;
@@ -13,22 +14,22 @@ void soft_program_start(struct soft *s, const struct soft_config *c, const struc
     s->program = s->orders.on ? PROGRAM_RUNS : PROGRAM_DROPPED;
 }
 
-void soft_program_drop(struct soft *s)
+void controller_program_drop(struct controller *s)
 {
     s->orders.on = false;
-    s->program = soft_running(s) ? PROGRAM_DROPPED : s->program;
+    s->program = controller_running(s) ? PROGRAM_DROPPED : s->program;
     s->heads = s->count = s->output_count = 0;
     s->next.kind = ORDER_NONE;
     s->delay = 0;
 }
 
 /* End with what has gone wrong; moves that were given before run to their end. */
-static bool fail(struct soft *s, enum soft_error error, const struct order *order)
+static bool fail(struct controller *s, enum controller_error error, const struct order *order)
 {
     s->trouble.error = error;
     s->trouble.line = order->line;
     s->trouble.fault = s->orders.job.fault;
-    soft_program_drop(s);
+    controller_program_drop(s);
     return true;
 }
 
@@ -37,32 +38,34 @@ static bool other_tool(const struct pose *a, const struct pose *b)
     return memcmp(a, b, sizeof *a) != 0;
 }
 
-bool soft_program_ready(struct soft *s, const struct soft_config *c, const struct pose *tool)
+bool controller_program_ready(struct controller *s, const struct controller_config *c,
+                              const struct pose *tool)
 {
     return robot_ready(&s->robot)
            && (!other_tool(tool, &s->robot.tool)
                || robot_tool(&s->robot, &c->robot, tool) == ROBOT_OK);
 }
 
-enum robot_status soft_program_give(struct soft *s, const struct soft_config *c,
-                                    struct robot_move *move, int32_t line,
-                                    struct robot_refusal *why)
+enum robot_status controller_program_give(struct controller *s, const struct controller_config *c,
+                                          struct robot_move *move, int32_t line,
+                                          struct robot_refusal *why)
 {
     move->line = (int32_t)(s->given + 1);
     const enum robot_status status = robot_move(&s->robot, &c->robot, move, why);
     if (status == ROBOT_OK) {
         s->given++;
-        s->move_line[s->given % SOFT_MOVES] = line;
+        s->move_line[s->given % CONTROLLER_MOVES] = line;
     }
     return status;
 }
 
-bool soft_program_move(struct soft *s, const struct soft_config *c, struct order *order)
+bool controller_program_move(struct controller *s, const struct controller_config *c,
+                             struct order *order)
 {
     const struct pose *tool = order->plain ? &c->robot.arm.tool : &order->tool;
     struct robot_move *m = &order->move;
 
-    if (!soft_program_ready(s, c, tool)) {
+    if (!controller_program_ready(s, c, tool)) {
         return false;
     }
     if (m->kind == ROBOT_CIRCLE) {
@@ -72,35 +75,36 @@ bool soft_program_move(struct soft *s, const struct soft_config *c, struct order
             order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
         memcpy(m->via, via.at, sizeof m->via);
     }
-    const enum robot_status status = soft_program_give(s, c, m, order->line, &s->trouble.refusal);
+    const enum robot_status status =
+        controller_program_give(s, c, m, order->line, &s->trouble.refusal);
     if (status != ROBOT_OK && status != ROBOT_BUSY) {
         s->trouble.status = status;
-        return fail(s, SOFT_MOVE, order);
+        return fail(s, CONTROLLER_MOVE, order);
     }
     return status == ROBOT_OK;
 }
 
-bool soft_program_put(struct soft *s, const struct order *o)
+bool controller_program_put(struct controller *s, const struct order *o)
 {
-    if (s->output_count == SOFT_OUTPUTS) {
+    if (s->output_count == CONTROLLER_OUTPUTS) {
         return false;
     }
-    s->output[s->output_count++] = (struct soft_output){ .after = s->first + o->after,
-                                                         .analog = o->kind == ORDER_ANALOG,
-                                                         .mask = o->mask,
-                                                         .value = o->value,
-                                                         .index = o->index,
-                                                         .volt = o->amount };
+    s->output[s->output_count++] = (struct controller_output){ .after = s->first + o->after,
+                                                               .analog = o->kind == ORDER_ANALOG,
+                                                               .mask = o->mask,
+                                                               .value = o->value,
+                                                               .index = o->index,
+                                                               .volt = o->amount };
     return true;
 }
 
 /* A move of the program; of single steps each is let go by the start key. */
-static bool carry_out_move(struct soft *s, const struct soft_config *c,
-                           const struct soft_panel *panel, struct order *o)
+static bool carry_out_move(struct controller *s, const struct controller_config *c,
+                           const struct controller_panel *panel, struct order *o)
 {
     const bool held = panel->single && !(robot_idle(&s->robot) && s->leave);
 
-    if (held || !soft_program_move(s, c, o)) {
+    if (held || !controller_program_move(s, c, o)) {
         return false;
     }
     s->leave = false;
@@ -108,47 +112,48 @@ static bool carry_out_move(struct soft *s, const struct soft_config *c,
 }
 
 /* The end, once the arm rests and all outputs are put out. */
-static bool end(struct soft *s)
+static bool end(struct controller *s)
 {
     if (!robot_idle(&s->robot) || s->output_count) {
         return false;
     }
-    soft_program_drop(s);
+    controller_program_drop(s);
     s->program = PROGRAM_ENDED;
     return true;
 }
 
 /* False: not now. */
-static bool carry_out(struct soft *s, const struct soft_config *c, const struct soft_panel *panel,
-                      struct order *o)
+static bool carry_out(struct controller *s, const struct controller_config *c,
+                      const struct controller_panel *panel, struct order *o)
 {
     const bool idle = robot_idle(&s->robot);
 
     switch (o->kind) {
     case ORDER_MOVE:   return carry_out_move(s, c, panel, o);
     case ORDER_OUT:
-    case ORDER_ANALOG: return soft_program_put(s, o);
+    case ORDER_ANALOG: return controller_program_put(s, o);
     case ORDER_DELAY:  s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0; return idle;
     case ORDER_PAUSE:
-        s->program = idle && !soft_key_take(&s->start) ? PROGRAM_PAUSED : PROGRAM_RUNS;
+        s->program = idle && !controller_key_take(&s->start) ? PROGRAM_PAUSED : PROGRAM_RUNS;
         return idle && s->program == PROGRAM_RUNS;
     case ORDER_END: return end(s);
-    default:        return fail(s, SOFT_PROGRAM, o);
+    default:        return fail(s, CONTROLLER_PROGRAM, o);
     }
 }
 
 /* What stands behind a pause may look at inputs. */
-static bool pause_ahead(const struct soft *s)
+static bool pause_ahead(const struct controller *s)
 {
-    const int32_t last = (s->heads + s->count + SOFT_QUEUE - 1) % SOFT_QUEUE;
+    const int32_t last = (s->heads + s->count + CONTROLLER_QUEUE - 1) % CONTROLLER_QUEUE;
     return (s->count > 0 ? &s->queue[last] : &s->next)->kind == ORDER_PAUSE;
 }
 
-void soft_program_poll(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                       const struct robot_job_inputs *in, int64_t clock)
+void controller_program_poll(struct controller *s, const struct controller_config *c,
+                             const struct orders_text *t, const struct robot_job_inputs *in,
+                             int64_t clock)
 {
     while (s->orders.on && s->count < c->depth) {
-        struct order *o = &s->queue[(s->heads + s->count) % SOFT_QUEUE];
+        struct order *o = &s->queue[(s->heads + s->count) % CONTROLLER_QUEUE];
         if (pause_ahead(s)) {
             return;
         }
@@ -161,8 +166,8 @@ void soft_program_poll(struct soft *s, const struct soft_config *c, const struct
     }
 }
 
-static bool fetch(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                  const struct robot_job_inputs *in)
+static bool fetch(struct controller *s, const struct controller_config *c,
+                  const struct orders_text *t, const struct robot_job_inputs *in)
 {
     if (c->user) {
         if (s->count == 0) {
@@ -170,7 +175,7 @@ static bool fetch(struct soft *s, const struct soft_config *c, const struct orde
             return false;
         }
         s->next = s->queue[s->heads];
-        s->heads = (s->heads + 1) % SOFT_QUEUE;
+        s->heads = (s->heads + 1) % CONTROLLER_QUEUE;
         s->count--;
         return true;
     }
@@ -180,22 +185,23 @@ static bool fetch(struct soft *s, const struct soft_config *c, const struct orde
 }
 
 /* What the program does until the next run; a delay goes on while inputs are asked behind it. */
-static void look_what_is_next(struct soft *s)
+static void look_what_is_next(struct controller *s)
 {
-    if (soft_running(s) && s->program != PROGRAM_PAUSED) {
+    if (controller_running(s) && s->program != PROGRAM_PAUSED) {
         s->program = s->delay > 0                      ? PROGRAM_DELAYS
                      : s->orders.on && s->orders.waits ? PROGRAM_WAITS
                                                        : PROGRAM_RUNS;
     }
 }
 
-int32_t soft_program_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                         const struct soft_panel *panel, const struct robot_job_inputs *in)
+int32_t controller_program_run(struct controller *s, const struct controller_config *c,
+                               const struct orders_text *t, const struct controller_panel *panel,
+                               const struct robot_job_inputs *in)
 {
     int32_t done = 0;
 
     s->delay -= s->delay > 0 ? c->slots * c->slot : 0;
-    while (soft_running(s) && done < c->lines && s->delay <= 0) {
+    while (controller_running(s) && done < c->lines && s->delay <= 0) {
         if (s->next.kind == ORDER_NONE && !fetch(s, c, t, in)) {
             break;
         }
@@ -213,12 +219,12 @@ int32_t soft_program_run(struct soft *s, const struct soft_config *c, const stru
     return done;
 }
 
-void soft_program_outputs(struct soft *s, int64_t done)
+void controller_program_outputs(struct controller *s, int64_t done)
 {
     int32_t n = 0;
 
     for (; n < s->output_count && s->output[n].after <= s->reached; n++) {
-        const struct soft_output *o = &s->output[n];
+        const struct controller_output *o = &s->output[n];
         outbox_put(&s->outbox, done, o->mask, o->value);
         s->out = (s->out & ~o->mask) | o->value;
         if (o->analog) {

@@ -2,7 +2,7 @@
  * with the point of their move, delays of whole cycles, a user program that polls too seldom. */
 #include <stdlib.h>
 
-#include "soft_rig.h"
+#include "controller_rig.h"
 
 static const char POINTS[] = "P000 J1=0.1 J2=0 J3=0 J4=0 J5=90 J6=0\n"
                              "P001 J1=-0.1 J2=0 J3=0 J4=0 J5=90 J6=0\n";
@@ -16,14 +16,14 @@ static int64_t rested; /* [clock] of the latest interrupt that began a memory of
 static void drive(int64_t most)
 {
     rested = 0;
-    while (!soft_done(&soft) && now < most) {
+    while (!controller_done(&controller) && now < most) {
         rig_instant();
         if (card.playing >= 0 && card.rate[0] != 0.0) {
             rested = card.start + INTERVAL;
         }
     }
-    CHECK(soft_done(&soft));
-    CHECK_EQ(soft.trouble.error, SOFT_OK);
+    CHECK(controller_done(&controller));
+    CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
 }
 
 static void outputs(void)
@@ -33,13 +33,13 @@ static void outputs(void)
     config.start = 10 * INTERVAL; /* while the card plays */
     rig_power_on();
     int64_t on = 0, off = 0, at[2] = { 0 };
-    while (!soft_done(&soft) && now < 40000000) {
+    while (!controller_done(&controller) && now < 40000000) {
         const bool before = card.outputs & 1;
         rig_instant();
         on = !before && (card.outputs & 1) ? card.output_clock[0] : on;
         off = before && !(card.outputs & 1) ? card.output_clock[0] : off;
         for (int i = 0; i < 2; i++) {
-            const bool there = fabs(soft.joint[0] - (i ? -0.1 : 0.1) * DEGREE) < 1e-12;
+            const bool there = fabs(controller.joint[0] - (i ? -0.1 : 0.1) * DEGREE) < 1e-12;
             at[i] = there && !at[i] ? card.irq.clock : at[i];
         }
     }
@@ -50,8 +50,8 @@ static void outputs(void)
     CHECK(behind == 0 || behind == INTERVAL); /* that rest is seen a cycle later */
     /* 600 cycles from the run of the delay, which is the one after that of the output, at rest. */
     CHECK_EQ(card.output_clock[1] - off, 600 * INTERVAL);
-    CHECK_EQ(soft.report.line_most, INTERVAL);
-    CHECK_EQ(soft.report.told_most, INTERVAL);
+    CHECK_EQ(controller.report.line_most, INTERVAL);
+    CHECK_EQ(controller.report.told_most, INTERVAL);
 }
 
 /* A dwell of a part program, though 0.02 s less 200 times 0.1 ms is not 0. */
@@ -66,11 +66,11 @@ static void dwell(void)
     config.orders.feed = config.orders.feed_most = 100.0;
     text.gcode = &source;
     rig_power_on();
-    while (!soft_done(&soft) && now < 4000000) {
+    while (!controller_done(&controller) && now < 4000000) {
         rig_instant();
         on = card.outputs & 1 ? card.output_clock[0] : on;
     }
-    CHECK(soft_done(&soft));
+    CHECK(controller_done(&controller));
     CHECK_EQ(card.outputs, 0);
     CHECK_EQ(card.output_clock[0] - on, 200 * INTERVAL);
 }
@@ -107,8 +107,8 @@ static void starving(void)
 {
     const int64_t at_once = takes(0, 1440000), move = at_once / MOVES;
 
-    CHECK_EQ(soft.report.starved, 0);
-    CHECK_EQ(soft.report.line_most, INTERVAL);
+    CHECK_EQ(controller.report.starved, 0);
+    CHECK_EQ(controller.report.line_most, INTERVAL);
     /* All lines fit into the queue. */
     CHECK(llabs(takes(64, 1440000) - at_once) <= 2 * INTERVAL);
     /* Two lines a poll, which is as long as four: as many polls as there are pairs. */
@@ -116,10 +116,10 @@ static void starving(void)
     const double slow = (double)takes(2, poll);
     CHECK_NEAR(slow, (MOVES / 2 - 1) * (double)poll + 2.0 * move, 0.2 * move);
     /* The queue is empty from the start to the poll behind the last pair, but for the moves. */
-    CHECK_NEAR(soft.report.starved, ((MOVES / 2 + 1) * (double)poll - at_once) / INTERVAL,
+    CHECK_NEAR(controller.report.starved, ((MOVES / 2 + 1) * (double)poll - at_once) / INTERVAL,
                3.0 * MOVES);
-    CHECK(soft.report.told_most > INTERVAL && soft.report.told_most <= 2 * INTERVAL);
-    CHECK_EQ(soft.report.line_most, INTERVAL);
+    CHECK(controller.report.told_most > INTERVAL && controller.report.told_most <= 2 * INTERVAL);
+    CHECK_EQ(controller.report.line_most, INTERVAL);
 }
 
 /* A queue that is never full: the first line waits for the run behind its poll. */
@@ -135,7 +135,7 @@ static void known(void)
         const int64_t run = card.irq.clock % INTERVAL, poll = 40000 + phase;
         /* the first run that begins at the poll or later, and a cycle */
         const int64_t wait = (run - (poll - WAIT) % INTERVAL + INTERVAL) % INTERVAL - WAIT;
-        CHECK_EQ(soft.report.told_most, wait + INTERVAL);
+        CHECK_EQ(controller.report.told_most, wait + INTERVAL);
     }
 }
 

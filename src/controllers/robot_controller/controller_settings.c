@@ -1,4 +1,4 @@
-#include "soft_settings.h"
+#include "controller_settings.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,17 +15,17 @@ static void fill(double to[OPW_JOINTS], const double from[OPW_JOINTS])
     memcpy(to, from, OPW_JOINTS * sizeof *to);
 }
 
-struct soft_settings soft_defaults(void)
+struct controller_settings controller_defaults(void)
 {
     static const double ZONE[ROBOT_JOB_LEVELS + 1] = { 0.0, 0.5,  1.0,  2.0, 4.0,
                                                        8.0, 16.0, 32.0, 64.0 };
-    struct soft_settings s;
+    struct controller_settings s;
 
 #define START(type, name, elements, unit, start, low, high) \
     for (size_t i = 0; i < sizeof s.name / sizeof(type); i++) { \
         ((type *)&s.name)[i] = start; \
     }
-    SOFT_SETTINGS(START)
+    CONTROLLER_SETTINGS(START)
     fill(s.joint_offset, (const double[]){ 0.0, 0.0, -90.0, 0.0, 0.0, 0.0 });
     fill(s.joint_low, (const double[]){ -180.0, -155.0, -155.0, -400.0, -120.0, -400.0 });
     fill(s.joint_high, (const double[]){ 180.0, 95.0, 75.0, 400.0, 120.0, 400.0 });
@@ -37,21 +37,21 @@ struct soft_settings soft_defaults(void)
     return s;
 }
 
-static bool within(struct soft_wrong *w, const char *name, int32_t index, double value, double low,
-                   double high)
+static bool within(struct controller_wrong *w, const char *name, int32_t index, double value,
+                   double low, double high)
 {
-    *w = (struct soft_wrong){ name, NULL, index, value, low, high };
+    *w = (struct controller_wrong){ name, NULL, index, value, low, high };
     return value >= low && value <= high;
 }
 
-static bool refuse(struct soft_wrong *w, const char *name, int32_t index, double value,
+static bool refuse(struct controller_wrong *w, const char *name, int32_t index, double value,
                    const char *why)
 {
-    *w = (struct soft_wrong){ name, why, index, value, value, value };
+    *w = (struct controller_wrong){ name, why, index, value, value, value };
     return false;
 }
 
-bool soft_settings_good(const struct soft_settings *s, struct soft_wrong *wrong)
+bool controller_settings_good(const struct controller_settings *s, struct controller_wrong *wrong)
 {
     const double clocks = s->bus_period * FPGA_CLOCK_HZ;
 
@@ -61,7 +61,7 @@ bool soft_settings_good(const struct soft_settings *s, struct soft_wrong *wrong)
             return false; \
         } \
     }
-    SOFT_SETTINGS(WITHIN)
+    CONTROLLER_SETTINGS(WITHIN)
     if (fabs(clocks - round(clocks)) > ROUNDING) {
         return refuse(wrong, "bus_period", 0, s->bus_period, "not a whole number of 25 ns clocks");
     }
@@ -82,7 +82,7 @@ static int64_t clocks_of(double seconds)
     return llround(seconds * FPGA_CLOCK_HZ);
 }
 
-static void set_robot(const struct soft_settings *s, struct robot_config *r)
+static void set_robot(const struct controller_settings *s, struct robot_config *r)
 {
     *r = (struct robot_config){ .arm = { .opw = { .a1 = s->a1,
                                                   .a2 = s->a2,
@@ -110,7 +110,7 @@ static void set_robot(const struct soft_settings *s, struct robot_config *r)
     }
 }
 
-static void set_orders(const struct soft_settings *s, struct orders_config *o)
+static void set_orders(const struct controller_settings *s, struct orders_config *o)
 {
     *o = (struct orders_config){
         .start = { .vj = 100.0 * s->rapid, .v = s->feed / 60.0, .vr = s->max_spin },
@@ -127,7 +127,7 @@ static void set_orders(const struct soft_settings *s, struct orders_config *o)
     memcpy(o->origin[0], s->origin, sizeof o->origin[0]);
 }
 
-static void set_layers(const struct soft_settings *s, struct layers_config *l)
+static void set_layers(const struct controller_settings *s, struct layers_config *l)
 {
     l->interrupt =
         (struct latency){ s->irq_latency * FPGA_CLOCK_HZ, s->irq_mean * FPGA_CLOCK_HZ,
@@ -143,7 +143,7 @@ static void set_layers(const struct soft_settings *s, struct layers_config *l)
     l->follow[LAYER_USER] = (uint32_t)s->follow_user;
 }
 
-void soft_configure(const struct soft_settings *s, struct soft_config *c)
+void controller_configure(const struct controller_settings *s, struct controller_config *c)
 {
     memset(c, 0, sizeof *c);
     c->bus = clocks_of(s->bus_period);

@@ -1,6 +1,6 @@
 /* Each layer's answer to each edge, to the clock, against a model that knows when every edge is and
  * looks for the first interrupt, tick and poll behind it. */
-#include "soft_rig.h"
+#include "controller_rig.h"
 
 enum { EDGES = 400, PAUSE = 60000 };
 

@@ -1,5 +1,5 @@
-/* soft - a motion controller that is all software on a PC: the driver of an FPGA card that only
- * plays pulses, and the user's program above it.
+/* controller - a robot's motion controller that is all software on a PC, a soft controller: the
+ * driver of an FPGA card that only plays pulses, and the user's program above it.
  *
  *     card's interrupt --wait--> [copy in | lines, points | copy out] mark      the driver's run
  *     t_k                                                             < t_k+1: or the pulses stop
@@ -9,15 +9,20 @@
  * shows at (k+1) T_b with the clocks at which it reaches the card. So a run is known in time if two
  * T_b are no longer than the memory plays. Times are clocks of 25 ns.
  */
-#ifndef SOFT_H
-#define SOFT_H
+#ifndef CONTROLLER_H
+#define CONTROLLER_H
 
 #include "layers.h"
 #include "orders.h"
 
-enum { SOFT_QUEUE = 64, SOFT_OUTPUTS = 32, SOFT_TAUGHT = 64, SOFT_MOVES = 1024 };
+enum {
+    CONTROLLER_QUEUE = 64,
+    CONTROLLER_OUTPUTS = 32,
+    CONTROLLER_TAUGHT = 64,
+    CONTROLLER_MOVES = 1024
+};
 
-struct soft_config {
+struct controller_config {
     int64_t bus;   /* [clocks] T_b */
     int64_t slot;  /* [clocks] of the card */
     int32_t slots; /* of a memory, 1 .. FPGA_SLOTS */
@@ -28,7 +33,7 @@ struct soft_config {
     double pitch;              /* [mm] between two points whose kinematics are computed */
     int32_t lines;             /* most of a run */
     bool user;                 /* the user program reads the lines at its polls, into a queue */
-    int32_t depth;             /* lines of that queue, up to SOFT_QUEUE */
+    int32_t depth;             /* lines of that queue, up to CONTROLLER_QUEUE */
     int64_t start;             /* [clock] the program starts at the first run from here on */
     double zero[OPW_JOINTS];   /* [rad] joints at clock 0 */
     uint32_t servo;            /* axes whose servo is on */
@@ -39,7 +44,7 @@ struct soft_config {
 
 /* The teach pendant, read on the bus grid; keys count when they go down, in the run that follows:
  * one that has no meaning then is forgotten. */
-struct soft_panel {
+struct controller_panel {
     bool hold, abort, start, single, reset, teach, replay;
     double override; /* 0 .. 1 */
     double jog[6];   /* -1 .. 1 of each direction; all 0: none */
@@ -47,20 +52,20 @@ struct soft_panel {
     double jog_speed, jog_way; /* share of the highest; [mm], [deg], 0 no end */
 };
 
-enum soft_status {
-    SOFT_IDLE,
-    SOFT_RUNNING,
-    SOFT_HOLD,
-    SOFT_WAITING,
-    SOFT_DELAY,
-    SOFT_PAUSED,
-    SOFT_JOG,
-    SOFT_ERROR,
-    SOFT_STOPPED
+enum controller_status {
+    CONTROLLER_IDLE,
+    CONTROLLER_RUNNING,
+    CONTROLLER_HOLD,
+    CONTROLLER_WAITING,
+    CONTROLLER_DELAY,
+    CONTROLLER_PAUSED,
+    CONTROLLER_JOG,
+    CONTROLLER_ERROR,
+    CONTROLLER_STOPPED
 };
 
 /* The program; from PROGRAM_RUNS on it is not over. */
-enum soft_program {
+enum controller_program {
     PROGRAM_NEW,     /* not started yet */
     PROGRAM_ENDED,   /* its last order is done */
     PROGRAM_DROPPED, /* it was given up */
@@ -71,15 +76,15 @@ enum soft_program {
 };
 
 /* Why the program was ended. */
-enum soft_error {
-    SOFT_OK,
-    SOFT_MOVE,    /* a move is refused: status and refusal say why */
-    SOFT_PROGRAM, /* the program has stopped by a fault of its own: fault */
-    SOFT_LOST     /* out of reach on a path that was planned */
+enum controller_error {
+    CONTROLLER_OK,
+    CONTROLLER_MOVE,    /* a move is refused: status and refusal say why */
+    CONTROLLER_PROGRAM, /* the program has stopped by a fault of its own: fault */
+    CONTROLLER_LOST     /* out of reach on a path that was planned */
 };
 
-struct soft_trouble {
-    enum soft_error error;
+struct controller_trouble {
+    enum controller_error error;
     int32_t line;
     enum robot_status status;
     struct robot_refusal refusal;
@@ -87,7 +92,7 @@ struct soft_trouble {
 };
 
 /* What the layers have taken so far; the driver's times in clocks. */
-struct soft_report {
+struct controller_report {
     int32_t runs, late;      /* of the driver; not done when their pulses were due */
     int64_t wait, wait_most; /* from interrupt to begin */
     int64_t run, run_most;   /* from interrupt to mark */
@@ -100,11 +105,11 @@ struct soft_report {
     int64_t told_most;       /* and from where the driver could have known the first */
 };
 
-struct soft_key {
+struct controller_key {
     bool down, pressed;
 };
 
-struct soft_output {
+struct controller_output {
     int64_t after;
     bool analog;
     uint32_t mask, value;
@@ -112,13 +117,13 @@ struct soft_output {
     double volt;
 };
 
-struct soft {
+struct controller {
     struct robot robot;
     struct orders orders;
     struct layers layers;
     struct outbox outbox;
-    struct soft_trouble trouble;
-    struct soft_report report;
+    struct controller_trouble trouble;
+    struct controller_report report;
 
     /* the card */
     int32_t irq_seq, write_seq, memory; /* seen, written last */
@@ -136,48 +141,52 @@ struct soft {
     double origin[OPW_JOINTS]; /* [pulses] of the joints where the card's counters are 0 */
 
     /* the program */
-    enum soft_program program;
+    enum controller_program program;
     int32_t heads, count; /* queue of the user program */
-    struct order queue[SOFT_QUEUE];
-    struct order next;             /* taken, not yet done; ORDER_NONE: none */
-    int64_t delay;                 /* [clocks] left */
-    int64_t given, reached;        /* moves of the arm */
-    int64_t first;                 /* of them before the program */
-    int32_t move_line[SOFT_MOVES]; /* line of move n at n mod SOFT_MOVES */
+    struct order queue[CONTROLLER_QUEUE];
+    struct order next;                   /* taken, not yet done; ORDER_NONE: none */
+    int64_t delay;                       /* [clocks] left */
+    int64_t given, reached;              /* moves of the arm */
+    int64_t first;                       /* of them before the program */
+    int32_t move_line[CONTROLLER_MOVES]; /* line of move n at n mod CONTROLLER_MOVES */
     int32_t output_count;
-    struct soft_output output[SOFT_OUTPUTS];
+    struct controller_output output[CONTROLLER_OUTPUTS];
     uint32_t out; /* digital outputs as programs have set them */
 
     /* the pendant */
-    struct soft_key start, abort, reset, teach, replay;
+    struct controller_key start, abort, reset, teach, replay;
     bool leave; /* single step: one move may begin */
     bool jogs;
     int32_t taught_count, replaying; /* points; the next one, -1 none */
-    struct robot_target taught[SOFT_TAUGHT];
+    struct robot_target taught[CONTROLLER_TAUGHT];
 };
 
 /* At rest at clock 0. */
-void soft_start(struct soft *s, const struct soft_config *c);
+void controller_start(struct controller *s, const struct controller_config *c);
 
 /* One instant of the bus grid, at clock now = k T_b, for k = 0, 1, 2, ... What it leads to is for
- * soft_post at the next one. */
-void soft_instant(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                  const struct fpga_shown *card, const struct soft_panel *panel, int64_t now);
+ * controller_post at the next one. */
+void controller_instant(struct controller *s, const struct controller_config *c,
+                        const struct orders_text *t, const struct fpga_shown *card,
+                        const struct controller_panel *panel, int64_t now);
 
 /* What the card is given. The mailboxes of *host keep what they had if there is nothing new. */
-void soft_post(struct soft *s, const struct soft_config *c, struct fpga_host *host);
+void controller_post(struct controller *s, const struct controller_config *c,
+                     struct fpga_host *host);
 
-enum soft_status soft_status(const struct soft *s, const struct soft_panel *panel);
+enum controller_status controller_status(const struct controller *s,
+                                         const struct controller_panel *panel);
 
 /* A program has been started and is not over. */
-bool soft_running(const struct soft *s);
+bool controller_running(const struct controller *s);
 
 /* The program is over and the arm at rest. */
-bool soft_done(const struct soft *s);
+bool controller_done(const struct controller *s);
 
-/* Behind soft_start: the moves of a part program one by one without time, each at rest at its end,
- * up to the first that is refused: s->trouble says which. Then *s is to be started again. A program
- * in the robot language cannot be rehearsed: its inputs decide what it does. */
-void soft_rehearse(struct soft *s, const struct soft_config *c, const struct orders_text *t);
+/* Behind controller_start: try the moves of a part program one by one without time, each at rest at
+ * its end, up to the first that is refused, which s->trouble then names. *s has to be started again
+ * afterwards. A job cannot be rehearsed: its inputs decide what it does. */
+void controller_rehearse(struct controller *s, const struct controller_config *c,
+                         const struct orders_text *t);
 
 #endif

@@ -1,8 +1,8 @@
-#include "soft_parts.h"
+#include "controller_parts.h"
 
 static const double DEGREE = 0.017453292519943295;
 
-static bool jog_wanted(const struct soft_panel *panel)
+static bool jog_wanted(const struct controller_panel *panel)
 {
     bool any = false;
 
@@ -12,8 +12,9 @@ static bool jog_wanted(const struct soft_panel *panel)
     return any;
 }
 
-enum robot_status soft_panel_jog(struct soft *s, const struct soft_config *c,
-                                 const struct soft_panel *panel, struct robot_refusal *why)
+enum robot_status controller_panel_jog(struct controller *s, const struct controller_config *c,
+                                       const struct controller_panel *panel,
+                                       struct robot_refusal *why)
 {
     const double *d = panel->jog;
     const bool turns =
@@ -29,29 +30,31 @@ enum robot_status soft_panel_jog(struct soft *s, const struct soft_config *c,
     return status;
 }
 
-static void jog(struct soft *s, const struct soft_config *c, const struct soft_panel *panel)
+static void jog(struct controller *s, const struct controller_config *c,
+                const struct controller_panel *panel)
 {
     struct robot_refusal why;
 
-    if (!jog_wanted(panel) || soft_running(s) || s->replaying >= 0 || s->stopped) {
+    if (!jog_wanted(panel) || controller_running(s) || s->replaying >= 0 || s->stopped) {
         if (s->jogs) {
             robot_release(&s->robot);
         }
         s->jogs = false;
         return;
     }
-    soft_panel_jog(s, c, panel, &why);
+    controller_panel_jog(s, c, panel, &why);
 }
 
-static void teach(struct soft *s, const struct soft_config *c)
+static void teach(struct controller *s, const struct controller_config *c)
 {
-    if (s->taught_count < SOFT_TAUGHT) {
+    if (s->taught_count < CONTROLLER_TAUGHT) {
         robot_teach(&s->robot, &c->robot, &s->taught[s->taught_count++]);
     }
 }
 
 /* The taught points one after another, by the joints. */
-static void replay(struct soft *s, const struct soft_config *c, const struct soft_panel *panel)
+static void replay(struct controller *s, const struct controller_config *c,
+                   const struct controller_panel *panel)
 {
     if (s->replaying < 0 || s->stopped) {
         return;
@@ -65,48 +68,50 @@ static void replay(struct soft *s, const struct soft_config *c, const struct sof
     order.move.target = s->taught[s->replaying];
     order.move.target.by_joints = true;
     order.move.share = panel->jog_speed;
-    if (soft_program_move(s, c, &order)) {
-        s->replaying = s->trouble.error == SOFT_OK ? s->replaying + 1 : -1;
+    if (controller_program_move(s, c, &order)) {
+        s->replaying = s->trouble.error == CONTROLLER_OK ? s->replaying + 1 : -1;
     }
 }
 
 /* Nothing moves the arm, or is about to. */
-static bool free_to_start(const struct soft *s)
+static bool free_to_start(const struct controller *s)
 {
-    return !soft_running(s) && !s->stopped && s->replaying < 0;
+    return !controller_running(s) && !s->stopped && s->replaying < 0;
 }
 
 /* The start key begins the program, or lets the next of single steps go. */
-static void start(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                  const struct soft_panel *panel, int64_t clock)
+static void start(struct controller *s, const struct controller_config *c,
+                  const struct orders_text *t, const struct controller_panel *panel, int64_t clock)
 {
     const bool program = t->gcode || t->job, due = s->program == PROGRAM_NEW && clock >= c->start;
 
-    if (program && free_to_start(s) && robot_idle(&s->robot) && (soft_key_take(&s->start) || due)) {
-        soft_program_start(s, c, t);
+    if (program && free_to_start(s) && robot_idle(&s->robot)
+        && (controller_key_take(&s->start) || due)) {
+        controller_program_start(s, c, t);
         s->leave = true;
     }
-    if (soft_running(s) && panel->single && s->program != PROGRAM_PAUSED
-        && soft_key_take(&s->start)) {
+    if (controller_running(s) && panel->single && s->program != PROGRAM_PAUSED
+        && controller_key_take(&s->start)) {
         s->leave = true;
     }
 }
 
-void soft_panel_run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                    const struct soft_panel *panel, int64_t clock)
+void controller_panel_run(struct controller *s, const struct controller_config *c,
+                          const struct orders_text *t, const struct controller_panel *panel,
+                          int64_t clock)
 {
     robot_hold(&s->robot, panel->hold);
     robot_override(&s->robot, panel->override);
-    if (soft_key_take(&s->abort)) {
-        soft_program_drop(s);
+    if (controller_key_take(&s->abort)) {
+        controller_program_drop(s);
         s->replaying = -1;
         robot_abort(&s->robot);
     }
-    if (soft_key_take(&s->teach)) {
+    if (controller_key_take(&s->teach)) {
         teach(s, c);
     }
-    if (soft_key_take(&s->replay) && free_to_start(s)) {
-        s->trouble = (struct soft_trouble){ 0 };
+    if (controller_key_take(&s->replay) && free_to_start(s)) {
+        s->trouble = (struct controller_trouble){ 0 };
         s->replaying = 0;
     }
     start(s, c, t, panel, clock);

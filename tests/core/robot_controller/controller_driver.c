@@ -2,7 +2,7 @@
  * lost however late it is. */
 #include <stdlib.h>
 
-#include "soft_rig.h"
+#include "controller_rig.h"
 
 /* At rest, a run of so many clocks in all. */
 static void runs(int64_t time, int32_t slots, bool holds)
@@ -15,15 +15,15 @@ static void runs(int64_t time, int32_t slots, bool holds)
     config.bus = 50;
     config.copy_out = time - WAIT - COPY_IN;
     rig_power_on();
-    while (soft.report.runs < RUNS) {
+    while (controller.report.runs < RUNS) {
         rig_instant();
     }
-    CHECK_EQ(soft.report.run_most, time);
-    CHECK_EQ(soft.report.wait_most, WAIT);
-    CHECK_EQ(soft.report.spare, interval - time);
-    CHECK_EQ(soft.report.busy, (int64_t)RUNS * (time - WAIT));
+    CHECK_EQ(controller.report.run_most, time);
+    CHECK_EQ(controller.report.wait_most, WAIT);
+    CHECK_EQ(controller.report.spare, interval - time);
+    CHECK_EQ(controller.report.busy, (int64_t)RUNS * (time - WAIT));
     /* The first run fills a card that does not play; the last one's end is still to come. */
-    CHECK_EQ(soft.report.late, holds ? 0 : RUNS - 1);
+    CHECK_EQ(controller.report.late, holds ? 0 : RUNS - 1);
     CHECK_EQ(card.underruns, holds ? 0 : RUNS - 2);
     CHECK_EQ(card.refused, 0);
     CHECK_EQ(card.late, 0);
@@ -39,22 +39,22 @@ static void late(void)
     config.layers.interrupt =
         (struct latency){ .least = 20, .mean = 300, .most = 40000, .rare = 0.2 };
     rig_power_on();
-    while (soft.report.runs < INTERRUPTS) {
-        panel.jog[0] = soft.report.runs % 2000 < 1000 ? 1.0 : 0.0;
+    while (controller.report.runs < INTERRUPTS) {
+        panel.jog[0] = controller.report.runs % 2000 < 1000 ? 1.0 : 0.0;
         rig_instant();
         CHECK(llabs(rig_commanded(0)) >= llabs(rig_shown().pulse_count[0]) || panel.jog[0] != 0.0
-              || !robot_idle(&soft.robot));
+              || !robot_idle(&controller.robot));
     }
     panel.jog[0] = 0.0;
     rig_until(now + 200 * INTERVAL);
-    CHECK(robot_idle(&soft.robot));
+    CHECK(robot_idle(&controller.robot));
     CHECK_EQ(rig_shown().pulse_count[0], rig_commanded(0));
     CHECK(llabs(rig_commanded(0)) > 10000);
     CHECK_EQ(card.refused, 0);
-    const int to_come = soft.report.spare <= 0 && card.playing >= 0;
-    CHECK_EQ(card.underruns, soft.report.late - to_come);
+    const int to_come = controller.report.spare <= 0 && card.playing >= 0;
+    CHECK_EQ(card.underruns, controller.report.late - to_come);
     /* exp(-(4000 - RUN) / 300) and a wait of more than 4000 - RUN + WAIT of 40000: 0.187 */
-    CHECK_NEAR((double)soft.report.late / soft.report.runs, 0.187, 0.01);
+    CHECK_NEAR((double)controller.report.late / controller.report.runs, 0.187, 0.01);
 }
 
 /* A stop drops what waits; afterwards the joints are those of the counters. */
@@ -67,14 +67,14 @@ static void stop(void)
     rig_until(4000 * INTERVAL);
     fpga_set_drives(&card, 0, true);
     rig_until(4100 * INTERVAL);
-    CHECK(soft.stopped);
+    CHECK(controller.stopped);
     CHECK(card.refused <= 1); /* on its way when the stop came */
     CHECK(card.dropped[0] > 0);
     fpga_set_drives(&card, 0, false);
     panel.jog[0] = 0.0;
     panel.reset = true;
     rig_until(4200 * INTERVAL);
-    CHECK(!soft.stopped);
+    CHECK(!controller.stopped);
     CHECK_EQ(rig_shown().pulse_count[0], rig_commanded(0));
     panel.jog[0] = -1.0;
     rig_until(5000 * INTERVAL);

@@ -1,11 +1,11 @@
 /* A PC with its program, and in place of the card one that plays every memory in time. */
-#ifndef SOFT_PC_H
-#define SOFT_PC_H
+#ifndef CONTROLLER_PC_H
+#define CONTROLLER_PC_H
 
 #include <string.h>
 
 #include "check.h"
-#include "soft.h"
+#include "controller.h"
 
 static const double DEGREE = 0.017453292519943295, CYCLE = 1e-4;
 
@@ -25,10 +25,10 @@ static const char POINTS[] = "TOOL 1 X=0 Y=0 Z=150 A=0 B=0 C=0\n"
                              "P011 X=1180 Y=0 Z=1410 A=0 B=90 C=0 TOOL=1\n"
                              "P012 X=1180 Y=0 Z=1110 A=0 B=90 C=0 FRONT UP TOOL=1\n";
 
-static struct soft soft;
-static struct soft_config config;
+static struct controller controller;
+static struct controller_config config;
 static struct orders_text text;
-static struct soft_panel panel;
+static struct controller_panel panel;
 static struct fpga_shown card;
 static struct fpga_host host;
 static struct robot_job_program jobs;
@@ -38,7 +38,7 @@ static struct source source;
 static int64_t now;                /* [clocks] */
 static double fastest[OPW_JOINTS]; /* [rad/s] joints since it was set to 0 */
 
-static inline struct soft_config pc_config(void)
+static inline struct controller_config pc_config(void)
 {
     static const double high[] = { 180, 95, 75, 400, 120, 400 };
     static const double low[] = { -180, -155, -155, -400, -120, -400 };
@@ -46,7 +46,7 @@ static inline struct soft_config pc_config(void)
     static const double acc[] = { 500, 500, 500, 1000, 1000, 1500 };
     static const double ratio[] = { 100, 120, 120, 100, 100, 80 };
     static const double zero[] = { 0, 0, 0, 0, 90, 0 };
-    struct soft_config c = {
+    struct controller_config c = {
         .bus = 2000, .slot = 200, .slots = 20, .pitch = 0.1, .lines = 4, .depth = 32, .seed = 1
     };
     c.layers = (struct layers_config){ .access = 40, .tick = 400000, .poll = 40000 };
@@ -99,10 +99,10 @@ static inline void pc_start(const char *job, const char *gcode)
     }
     memset(&card, 0, sizeof card);
     memset(&host, 0, sizeof host);
-    panel = (struct soft_panel){ .override = 1.0, .jog_speed = 0.1 };
+    panel = (struct controller_panel){ .override = 1.0, .jog_speed = 0.1 };
     card.memory = -1;
     now = 0;
-    soft_start(&soft, &config);
+    controller_start(&controller, &config);
 }
 
 /* Pulses of the memory that the driver wrote last. */
@@ -124,8 +124,8 @@ static inline void pc_cycle(void)
     card.irq_seq++;
     card.irq_clock = (double)now;
     for (int k = 0; k < 2; k++, now += config.bus) {
-        soft_instant(&soft, &config, &text, &card, &panel, now);
-        soft_post(&soft, &config, &host);
+        controller_instant(&controller, &config, &text, &card, &panel, now);
+        controller_post(&controller, &config, &host);
         for (int n = 0; host.out_count > 0 && n < host.out_count; n++) {
             card.inputs = (card.inputs & ~host.out_mask[n]) | host.out_value[n];
         }
@@ -133,10 +133,10 @@ static inline void pc_cycle(void)
     pc_play();
     card.memory = host.write_memory;
     for (int i = 0; i < OPW_JOINTS; i++) {
-        const double pulses =
-            soft.robot.joint[i] * config.robot.scale[i] - config.zero[i] * config.robot.scale[i];
+        const double pulses = controller.robot.joint[i] * config.robot.scale[i]
+                              - config.zero[i] * config.robot.scale[i];
         CHECK(card.stopped || fabs(pulses - card.pulse_count[i]) <= 1.0 + 1e-6);
-        fastest[i] = fmax(fastest[i], fabs(soft.robot.rate[i]));
+        fastest[i] = fmax(fastest[i], fabs(controller.robot.rate[i]));
     }
 }
 
@@ -148,12 +148,12 @@ static inline void pc_run(int cycles)
 }
 
 /* Until it is in a status, 60 s at most. */
-static inline void pc_until(enum soft_status status)
+static inline void pc_until(enum controller_status status)
 {
-    for (int n = 0; n < 600000 && soft_status(&soft, &panel) != status; n++) {
+    for (int n = 0; n < 600000 && controller_status(&controller, &panel) != status; n++) {
         pc_cycle();
     }
-    CHECK_EQ(soft_status(&soft, &panel), status);
+    CHECK_EQ(controller_status(&controller, &panel), status);
 }
 
 static inline void pc_press(bool *key)
@@ -166,9 +166,9 @@ static inline void pc_press(bool *key)
 
 static inline void pc_at(double x, double y, double z, double tolerance)
 {
-    CHECK_NEAR(soft.robot.pose.at[0], x, tolerance);
-    CHECK_NEAR(soft.robot.pose.at[1], y, tolerance);
-    CHECK_NEAR(soft.robot.pose.at[2], z, tolerance);
+    CHECK_NEAR(controller.robot.pose.at[0], x, tolerance);
+    CHECK_NEAR(controller.robot.pose.at[1], y, tolerance);
+    CHECK_NEAR(controller.robot.pose.at[2], z, tolerance);
 }
 
 /* Angle between the tool's attitude and that of A B C. [deg] */
@@ -176,7 +176,7 @@ static inline double pc_off(double a, double b, double c)
 {
     double want[4], back[4], v[3];
     quaternion_by_angles((double[]){ a, b, c }, want);
-    quaternion_inverse(soft.robot.pose.turn, back);
+    quaternion_inverse(controller.robot.pose.turn, back);
     quaternion_product(want, back, want);
     quaternion_vector(want, v);
     return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / DEGREE;

@@ -1,6 +1,6 @@
 /* Jobs of the robot language: targets that say all, part or nothing of their configuration; frames,
  * tools, outputs behind moves, waits, pauses, single step, abort and begin again, refusals. */
-#include "soft_pc.h"
+#include "controller_pc.h"
 
 static const int64_t LONG = 60LL * FPGA_CLOCK_HZ; /* [clocks] no job takes so long */
 
@@ -12,14 +12,15 @@ static void begin(const char *job)
 
 static void finish(void)
 {
-    while (!soft_done(&soft) && soft.trouble.error == SOFT_OK && now < LONG) {
+    while (!controller_done(&controller) && controller.trouble.error == CONTROLLER_OK
+           && now < LONG) {
         pc_cycle();
     }
 }
 
 static int branch(void)
 {
-    return opw_branch(&config.robot.arm.opw, soft.robot.joint);
+    return opw_branch(&config.robot.arm.opw, controller.robot.joint);
 }
 
 static void configurations(void)
@@ -35,24 +36,24 @@ static void configurations(void)
     CHECK_EQ(branch(), 0);
     /* Through joint 5 = 0, and back: the wrist is open. */
     begin("MOVJ P010\nMOVL P011 V=100\nMOVL P012 V=100\nEND\n");
-    pc_until(SOFT_RUNNING);
-    while (soft.robot.line < 2 && now < LONG) {
+    pc_until(CONTROLLER_RUNNING);
+    while (controller.robot.line < 2 && now < LONG) {
         pc_cycle();
     }
     const int before = branch();
     finish();
-    CHECK_EQ(soft.trouble.error, SOFT_OK);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
     CHECK_EQ(branch(), before);
     CHECK_EQ(before, OPW_FLIP);
     begin("MOVJ P002\nMOVL P006\nEND\n"); /* a line keeps its wrist */
     finish();
-    CHECK_EQ(soft.trouble.error, SOFT_MOVE);
-    CHECK_EQ(soft.trouble.line, 2);
-    CHECK_EQ(soft.trouble.status, ROBOT_OTHER_BRANCH);
-    CHECK_EQ(soft.trouble.refusal.which, OPW_FLIP);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_MOVE);
+    CHECK_EQ(controller.trouble.line, 2);
+    CHECK_EQ(controller.trouble.status, ROBOT_OTHER_BRANCH);
+    CHECK_EQ(controller.trouble.refusal.which, OPW_FLIP);
     pc_run(10000);
     pc_at(1000.0, 100.0, 350.0, 1e-6); /* what was given before has run to its end */
-    CHECK_EQ(soft.given, 1);
+    CHECK_EQ(controller.given, 1);
 }
 
 /* One turn that is said leaves the others to what is nearest. */
@@ -62,11 +63,11 @@ static void turns(void)
         begin(line ? "MOVL P009 VR=50\nMOVL P007 VR=50\nEND\n" : "MOVJ P009\nMOVJ P007\nEND\n");
         config.zero[1] = 20.0 * DEGREE;
         config.zero[5] = 355.0 * DEGREE;
-        soft_start(&soft, &config);
+        controller_start(&controller, &config);
         finish();
-        CHECK_EQ(soft.trouble.error, SOFT_OK);
-        CHECK_NEAR(soft.robot.joint[5] / DEGREE, 360.0, 1e-6);
-        CHECK_NEAR(soft.robot.joint[3] / DEGREE, 0.0, 1e-6);
+        CHECK_EQ(controller.trouble.error, CONTROLLER_OK);
+        CHECK_NEAR(controller.robot.joint[5] / DEGREE, 360.0, 1e-6);
+        CHECK_NEAR(controller.robot.joint[3] / DEGREE, 0.0, 1e-6);
         pc_at(900.0, 0.0, 350.0, 1e-6);
     }
 }
@@ -78,13 +79,14 @@ static void frames(void)
     /* User frame 2 is turned by 90 degrees about z: X = 900 + 200, Y = -300 + 300. */
     pc_at(1100.0, 0.0, 350.0, 1e-6);
     CHECK_NEAR(pc_off(180.0, 0.0, 180.0), 0.0, 1e-6);
-    CHECK_EQ(soft.robot.tool.at[2], 150.0);
+    CHECK_EQ(controller.robot.tool.at[2], 150.0);
     begin("MOVJ P001\nMOVC P002 P003 V=100\nEND\n");
     double off = 0.0;
-    while (!soft_done(&soft) && now < LONG) {
+    while (!controller_done(&controller) && now < LONG) {
         pc_cycle();
-        const double *at = soft.robot.pose.at;
-        off = soft.robot.line == 2 ? fmax(off, fabs(hypot(at[0] - 1000.0, at[1]) - 100.0)) : off;
+        const double *at = controller.robot.pose.at;
+        off = controller.robot.line == 2 ? fmax(off, fabs(hypot(at[0] - 1000.0, at[1]) - 100.0))
+                                         : off;
     }
     CHECK(off < 1e-6);
     pc_at(1100.0, 0.0, 350.0, 1e-6);
@@ -96,14 +98,14 @@ static void outputs(void)
           "MOVL P003\nDOUT OT#(1) OFF\nWAIT IN#(3)=ON T=0.10\nTIMER T=0.05\nMOVL P001 V=500\n"
           "WAIT IN#(3)=ON\nEND\n");
     double on = 1e9, corner = 1e9, waited = 0.0;
-    while (soft_status(&soft, &panel) != SOFT_WAITING || soft.given < 4) {
+    while (controller_status(&controller, &panel) != CONTROLLER_WAITING || controller.given < 4) {
         pc_cycle();
-        const double *at = soft.robot.pose.at;
+        const double *at = controller.robot.pose.at;
         on = on == 1e9 && (card.inputs & 1) ? at[0] : on;
         if (corner == 1e9 && card.inputs >> 31 & 1) {
             corner = hypot(at[0] - 1000.0, at[1] - 100.0);
         }
-        waited += soft_status(&soft, &panel) == SOFT_WAITING ? CYCLE : 0.0;
+        waited += controller_status(&controller, &panel) == CONTROLLER_WAITING ? CYCLE : 0.0;
         if (now > LONG) {
             break;
         }
@@ -115,10 +117,10 @@ static void outputs(void)
     CHECK_NEAR(waited, 0.15, 1e-3);
     card.irq_inputs = 4;
     pc_run(3);
-    CHECK(soft_done(&soft));
+    CHECK(controller_done(&controller));
     card.irq_inputs = 0;
     pc_press(&panel.start); /* again: the outputs are as they were left */
-    CHECK(!soft_done(&soft));
+    CHECK(!controller_done(&controller));
 }
 
 /* An output is known to the job that is begun again. */
@@ -139,47 +141,48 @@ static void steps(void)
     begin("MOVJ P001\nPAUSE\nMOVL P002 V=500\nEND\n");
     pc_run(50);
     pc_press(&panel.start); /* while it moves: it does not pass the pause to come */
-    pc_until(SOFT_PAUSED);
+    pc_until(CONTROLLER_PAUSED);
     pc_run(2000);
     pc_at(900.0, 0.0, 350.0, 1e-6);
     pc_press(&panel.start);
     finish();
     pc_at(1000.0, 100.0, 350.0, 1e-6);
     pc_run(100);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_IDLE);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_IDLE);
 
     begin("MOVJ P001\nPAUSE\nMOVL P002 V=500 PL=3\nMOVL P003 V=500\nEND\n");
     panel.single = true;
     int keys = 0;
-    while (!soft_done(&soft) && keys < 20 && now < LONG) {
-        pc_until(SOFT_PAUSED);
+    while (!controller_done(&controller) && keys < 20 && now < LONG) {
+        pc_until(CONTROLLER_PAUSED);
         pc_run(10);
         pc_press(&panel.start);
         keys++;
-        for (int n = 0;
-             n < 100000 && !soft_done(&soft) && soft_status(&soft, &panel) != SOFT_PAUSED; n++) {
+        for (int n = 0; n < 100000 && !controller_done(&controller)
+                        && controller_status(&controller, &panel) != CONTROLLER_PAUSED;
+             n++) {
             pc_cycle();
         }
     }
-    CHECK(soft_done(&soft));
+    CHECK(controller_done(&controller));
     CHECK_EQ(keys, 3); /* the pause, the second move, the third */
     pc_at(1100.0, 0.0, 350.0, 1e-6);
 
     /* The key while a move runs lets the next one begin, but once the arm rests: no zone. */
     begin("MOVJ P001\nMOVL P002 V=500 PL=3\nMOVL P003 V=500\nEND\n");
     panel.single = true;
-    pc_until(SOFT_PAUSED);
+    pc_until(CONTROLLER_PAUSED);
     pc_press(&panel.start);
     pc_run(200);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_RUNNING);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_RUNNING);
     pc_press(&panel.start);
     double nearest = INFINITY;
-    for (int n = 0; n < 100000 && !soft_done(&soft); n++) {
-        const double *at = soft.robot.pose.at;
+    for (int n = 0; n < 100000 && !controller_done(&controller); n++) {
+        const double *at = controller.robot.pose.at;
         pc_cycle();
         nearest = fmin(nearest, hypot(hypot(at[0] - 1000.0, at[1] - 100.0), at[2] - 350.0));
     }
-    CHECK(soft_done(&soft) && nearest < 1e-6);
+    CHECK(controller_done(&controller) && nearest < 1e-6);
 }
 
 /* The user program does not look at what stands behind a pause before that is over. */
@@ -191,14 +194,14 @@ static void pause_of_user(void)
              "*END\nNOP\nEND\n",
              NULL);
     pc_run(3000);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_PAUSED);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_PAUSED);
     card.irq_inputs = 1;
     pc_run(3000);
     pc_press(&panel.start);
-    for (int n = 0; n < 3000 && !soft_done(&soft); n++) {
+    for (int n = 0; n < 3000 && !controller_done(&controller); n++) {
         pc_cycle();
     }
-    CHECK(soft_done(&soft));
+    CHECK(controller_done(&controller));
     CHECK_EQ(card.inputs, 1);
 }
 
@@ -206,28 +209,28 @@ static void pause_of_user(void)
 static void abort_and_hold(void)
 {
     begin("MOVJ P001\nMOVL P002 V=500\nDOUT OT#(1) ON\nMOVL P003 V=500\nEND\n");
-    while (soft.robot.line < 2) {
+    while (controller.robot.line < 2) {
         pc_cycle();
     }
     pc_run(500);
     panel.hold = true;
     pc_run(8000);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_HOLD);
-    CHECK_EQ(soft.robot.speed, 0.0);
-    const struct pose held = soft.robot.pose;
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_HOLD);
+    CHECK_EQ(controller.robot.speed, 0.0);
+    const struct pose held = controller.robot.pose;
     pc_run(1000);
-    CHECK(memcmp(&held, &soft.robot.pose, sizeof held) == 0);
+    CHECK(memcmp(&held, &controller.robot.pose, sizeof held) == 0);
     panel.hold = false;
     panel.override = 0.0;
     pc_run(5000);
-    CHECK_EQ(soft.robot.speed, 0.0);
+    CHECK_EQ(controller.robot.speed, 0.0);
     panel.override = 0.5;
     pc_run(500);
-    CHECK(soft.robot.speed > 0.0 && soft.robot.speed < 251.0);
+    CHECK(controller.robot.speed > 0.0 && controller.robot.speed < 251.0);
     pc_press(&panel.abort);
     pc_run(8000);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_IDLE);
-    CHECK(!soft_done(&soft));
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_IDLE);
+    CHECK(!controller_done(&controller));
     CHECK_EQ(card.inputs, 0);
     pc_press(&panel.abort); /* at rest it does nothing */
     panel.override = 1.0;
@@ -243,21 +246,21 @@ static void refused(void)
 {
     begin("MOVJ P001\nMOVL P008 V=100\nMOVL P002\nEND\n");
     finish();
-    CHECK_EQ(soft.trouble.error, SOFT_MOVE);
-    CHECK_EQ(soft.trouble.line, 2);
-    CHECK_EQ(soft.trouble.status, ROBOT_FAR);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_MOVE);
+    CHECK_EQ(controller.trouble.line, 2);
+    CHECK_EQ(controller.trouble.status, ROBOT_FAR);
     pc_run(20000);
-    CHECK_EQ(soft_status(&soft, &panel), SOFT_ERROR);
-    CHECK_EQ(soft.given, 1);
+    CHECK_EQ(controller_status(&controller, &panel), CONTROLLER_ERROR);
+    CHECK_EQ(controller.given, 1);
     begin("SET B000 200\nADD B000 100\nMOVJ P001\nEND\n");
     finish();
-    CHECK_EQ(soft.trouble.error, SOFT_PROGRAM);
-    CHECK_EQ(soft.trouble.line, 2);
-    CHECK(soft.trouble.fault != ROBOT_JOB_OK);
-    CHECK_EQ(soft.given, 0);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_PROGRAM);
+    CHECK_EQ(controller.trouble.line, 2);
+    CHECK(controller.trouble.fault != ROBOT_JOB_OK);
+    CHECK_EQ(controller.given, 0);
     pc_run(100);
     pc_press(&panel.start); /* again, the same */
-    CHECK_EQ(soft.trouble.error, SOFT_PROGRAM);
+    CHECK_EQ(controller.trouble.error, CONTROLLER_PROGRAM);
 }
 
 int main(void)

@@ -4,10 +4,10 @@
 #include <string.h>
 
 #include "check.h"
-#include "soft_settings.h"
+#include "controller_settings.h"
 
-static struct soft_settings s;
-static struct soft_config usual;
+static struct controller_settings s;
+static struct controller_config usual;
 static int count;
 
 /* Another value within the range, as far from the start as it goes. */
@@ -18,24 +18,24 @@ static double other(double start, double low, double high)
 
 static void changed(const char *name, size_t element)
 {
-    static struct soft_config c;
-    struct soft_wrong wrong;
+    static struct controller_config c;
+    struct controller_wrong wrong;
 
-    soft_configure(&s, &c);
+    controller_configure(&s, &c);
     if (memcmp(&c, &usual, sizeof c) == 0) {
         check_failures++;
         printf("%s[%d] counts for nothing\n", name, (int)element);
     }
-    CHECK(soft_settings_good(&s, &wrong) || wrong.name);
+    CHECK(controller_settings_good(&s, &wrong) || wrong.name);
     count++;
 }
 
 /* A value beyond either end of its range is refused by its name, element and bounds. */
 static void refused(const char *name, size_t element, double value, double low, double high)
 {
-    struct soft_wrong wrong = { 0 };
+    struct controller_wrong wrong = { 0 };
 
-    CHECK(!soft_settings_good(&s, &wrong));
+    CHECK(!controller_settings_good(&s, &wrong));
     CHECK(wrong.name && !strcmp(wrong.name, name));
     CHECK(!wrong.why);
     CHECK_EQ(wrong.index, element);
@@ -68,29 +68,29 @@ static void refused(const char *name, size_t element, double value, double low, 
 
 static void wrong_together(const char *name, const char *why)
 {
-    struct soft_wrong wrong = { 0 };
+    struct controller_wrong wrong = { 0 };
 
-    CHECK(!soft_settings_good(&s, &wrong));
+    CHECK(!controller_settings_good(&s, &wrong));
     CHECK(wrong.name && !strcmp(wrong.name, name));
     CHECK(wrong.why && !strcmp(wrong.why, why));
-    s = soft_defaults();
-    CHECK(soft_settings_good(&s, &wrong));
+    s = controller_defaults();
+    CHECK(controller_settings_good(&s, &wrong));
 }
 
 int main(void)
 {
-    struct soft_wrong wrong;
+    struct controller_wrong wrong;
 
-    s = soft_defaults();
-    CHECK(soft_settings_good(&s, &wrong));
-    soft_configure(&s, &usual);
+    s = controller_defaults();
+    CHECK(controller_settings_good(&s, &wrong));
+    controller_configure(&s, &usual);
     /* Where the longest wait is at work it is longer than the least. */
     s.irq_longest = 1e-3;
-    soft_configure(&s, &usual);
-    SOFT_SETTINGS(EACH)
+    controller_configure(&s, &usual);
+    CONTROLLER_SETTINGS(EACH)
     CHECK(count > 120);
 
-    s = soft_defaults();
+    s = controller_defaults();
     s.bus_period = 5.001e-5;
     wrong_together("bus_period", "not a whole number of 25 ns clocks");
     s.joint_sign[3] = 0;

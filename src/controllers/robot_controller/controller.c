@@ -1,10 +1,10 @@
-#include "soft_parts.h"
+#include "controller_parts.h"
 
 #include <math.h>
 
 #include "slots.h"
 
-void soft_start(struct soft *s, const struct soft_config *c)
+void controller_start(struct controller *s, const struct controller_config *c)
 {
     memset(s, 0, sizeof *s);
     robot_start(&s->robot, &c->robot, c->zero);
@@ -19,7 +19,7 @@ void soft_start(struct soft *s, const struct soft_config *c)
 }
 
 /* Moves whose points the arm has passed. */
-static void look_at_moves(struct soft *s)
+static void look_at_moves(struct controller *s)
 {
     const int64_t reached = robot_idle(&s->robot) ? s->given : (int64_t)s->robot.line - 1;
 
@@ -27,7 +27,7 @@ static void look_at_moves(struct soft *s)
 }
 
 /* A cycle of the arm as slots of pulses. */
-static void make_slots(struct soft *s, const struct soft_config *c)
+static void make_slots(struct controller *s, const struct controller_config *c)
 {
     int32_t of[OPW_JOINTS][FPGA_SLOTS];
     bool moves[OPW_JOINTS], any = false;
@@ -48,7 +48,7 @@ static void make_slots(struct soft *s, const struct soft_config *c)
 }
 
 /* The memory of the lines of an earlier run has begun to play. */
-static void see_lines(struct soft *s, const struct fpga_shown *card, int64_t clock)
+static void see_lines(struct controller *s, const struct fpga_shown *card, int64_t clock)
 {
     if (s->asked < 0 || card->memory != s->memory) {
         return;
@@ -63,7 +63,7 @@ static void see_lines(struct soft *s, const struct fpga_shown *card, int64_t clo
     s->asked = -1;
 }
 
-static struct robot_job_inputs inputs_of(const struct soft *s, const struct fpga_shown *card,
+static struct robot_job_inputs inputs_of(const struct controller *s, const struct fpga_shown *card,
                                          uint32_t di, int64_t clock)
 {
     struct robot_job_inputs in = { .now = clock * FPGA_CLOCK_NS,
@@ -74,10 +74,11 @@ static struct robot_job_inputs inputs_of(const struct soft *s, const struct fpga
 }
 
 /* Clocks of the run, and what there is to tell of them. */
-static void time_run(struct soft *s, const struct soft_config *c, const struct fpga_shown *card,
-                     int64_t clock, int64_t begin, int32_t lines, int32_t points)
+static void time_run(struct controller *s, const struct controller_config *c,
+                     const struct fpga_shown *card, int64_t clock, int64_t begin, int32_t lines,
+                     int32_t points)
 {
-    struct soft_report *r = &s->report;
+    struct controller_report *r = &s->report;
 
     s->mark = begin + c->copy_in + lines * c->line + points * c->point + c->copy_out;
     s->free = s->mark;
@@ -94,30 +95,31 @@ static void time_run(struct soft *s, const struct soft_config *c, const struct f
 }
 
 /* Polls of the user program up to a clock. */
-static void poll(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                 const struct fpga_shown *card, int64_t until)
+static void poll(struct controller *s, const struct controller_config *c,
+                 const struct orders_text *t, const struct fpga_shown *card, int64_t until)
 {
     struct layers_copy seen;
 
     for (int64_t at = s->layers.poll; layers_poll(&s->layers, &c->layers, until, &seen);
          at = s->layers.poll) {
-        if (c->user && soft_running(s)) {
+        if (c->user && controller_running(s)) {
             const struct robot_job_inputs in = inputs_of(s, card, seen.inputs, at);
-            soft_program_poll(s, c, t, &in, at);
+            controller_program_poll(s, c, t, &in, at);
         }
     }
     s->report.polls = s->layers.polls;
 }
 
 /* Keys and what the program wants; lines that are done. */
-static int32_t decide(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                      const struct fpga_shown *card, const struct soft_panel *panel, int64_t clock)
+static int32_t decide(struct controller *s, const struct controller_config *c,
+                      const struct orders_text *t, const struct fpga_shown *card,
+                      const struct controller_panel *panel, int64_t clock)
 {
-    soft_panel_run(s, c, t, panel, clock);
+    controller_panel_run(s, c, t, panel, clock);
     look_at_moves(s);
     const struct robot_job_inputs in = inputs_of(s, card, (uint32_t)card->irq_inputs, clock);
     s->known = -1;
-    const int32_t lines = s->stopped ? 0 : soft_program_run(s, c, t, panel, &in);
+    const int32_t lines = s->stopped ? 0 : controller_program_run(s, c, t, panel, &in);
     s->start.pressed = s->replay.pressed = false;
     if (s->known >= 0) {
         s->asked = clock;
@@ -126,23 +128,24 @@ static int32_t decide(struct soft *s, const struct soft_config *c, const struct 
 }
 
 /* A cycle of the arm and its pulses; points whose kinematics it takes. */
-static int32_t move_arm(struct soft *s, const struct soft_config *c)
+static int32_t move_arm(struct controller *s, const struct controller_config *c)
 {
     const double way = s->robot.solved;
 
     robot_cycle(&s->robot, &c->robot);
-    if (s->robot.lost && s->trouble.error == SOFT_OK) {
-        s->trouble.error = SOFT_LOST;
-        s->trouble.line = s->move_line[s->given % SOFT_MOVES];
-        soft_program_drop(s);
+    if (s->robot.lost && s->trouble.error == CONTROLLER_OK) {
+        s->trouble.error = CONTROLLER_LOST;
+        s->trouble.line = s->move_line[s->given % CONTROLLER_MOVES];
+        controller_program_drop(s);
     }
     make_slots(s, c);
     return (int32_t)(floor(s->robot.solved / c->pitch) - floor(way / c->pitch));
 }
 
 /* The driver's run for the interrupt at a clock: wait, copy in, lines, points, copy out. */
-static void run(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                const struct fpga_shown *card, const struct soft_panel *panel)
+static void run(struct controller *s, const struct controller_config *c,
+                const struct orders_text *t, const struct fpga_shown *card,
+                const struct controller_panel *panel)
 {
     const int64_t clock = (int64_t)card->irq_clock;
     const int64_t begin = clock + layers_wait(&s->layers, &c->layers);
@@ -154,17 +157,18 @@ static void run(struct soft *s, const struct soft_config *c, const struct orders
     const int32_t lines = decide(s, c, t, card, panel, clock);
     const int32_t points = move_arm(s, c);
     time_run(s, c, card, clock, begin, lines, points);
-    soft_program_outputs(s, s->mark);
+    controller_program_outputs(s, s->mark);
     layers_put(&s->layers, &c->layers, di, s->mark, &s->outbox);
     s->memory = 1 - s->memory;
     s->posts = !s->stopped;
 }
 
 /* The card has stopped: its counters say where the arm is once it is let go. */
-static void look_at_stop(struct soft *s, const struct soft_config *c, const struct fpga_shown *card)
+static void look_at_stop(struct controller *s, const struct controller_config *c,
+                         const struct fpga_shown *card)
 {
     if (card->stopped && !s->stopped) {
-        soft_program_drop(s);
+        controller_program_drop(s);
         s->replaying = -1;
         robot_stop(&s->robot);
     }
@@ -176,22 +180,23 @@ static void look_at_stop(struct soft *s, const struct soft_config *c, const stru
         s->reached = s->given;
     }
     s->stopped = card->stopped;
-    if (soft_key_take(&s->reset)) {
+    if (controller_key_take(&s->reset)) {
         s->reset_seq++;
     }
 }
 
-static void look_at_keys(struct soft *s, const struct soft_panel *panel)
+static void look_at_keys(struct controller *s, const struct controller_panel *panel)
 {
-    soft_key_look(&s->start, panel->start);
-    soft_key_look(&s->abort, panel->abort);
-    soft_key_look(&s->reset, panel->reset);
-    soft_key_look(&s->teach, panel->teach);
-    soft_key_look(&s->replay, panel->replay);
+    controller_key_look(&s->start, panel->start);
+    controller_key_look(&s->abort, panel->abort);
+    controller_key_look(&s->reset, panel->reset);
+    controller_key_look(&s->teach, panel->teach);
+    controller_key_look(&s->replay, panel->replay);
 }
 
-void soft_instant(struct soft *s, const struct soft_config *c, const struct orders_text *t,
-                  const struct fpga_shown *card, const struct soft_panel *panel, int64_t now)
+void controller_instant(struct controller *s, const struct controller_config *c,
+                        const struct orders_text *t, const struct fpga_shown *card,
+                        const struct controller_panel *panel, int64_t now)
 {
     s->posts = false;
     look_at_keys(s, panel);
@@ -204,7 +209,8 @@ void soft_instant(struct soft *s, const struct soft_config *c, const struct orde
     layers_look(&s->layers, &c->layers, card, now + 2 * c->bus, &s->outbox);
 }
 
-void soft_post(struct soft *s, const struct soft_config *c, struct fpga_host *host)
+void controller_post(struct controller *s, const struct controller_config *c,
+                     struct fpga_host *host)
 {
     outbox_post(&s->outbox, host);
     if (s->posts) {
@@ -226,53 +232,56 @@ void soft_post(struct soft *s, const struct soft_config *c, struct fpga_host *ho
     host->reset_seq = s->reset_seq;
 }
 
-bool soft_running(const struct soft *s)
+bool controller_running(const struct controller *s)
 {
     return s->program >= PROGRAM_RUNS;
 }
 
 /* What a program, or a replay, does while nothing holds it. */
-static enum soft_status program_status(const struct soft *s, const struct soft_panel *panel)
+static enum controller_status program_status(const struct controller *s,
+                                             const struct controller_panel *panel)
 {
     const bool idle = robot_idle(&s->robot),
                held = panel->single && s->next.kind == ORDER_MOVE && idle && !s->leave;
 
     if (s->program == PROGRAM_PAUSED || held) {
-        return SOFT_PAUSED;
+        return CONTROLLER_PAUSED;
     }
     if (s->program == PROGRAM_DELAYS) {
-        return SOFT_DELAY;
+        return CONTROLLER_DELAY;
     }
-    return s->program == PROGRAM_WAITS && idle ? SOFT_WAITING : SOFT_RUNNING;
+    return s->program == PROGRAM_WAITS && idle ? CONTROLLER_WAITING : CONTROLLER_RUNNING;
 }
 
-enum soft_status soft_status(const struct soft *s, const struct soft_panel *panel)
+enum controller_status controller_status(const struct controller *s,
+                                         const struct controller_panel *panel)
 {
-    const bool idle = !soft_running(s) && s->replaying < 0 && robot_idle(&s->robot);
+    const bool idle = !controller_running(s) && s->replaying < 0 && robot_idle(&s->robot);
 
-    return s->stopped                    ? SOFT_STOPPED
-           : s->trouble.error != SOFT_OK ? SOFT_ERROR
-           : s->jogs                     ? SOFT_JOG
-           : idle                        ? SOFT_IDLE
-           : panel->hold                 ? SOFT_HOLD
-                                         : program_status(s, panel);
+    return s->stopped                          ? CONTROLLER_STOPPED
+           : s->trouble.error != CONTROLLER_OK ? CONTROLLER_ERROR
+           : s->jogs                           ? CONTROLLER_JOG
+           : idle                              ? CONTROLLER_IDLE
+           : panel->hold                       ? CONTROLLER_HOLD
+                                               : program_status(s, panel);
 }
 
-bool soft_done(const struct soft *s)
+bool controller_done(const struct controller *s)
 {
     return s->program == PROGRAM_ENDED && robot_idle(&s->robot);
 }
 
-void soft_rehearse(struct soft *s, const struct soft_config *c, const struct orders_text *t)
+void controller_rehearse(struct controller *s, const struct controller_config *c,
+                         const struct orders_text *t)
 {
     const struct robot_job_inputs in = { 0 };
     struct order order;
 
-    soft_program_start(s, c, t);
+    controller_program_start(s, c, t);
     s->orders.passes = true;
-    while (s->orders.on && s->trouble.error == SOFT_OK) {
+    while (s->orders.on && s->trouble.error == CONTROLLER_OK) {
         orders_next(&s->orders, &c->orders, t, &in, &order);
-        if (order.kind != ORDER_MOVE || !soft_program_move(s, c, &order)) {
+        if (order.kind != ORDER_MOVE || !controller_program_move(s, c, &order)) {
             continue;
         }
         double end[OPW_JOINTS];

@@ -1,11 +1,11 @@
 /* The driver on the wires of a card, instant by instant of their common grid. */
-#ifndef SOFT_RIG_H
-#define SOFT_RIG_H
+#ifndef CONTROLLER_RIG_H
+#define CONTROLLER_RIG_H
 
 #include "check.h"
 #include "fpga.h"
 #include "robot_rig.h"
-#include "soft.h"
+#include "controller.h"
 
 enum { SLOT = 200, SLOTS = 20, INTERVAL = SLOT * SLOTS };
 
@@ -20,9 +20,9 @@ enum {
 };
 
 static struct fpga card;
-static struct soft soft;
-static struct soft_config config;
-static struct soft_panel panel;
+static struct controller controller;
+static struct controller_config config;
+static struct controller_panel panel;
 static struct orders_text text;
 static struct robot_job_points points;
 static struct robot_job_program program;
@@ -34,7 +34,7 @@ static int32_t write_seq, out_seq, reset_seq;
 /* A controller without program at rest; then change `config` and call rig_power_on(). */
 static inline void rig_document(void)
 {
-    config = (struct soft_config){
+    config = (struct controller_config){
         .bus = 100,
         .slot = SLOT,
         .slots = SLOTS,
@@ -56,7 +56,7 @@ static inline void rig_document(void)
     };
     config.zero[4] = 90.0 * DEGREE;
     text = (struct orders_text){ 0 };
-    panel = (struct soft_panel){ .override = 1.0, .jog_speed = 0.1 };
+    panel = (struct controller_panel){ .override = 1.0, .jog_speed = 0.1 };
 }
 
 static inline void rig_program(const char *job, const char *of_points)
@@ -79,7 +79,7 @@ static inline void rig_power_on(void)
         .input_irq_mask = 0xffff,
     };
     fpga_reset(&card, &c);
-    soft_start(&soft, &config);
+    controller_start(&controller, &config);
     host = (struct fpga_host){ 0 };
     write_seq = out_seq = reset_seq = 0;
     now = 0;
@@ -135,9 +135,9 @@ static inline void rig_instant(void)
 {
     fpga_advance(&card, now);
     const struct fpga_shown shown = rig_shown();
-    soft_post(&soft, &config, &host);
+    controller_post(&controller, &config, &host);
     rig_read_host();
-    soft_instant(&soft, &config, &text, &shown, &panel, now);
+    controller_instant(&controller, &config, &text, &shown, &panel, now);
     now += config.bus;
 }
 
@@ -151,7 +151,7 @@ static inline void rig_until(int64_t clock)
 /* Pulses that the joints commanded so far are from where they began. */
 static inline int64_t rig_commanded(int i)
 {
-    return llround(soft.joint[i] * config.robot.scale[i])
+    return llround(controller.joint[i] * config.robot.scale[i])
            - llround(config.zero[i] * config.robot.scale[i]);
 }
 
