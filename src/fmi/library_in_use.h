@@ -42,6 +42,7 @@
 
 /* A struct voltage. */
 #define VOLTAGE_IN_USE(voltage) \
-    FMU_BETWEEN(voltage.trail.point, voltage.trail.first, voltage.trail.frames, 1)
+    FMU_BETWEEN(voltage.commanded_path.point, voltage.commanded_path.first, \
+                voltage.commanded_path.frames, 1)
 
 #endif

@@ -1,4 +1,4 @@
-#include "trail.h"
+#include "commanded_path.h"
 
 #include <math.h>
 #include <string.h>
@@ -40,36 +40,36 @@ static void minus(const double a[3], const double b[3], double c[3])
     }
 }
 
-void trail_start(struct trail *t, const double place[3])
+void commanded_path_start(struct commanded_path *t, const double place[3])
 {
     memset(t, 0, sizeof *t);
     memcpy(t->point[0].place, place, sizeof t->point[0].place);
 }
 
-void trail_push(struct trail *t, const struct trail_point *p)
+void commanded_path_push(struct commanded_path *t, const struct commanded_path_point *p)
 {
     t->frames++;
-    t->point[t->frames % TRAIL_SIZE] = *p;
-    if (t->frames - t->first >= TRAIL_SIZE) {
+    t->point[t->frames % COMMANDED_PATH_SIZE] = *p;
+    if (t->frames - t->first >= COMMANDED_PATH_SIZE) {
         t->first++;
     }
     t->foot = t->foot > t->first ? t->foot : t->first;
 }
 
-const struct trail_point *trail_at(const struct trail *t, int64_t frame)
+const struct commanded_path_point *commanded_path_at(const struct commanded_path *t, int64_t frame)
 {
     const int64_t there = frame < t->first ? t->first : frame > t->frames ? t->frames : frame;
-    return &t->point[there % TRAIL_SIZE];
+    return &t->point[there % COMMANDED_PATH_SIZE];
 }
 
-static const double *place_at(const struct trail *t, int64_t frame)
+static const double *place_at(const struct commanded_path *t, int64_t frame)
 {
-    return trail_at(t, frame)->place;
+    return commanded_path_at(t, frame)->place;
 }
 
 /* Axis and size of the bend of the circle through three points: 2 a x b / (|a| |b| |a + b|)
  * [1/mm]; 0 if two of them are one. */
-static void bend(const struct trail *t, int64_t middle, double out[3])
+static void bend(const struct commanded_path *t, int64_t middle, double out[3])
 {
     double a[3], b[3], ab[3];
     minus(place_at(t, middle), place_at(t, middle - 1), a);
@@ -83,7 +83,7 @@ static void bend(const struct trail *t, int64_t middle, double out[3])
 }
 
 /* A piece of the path and what of it is nearest. */
-struct trail_piece {
+struct commanded_path_segment {
     double from[3], chord[3], along[3]; /* [mm], [mm], unit */
     double size;                        /* [mm] of the chord */
     double foot[3];                     /* [mm] */
@@ -92,9 +92,10 @@ struct trail_piece {
 };
 
 /* Nearest point on the chord from a point to the next. */
-static struct trail_piece chord_of(const struct trail *t, int64_t i, const double place[3])
+static struct commanded_path_segment chord_of(const struct commanded_path *t, int64_t i,
+                                              const double place[3])
 {
-    struct trail_piece p = { 0 };
+    struct commanded_path_segment p = { 0 };
     double gap[3];
 
     memcpy(p.from, place_at(t, i), sizeof p.from);
@@ -112,7 +113,8 @@ static struct trail_piece chord_of(const struct trail *t, int64_t i, const doubl
 }
 
 /* The bend of the circle that a piece belongs to; false for a straight piece. */
-static bool arc_of(const struct trail *t, int64_t i, double size, double axis[3], double *radius)
+static bool arc_of(const struct commanded_path *t, int64_t i, double size, double axis[3],
+                   double *radius)
 {
     double before[3], after[3], gap[3];
 
@@ -137,7 +139,7 @@ static bool arc_of(const struct trail *t, int64_t i, double size, double axis[3]
 }
 
 /* The foot at an end of a piece: the path is not the chord, which lies on the tool's side. */
-static void at_end(struct trail_piece *p, bool far, const double place[3])
+static void at_end(struct commanded_path_segment *p, bool far, const double place[3])
 {
     p->square = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -147,9 +149,10 @@ static void at_end(struct trail_piece *p, bool far, const double place[3])
 }
 
 /* Nearest point on the piece, on its circle if it has one. */
-static struct trail_piece refined(const struct trail *t, int64_t i, const double place[3])
+static struct commanded_path_segment refined(const struct commanded_path *t, int64_t i,
+                                             const double place[3])
 {
-    struct trail_piece p = chord_of(t, i, place);
+    struct commanded_path_segment p = chord_of(t, i, place);
     double axis[3], inward[3], centre[3], spoke[3], radius;
 
     if (p.size == 0.0 || !arc_of(t, i, p.size, axis, &radius)) {
@@ -190,7 +193,7 @@ static struct trail_piece refined(const struct trail *t, int64_t i, const double
 }
 
 /* Places that stand still have no piece of their own. */
-static void pass_rest(struct trail *t, int64_t last)
+static void pass_rest(struct commanded_path *t, int64_t last)
 {
     while (t->foot + 1 < last
            && memcmp(place_at(t, t->foot), place_at(t, t->foot + 1), 3 * sizeof(double)) == 0) {
@@ -198,10 +201,12 @@ static void pass_rest(struct trail *t, int64_t last)
     }
 }
 
-struct trail_foot trail_nearest(struct trail *t, const double place[3], int64_t frame)
+struct commanded_path_foot commanded_path_nearest(struct commanded_path *t, const double place[3],
+                                                  int64_t frame)
 {
-    struct trail_foot out = { { 0.0 }, { 0.0 } };
-    const int64_t last = frame + TRAIL_AHEAD < t->frames ? frame + TRAIL_AHEAD : t->frames;
+    struct commanded_path_foot out = { { 0.0 }, { 0.0 } };
+    const int64_t last =
+        frame + COMMANDED_PATH_AHEAD < t->frames ? frame + COMMANDED_PATH_AHEAD : t->frames;
     int64_t best = t->foot;
     double least = INFINITY;
 
@@ -216,9 +221,9 @@ struct trail_foot trail_nearest(struct trail *t, const double place[3], int64_t 
     if (least == INFINITY) {
         return out;
     }
-    struct trail_piece p = refined(t, best, place);
+    struct commanded_path_segment p = refined(t, best, place);
     for (int64_t i = best - 1; i <= best + 1; i += 2) {
-        const struct trail_piece other = refined(t, i, place);
+        const struct commanded_path_segment other = refined(t, i, place);
         if (i >= t->foot && i < last && other.square < p.square) {
             p = other;
         }
