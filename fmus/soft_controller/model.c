@@ -19,8 +19,8 @@ struct model {
 #define MODEL_IN_USE \
     RING_IN_USE(controller.robot.ring) \
     MEAN_IN_USE(controller.robot.mean, controller.robot.mover) \
-    FMU_LIST(controller.robot.course.move, controller.robot.course.count) \
-    FMU_LIST(controller.robot.way.piece, controller.robot.way.count) \
+    FMU_LIST(controller.robot.moves.move, controller.robot.moves.count) \
+    FMU_LIST(controller.robot.tool_path.segment, controller.robot.tool_path.count) \
     INTERPRETER_IN_USE(controller.orders.gcode) \
     FMU_RING(controller.queue, controller.heads, controller.count, 0) \
     FMU_LIST(controller.taught, controller.taught_count)

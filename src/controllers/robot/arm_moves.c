@@ -1,23 +1,23 @@
-#include "course.h"
+#include "arm_moves.h"
 
 #include <math.h>
 #include <string.h>
 
-void course_start(struct course *c, const double turn[4])
+void arm_moves_start(struct arm_moves *c, const double turn[4])
 {
     memset(c, 0, sizeof *c);
     memcpy(c->move[0].turn, turn, 4 * sizeof *turn);
     c->count = 1; /* a move that is over */
 }
 
-static const struct course_move *move_of(const struct course *c, int32_t n)
+static const struct arm_move *move_of(const struct arm_moves *c, int32_t n)
 {
-    return &c->move[n % COURSE_SIZE];
+    return &c->move[n % ARM_MOVES_SIZE];
 }
 
-void course_add(struct course *c, const struct course_move *move, double way)
+void arm_moves_add(struct arm_moves *c, const struct arm_move *move, double way)
 {
-    struct course_move *m = &c->move[c->count % COURSE_SIZE];
+    struct arm_move *m = &c->move[c->count % ARM_MOVES_SIZE];
     const int axis = c->count % 3;
 
     *m = *move;
@@ -26,21 +26,21 @@ void course_add(struct course *c, const struct course_move *move, double way)
     c->count++;
 }
 
-void course_drop(struct course *c)
+void arm_moves_drop(struct arm_moves *c)
 {
     c->count--;
     c->at[c->count % 3] = move_of(c, c->count)->from;
 }
 
-int course_axis(const struct course *c)
+int arm_moves_axis(const struct arm_moves *c)
 {
     return 3 + (c->count - 1) % 3;
 }
 
 /* How much of a move is over at a place, 0 .. 1. */
-static double part_of(const struct course *c, int32_t n, const double place[AXES])
+static double part_of(const struct arm_moves *c, int32_t n, const double place[AXES])
 {
-    const struct course_move *m = move_of(c, n);
+    const struct arm_move *m = move_of(c, n);
     const double u = place[3 + n % 3];
     return u >= m->to ? 1.0 : u <= m->from ? 0.0 : (u - m->from) / (m->to - m->from);
 }
@@ -50,9 +50,9 @@ static double part_of(const struct course *c, int32_t n, const double place[AXES
 static const double ROUNDING = 1e-15;
 
 /* The latest move that has begun to turn, or the oldest known. */
-static int32_t active(const struct course *c, const double place[AXES])
+static int32_t active(const struct arm_moves *c, const double place[AXES])
 {
-    const int32_t oldest = c->count > COURSE_SIZE ? c->count - COURSE_SIZE : 0;
+    const int32_t oldest = c->count > ARM_MOVES_SIZE ? c->count - ARM_MOVES_SIZE : 0;
     int32_t n = c->count - 1;
 
     while (n > oldest && !(place[3 + n % 3] > (1.0 + ROUNDING) * move_of(c, n)->from)) {
@@ -62,7 +62,7 @@ static int32_t active(const struct course *c, const double place[AXES])
 }
 
 /* Attitude after part of a move, from the one before it. */
-static void turned(const struct course_move *m, double part, double turn[4])
+static void turned(const struct arm_move *m, double part, double turn[4])
 {
     const double by[3] = { part * m->by[0], part * m->by[1], part * m->by[2] };
     double q[4];
@@ -71,12 +71,12 @@ static void turned(const struct course_move *m, double part, double turn[4])
     quaternion_product(q, turn, turn);
 }
 
-static void attitude(const struct course *c, int32_t n, const double place[AXES], double turn[4])
+static void attitude(const struct arm_moves *c, int32_t n, const double place[AXES], double turn[4])
 {
-    const struct course_move *m = move_of(c, n);
-    const int32_t oldest = c->count > COURSE_SIZE ? c->count - COURSE_SIZE : 0;
+    const struct arm_move *m = move_of(c, n);
+    const int32_t oldest = c->count > ARM_MOVES_SIZE ? c->count - ARM_MOVES_SIZE : 0;
     const bool corner =
-        m->kind == COURSE_POSE && n > oldest && move_of(c, n - 1)->kind == COURSE_POSE;
+        m->kind == ARM_MOVE_POSE && n > oldest && move_of(c, n - 1)->kind == ARM_MOVE_POSE;
     const double before = corner ? part_of(c, n - 1, place) : 1.0;
 
     memcpy(turn, m->turn, 4 * sizeof *turn);
@@ -84,70 +84,70 @@ static void attitude(const struct course *c, int32_t n, const double place[AXES]
         memcpy(turn, move_of(c, n - 1)->turn, 4 * sizeof *turn);
         turned(move_of(c, n - 1), before, turn);
     }
-    if (m->kind == COURSE_POSE) {
+    if (m->kind == ARM_MOVE_POSE) {
         turned(m, part_of(c, n, place), turn);
     }
 }
 
 static bool joints(const void *geometry, const double place[AXES], double joint[AXES])
 {
-    const struct course_geometry *g = geometry;
-    const int32_t n = active(g->course, place);
-    const struct course_move *m = move_of(g->course, n);
-    const double part = part_of(g->course, n, place);
+    const struct arm_geometry *g = geometry;
+    const int32_t n = active(g->moves, place);
+    const struct arm_move *m = move_of(g->moves, n);
+    const double part = part_of(g->moves, n, place);
     struct pose pose;
 
-    if (m->kind == COURSE_POSE || part >= 1.0) {
+    if (m->kind == ARM_MOVE_POSE || part >= 1.0) {
         memcpy(pose.at, place, sizeof pose.at);
-        attitude(g->course, n, place, pose.turn);
+        attitude(g->moves, n, place, pose.turn);
         return manipulator_joints(g->arm, &pose, joint);
     }
     double q[OPW_JOINTS];
     memcpy(q, joint, sizeof q);
-    for (int i = m->kind == COURSE_WRIST ? 3 : 0; i < OPW_JOINTS; i++) {
+    for (int i = m->kind == ARM_MOVE_WRIST ? 3 : 0; i < OPW_JOINTS; i++) {
         q[i] = m->joint[i] + part * m->step[i];
     }
-    if (m->kind == COURSE_WRIST && !manipulator_arm(g->arm, place, q)) {
+    if (m->kind == ARM_MOVE_WRIST && !manipulator_arm(g->arm, place, q)) {
         return false;
     }
     memcpy(joint, q, sizeof q);
     return true;
 }
 
-void course_pose(const struct course_geometry *g, const double place[AXES],
-                 const double joint[AXES], struct pose *pose)
+void arm_moves_pose(const struct arm_geometry *g, const double place[AXES],
+                    const double joint[AXES], struct pose *pose)
 {
-    const int32_t n = active(g->course, place);
-    const struct course_move *m = move_of(g->course, n);
+    const int32_t n = active(g->moves, place);
+    const struct arm_move *m = move_of(g->moves, n);
 
-    if (m->kind != COURSE_POSE && part_of(g->course, n, place) < 1.0) {
+    if (m->kind != ARM_MOVE_POSE && part_of(g->moves, n, place) < 1.0) {
         *pose = manipulator_pose(g->arm, joint);
         return;
     }
     memcpy(pose->at, place, sizeof pose->at);
-    attitude(g->course, n, place, pose->turn);
+    attitude(g->moves, n, place, pose->turn);
 }
 
-bool course_by_joints(const struct course *c, const double place[AXES])
+bool arm_moves_by_joints(const struct arm_moves *c, const double place[AXES])
 {
-    return move_of(c, active(c, place))->kind == COURSE_JOINTS;
+    return move_of(c, active(c, place))->kind == ARM_MOVE_JOINTS;
 }
 
 /* U V W turn about the axes of the moves under way. */
 static bool rates(const void *geometry, const double joint[AXES], const double slope[AXES],
                   double rate[AXES])
 {
-    const struct course_geometry *g = geometry;
-    const struct course *c = g->course;
-    const struct course_move *m = move_of(c, c->count - 1);
+    const struct arm_geometry *g = geometry;
+    const struct arm_moves *c = g->moves;
+    const struct arm_move *m = move_of(c, c->count - 1);
     double motion[6] = { slope[0], slope[1], slope[2], 0.0, 0.0, 0.0 };
 
     if (m->to > m->from) {
-        const double per = slope[course_axis(c)] / (m->to - m->from);
+        const double per = slope[arm_moves_axis(c)] / (m->to - m->from);
         for (int i = 0; i < 3; i++) {
             motion[3 + i] = per * m->by[i];
         }
-        if (m->kind == COURSE_JOINTS) {
+        if (m->kind == ARM_MOVE_JOINTS) {
             for (int i = 0; i < OPW_JOINTS; i++) {
                 rate[i] = per * m->step[i];
             }
@@ -159,14 +159,14 @@ static bool rates(const void *geometry, const double joint[AXES], const double s
 
 static void place(const void *geometry, const double joint[AXES], double at[AXES])
 {
-    const struct course_geometry *g = geometry;
+    const struct arm_geometry *g = geometry;
     const struct pose p = manipulator_pose(g->arm, joint);
 
     memcpy(at, p.at, sizeof p.at);
-    memcpy(at + 3, g->course->at, sizeof g->course->at);
+    memcpy(at + 3, g->moves->at, sizeof g->moves->at);
 }
 
-struct kinematics course_kinematics(void)
+struct kinematics arm_moves_kinematics(void)
 {
     return (struct kinematics){ joints, rates, place };
 }

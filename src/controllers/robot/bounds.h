@@ -6,7 +6,7 @@
 #ifndef BOUNDS_H
 #define BOUNDS_H
 
-#include "course.h"
+#include "arm_moves.h"
 
 /* Absolute values of the joints' derivatives by the way. */
 struct bounds_pair {
@@ -19,9 +19,9 @@ struct bounds {
     struct bounds_pair middle; /* in its middle */
 };
 
-/* Bounds on a path of the latest move of the course from part `from` to `to`, 0 .. 1; joint[] holds
+/* Bounds on a path of the latest move of the arm from part `from` to `to`, 0 .. 1; joint[] holds
  * the joints in the middle of them. False: a place may be singular there, so nothing is known. */
-bool bounds_of(const struct course_geometry *g, const struct path *path, double from, double to,
+bool bounds_of(const struct arm_geometry *g, const struct path *path, double from, double to,
                const double joint[OPW_JOINTS], struct bounds *b);
 
 #endif

@@ -11,10 +11,10 @@ static const double TURN = 6.283185307179586;
 /* The mover gets places and no joints: pulses come from the joints at the end of the cycle. */
 static const struct mechanism PLACES;
 
-struct course_geometry robot_geometry(const struct robot *r, struct manipulator *arm)
+struct arm_geometry robot_geometry(const struct robot *r, struct manipulator *arm)
 {
     arm->tool = r->tool;
-    return (struct course_geometry){ arm, &r->course };
+    return (struct arm_geometry){ arm, &r->moves };
 }
 
 static void come_to_rest(struct robot *r, const struct robot_config *c)
@@ -23,13 +23,13 @@ static void come_to_rest(struct robot *r, const struct robot_config *c)
 
     arm.tool = r->tool;
     r->pose = manipulator_pose(&arm, r->joint);
-    course_start(&r->course, r->pose.turn);
+    arm_moves_start(&r->moves, r->pose.turn);
     memset(r->rear, 0, sizeof r->rear);
     memcpy(r->rear, r->pose.at, sizeof r->pose.at);
     memcpy(r->rear_joint, r->joint, sizeof r->joint);
-    r->rear_kind = COURSE_POSE;
+    r->rear_kind = ARM_MOVE_POSE;
     r->rear_zone = 0.0;
-    r->way.count = r->way.next = 0;
+    r->tool_path.count = r->tool_path.next = 0;
     r->jogging = r->lost = false;
     mover_stand(&r->mover, &PLACES, r->rear);
 }
@@ -45,18 +45,19 @@ void robot_start(struct robot *r, const struct robot_config *c, const double joi
 
 bool robot_idle(const struct robot *r)
 {
-    return !mover_busy(&r->mover) && r->ring.count == 0 && r->way.next >= r->way.count;
+    return !mover_busy(&r->mover) && r->ring.count == 0 && r->tool_path.next >= r->tool_path.count;
 }
 
 bool robot_rests(const struct robot *r)
 {
-    return mover_resting(&r->mover, &r->ring) && (r->way.next >= r->way.count || r->mover.hold);
+    return mover_resting(&r->mover, &r->ring)
+           && (r->tool_path.next >= r->tool_path.count || r->mover.hold);
 }
 
 bool robot_ready(const struct robot *r)
 {
-    return r->way.next >= r->way.count && !r->mover.abort && (!r->jogging || robot_idle(r))
-           && r->ring.count < RING_SIZE - ROBOT_ROOM;
+    return r->tool_path.next >= r->tool_path.count && !r->mover.abort
+           && (!r->jogging || robot_idle(r)) && r->ring.count < RING_SIZE - ROBOT_ROOM;
 }
 
 uint32_t robot_branches(const struct robot_target *t)
@@ -79,11 +80,11 @@ void robot_settle(struct robot *r, const struct robot_config *c)
 
 void robot_feed(struct robot *r)
 {
-    struct way *w = &r->way;
+    struct tool_path *w = &r->tool_path;
 
     while (w->next < w->count && r->ring.count < RING_SIZE - 1) {
         struct command c = r->command;
-        const struct way_piece *p = &w->piece[w->next];
+        const struct tool_path_segment *p = &w->segment[w->next];
         if (r->stop) {
             command_delay(&c, w->path.start, 0.0);
             r->stop = false;
@@ -91,7 +92,7 @@ void robot_feed(struct robot *r)
             ring_push(&r->ring, &c);
             continue;
         }
-        way_piece_path(w, &c.path);
+        tool_path_next(w, &c.path);
         c.index = ++r->index;
         c.feed = c.cap = p->cap;
         if (c.tolerance > 0.0) {
@@ -140,8 +141,8 @@ static void predict(const struct robot *r, const struct robot_config *c, const d
 void robot_cycle(struct robot *r, const struct robot_config *c)
 {
     struct manipulator arm = c->arm;
-    const struct course_geometry g = robot_geometry(r, &arm);
-    const struct kinematics kinematics = course_kinematics();
+    const struct arm_geometry g = robot_geometry(r, &arm);
+    const struct kinematics kinematics = arm_moves_kinematics();
     const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
     double joint[OPW_JOINTS];
     struct pose pose = r->pose;
@@ -168,9 +169,9 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         robot_stop(r);
         return;
     }
-    course_pose(&g, point.place, joint, &pose);
+    arm_moves_pose(&g, point.place, joint, &pose);
     show(r, c, joint, &pose);
-    r->solved += course_by_joints(&r->course, point.place) ? 0.0 : r->speed * c->cycle;
+    r->solved += arm_moves_by_joints(&r->moves, point.place) ? 0.0 : r->speed * c->cycle;
     r->line = point.line;
     mover_accept(&r->mover, &beside, &point);
 }
@@ -182,13 +183,13 @@ void robot_hold(struct robot *r, bool on)
 
 void robot_abort(struct robot *r)
 {
-    r->way.next = r->way.count;
+    r->tool_path.next = r->tool_path.count;
     mover_abort(&r->mover, &r->ring);
 }
 
 void robot_stop(struct robot *r)
 {
-    r->way.next = r->way.count;
+    r->tool_path.next = r->tool_path.count;
     mover_stop(&r->mover, &r->ring);
 }
 

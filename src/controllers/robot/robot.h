@@ -1,7 +1,8 @@
 /* robot - a six-axis arm that moves: lines, circles, moves of the joints, jogging.
  *
- *     robot_move, robot_jog ──> way: pieces ──> ring ──> mover ──> robot_cycle: joints
- *     refused before anything moves             look-ahead         each cycle
+ *     robot_move, robot_jog ──> tool_path ──> ring ──> mover ──> robot_cycle: joints
+ *     refused before          segments       look-ahead         each cycle
+ *     anything moves
  *
  * Poses are those of the tool's tip in the base frame of the robot; a user's frame is a
  * pose_product before. A call that is refused changes nothing.
@@ -10,12 +11,12 @@
 #define ROBOT_H
 
 #include "mover.h"
-#include "way.h"
+#include "tool_path.h"
 
 /* Beside opw_flag: a target says nothing of its branch; of a joint's whole turns. */
 enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
 
-/* No place, angle or direction of a move is larger, in its unit: squares stay numbers and a way is
+/* No place, angle or direction of a move is larger, in its unit: squares stay numbers and a path is
  * halved a hundred times at most. */
 #define ROBOT_MOST 1e9
 
@@ -99,20 +100,20 @@ struct robot {
     struct mover mover;
     struct ring ring;
     struct track_mean mean;
-    struct course course;
-    struct pose tool;              /* in force */
-    struct way way;                /* of the latest move, on its way into the ring */
-    struct robot_move move;        /* that move */
-    struct command command;        /* what its pieces have in common */
-    bool stop;                     /* an exact stop before its first piece */
-    double rear[AXES];             /* place at the end of the latest move */
+    struct arm_moves moves;
+    struct pose tool;           /* in force */
+    struct tool_path tool_path; /* of the latest move; its segments go into the ring one by one */
+    struct robot_move move;     /* that move */
+    struct command command;     /* what its segments have in common */
+    bool stop;                  /* an exact stop before its first segment */
+    double rear[AXES];          /* place at the end of the latest move */
     double rear_joint[OPW_JOINTS]; /* [rad] there */
-    enum course_kind rear_kind;
+    enum arm_move_kind rear_kind;
     double rear_zone;
     int32_t index;          /* of the latest command */
     bool jogging, jog_held; /* the latest move is a jog; its key is still down */
     enum robot_frame jog_frame;
-    double jog_way[6]; /* its direction */
+    double jog_direction[6];
 
     double joint[OPW_JOINTS]; /* [rad] ideal, at the end of the latest cycle */
     double rate[OPW_JOINTS];  /* [rad/s] mean of that cycle */

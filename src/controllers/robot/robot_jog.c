@@ -89,7 +89,7 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
 static bool same(const struct robot *r, enum robot_frame frame, const double direction[6])
 {
     return r->jogging && r->jog_held && r->jog_frame == frame
-           && memcmp(r->jog_way, direction, sizeof r->jog_way) == 0;
+           && memcmp(r->jog_direction, direction, sizeof r->jog_direction) == 0;
 }
 
 enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
@@ -130,7 +130,7 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
                                          : jog_tip(r, c, velocity, turn, way, &move, why);
     r->jogging = r->jog_held = status == ROBOT_OK;
     r->jog_frame = frame;
-    memcpy(r->jog_way, direction, sizeof r->jog_way);
+    memcpy(r->jog_direction, direction, sizeof r->jog_direction);
     return status;
 }
 

@@ -4,11 +4,11 @@
 
 #include "robot.h"
 
-/* Commands that a move needs beside its pieces: an exact stop, a turn of joint 4 before it. */
+/* Commands that a move needs beside its segments: an exact stop, a turn of joint 4 before it. */
 enum { ROBOT_ROOM = 4 };
 
 /* Geometry of the moves; *arm becomes the config's with the tool in force. */
-struct course_geometry robot_geometry(const struct robot *r, struct manipulator *arm);
+struct arm_geometry robot_geometry(const struct robot *r, struct manipulator *arm);
 
 /* Nothing being under way, moves begin where the arm is. */
 void robot_settle(struct robot *r, const struct robot_config *c);
@@ -22,7 +22,7 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
 double robot_joint_speed(const struct robot_config *c, int joint);
 
 /* A move of the joints to target angles [rad], at a share 0..1 of their limits, becomes the latest
- * of the course, and its command. */
+ * of the arm, and its command. */
 void robot_plan_joints(struct robot *r, const struct robot_config *c,
                        const double target[OPW_JOINTS], double share);
 

@@ -1,4 +1,4 @@
-#include "way.h"
+#include "tool_path.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,13 +7,13 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-enum { STEPS = 8 }; /* of a piece that is looked at */
+enum { STEPS = 8 }; /* of a segment that is looked at */
 
 /* Share of a joint's acceleration that the bend of its way may take where it limits the speed; the
  * rest changes the speed. */
 static const double BENT = 0.6;
 
-/* Most that limits may differ within a piece; with more pieces than there is room the square of
+/* Most that limits may differ within a segment; with more segments than there is room the square of
  * that, and so on to a power of WIDE. */
 static const double UNEVEN_SPEED = 1.3, UNEVEN_ACC = 1.5;
 
@@ -29,13 +29,13 @@ static const double SLOW = 0.5;
 /* A joint that turns further in a step is looked at more closely. [rad] */
 static const double STEP = 0.2;
 
-/* No piece is shorter. [mm] */
+/* No segment is shorter. [mm] */
 static const double LEAST = 1e-7;
 
 /* Share of a joint's acceleration for what a corner asks across the path. */
 static const double CORNER = 0.6;
 
-/* A piece is halved in thought so often before limits that do not hold are lowered; before bounds
+/* A segment is halved in thought so often before limits that do not hold are lowered; before bounds
  * are given up beside a singular place that is met; to come near to the limit of a joint. */
 enum { FINE = 6, CORE = 10, DEEP = 40 };
 
@@ -43,7 +43,7 @@ enum { FINE = 6, CORE = 10, DEEP = 40 };
  * [rad] */
 static const double KNOWN = 1.0;
 
-/* Least share of an acceleration that is lowered by bounds instead of halving its piece. */
+/* Least share of an acceleration that is lowered by bounds instead of halving its segment. */
 static const double LOWERED = 0.5;
 
 /* What rounding makes of a joint beside a singular place. [rad] */
@@ -54,15 +54,15 @@ static const double MET = 1e-9;
 
 struct survey {
     struct mechanism arm;
-    const struct course_geometry *g;
-    const struct way_limits *l;
+    const struct arm_geometry *g;
+    const struct tool_path_limits *l;
     const struct path *path;
     double wide; /* uneven limits that are allowed, as a power */
-    struct way_fault *fault;
+    struct tool_path_fault *fault;
     double origin[OPW_JOINTS]; /* [rad] at the start of the path */
 };
 
-/* A piece looked at. */
+/* A segment looked at. */
 struct look {
     double q[STEPS + 1][OPW_JOINTS];
     double cap, acc;
@@ -122,8 +122,8 @@ static bool meets(const struct survey *s, double a, const double at_a[OPW_JOINTS
     return true;
 }
 
-static enum way_status fault(const struct survey *s, enum way_status why, double part,
-                             const double joint[OPW_JOINTS], int which)
+static enum tool_path_status fault(const struct survey *s, enum tool_path_status why, double part,
+                                   const double joint[OPW_JOINTS], int which)
 {
     s->fault->part = part;
     s->fault->which = which;
@@ -131,8 +131,8 @@ static enum way_status fault(const struct survey *s, enum way_status why, double
     return why;
 }
 
-/* Joints at the steps of a piece. */
-static enum way_status walk(const struct survey *s, double from, double size, struct look *k)
+/* Joints at the steps of a segment. */
+static enum tool_path_status walk(const struct survey *s, double from, double size, struct look *k)
 {
     for (int n = 1; n <= STEPS; n++) {
         const double part = from + size * n / STEPS, before = from + size * (n - 1) / STEPS;
@@ -141,21 +141,21 @@ static enum way_status walk(const struct survey *s, double from, double size, st
             q[i] = n > 1 ? 2.0 * k->q[n - 1][i] - k->q[n - 2][i] : k->q[0][i];
         }
         if (!joints_at(s, part, q)) {
-            return fault(s, WAY_FAR, before, k->q[n - 1], 0);
+            return fault(s, TOOL_PATH_FAR, before, k->q[n - 1], 0);
         }
         bool jumps = false;
         for (int i = 0; i < OPW_JOINTS; i++) {
             jumps = jumps || !(fabs(q[i] - k->q[n - 1][i]) <= STEP);
         }
         if (jumps || (flips(s, k->q[n - 1], q) && !meets(s, before, k->q[n - 1], part, q))) {
-            return fault(s, WAY_SINGULAR, before, k->q[n - 1], 0);
+            return fault(s, TOOL_PATH_SINGULAR, before, k->q[n - 1], 0);
         }
         const int out = manipulator_outside(s->g->arm, s->origin, q);
         if (out >= 0) {
-            return fault(s, WAY_OUTSIDE, before, q, out);
+            return fault(s, TOOL_PATH_OUTSIDE, before, q, out);
         }
     }
-    return WAY_OK;
+    return TOOL_PATH_OK;
 }
 
 /* First and second derivative of a joint by the way at a step, from differences; at the ends
@@ -168,7 +168,7 @@ static void derivatives(const struct look *k, int n, int i, double h, double *sl
     *slope = (k->q[m + 1][i] - k->q[m - 1][i]) / (2.0 * h) + side * h * *bend;
 }
 
-/* What the joints allow on a piece: the least of its steps. A fault is where they are slowest. */
+/* What the joints allow on a segment: the least of its steps. A fault is where they are slowest. */
 static void allow(const struct survey *s, double from, double size, struct look *k)
 {
     const double h = size * s->path->length / STEPS;
@@ -189,7 +189,7 @@ static void allow(const struct survey *s, double from, double size, struct look 
         }
         if (cap < k->cap) {
             k->cap = cap;
-            fault(s, WAY_SINGULAR, from + size * n / STEPS, k->q[n], 0);
+            fault(s, TOOL_PATH_SINGULAR, from + size * n / STEPS, k->q[n], 0);
         }
         k->acc = el_min(k->acc, acc);
         most = el_max(most, cap);
@@ -199,7 +199,7 @@ static void allow(const struct survey *s, double from, double size, struct look 
               && most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
 }
 
-/* Whether the limits of a piece hold for such derivatives; asked to, they are lowered to that. */
+/* Whether the limits of a segment hold for such derivatives; asked to, they are lowered to that. */
 static bool keeps(const struct survey *s, const struct bounds_pair *d, bool lower, struct look *k)
 {
     double cap = k->cap, acc = k->acc;
@@ -268,8 +268,8 @@ static bool singular(const struct survey *s, const double joint[OPW_JOINTS])
 /* Angle that the whole path turns by, tool and arc. [rad] */
 static double turning(const struct survey *s)
 {
-    const struct course *c = s->g->course;
-    const double *by = c->move[(c->count - 1) % COURSE_SIZE].by;
+    const struct arm_moves *c = s->g->moves;
+    const double *by = c->move[(c->count - 1) % ARM_MOVES_SIZE].by;
     const double tool = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     return tool + (s->path->arc ? fabs(s->path->sweep) : 0.0);
 }
@@ -316,7 +316,7 @@ static bool proved(const struct survey *s, double from, double to, int depth,
            && proved(s, mid, to, depth + 1, joint, k);
 }
 
-/* Whether the limits of a piece that was looked at hold all over it, lowered if need be. */
+/* Whether the limits of a segment that was looked at hold all over it, lowered if need be. */
 static bool certain(const struct survey *s, double from, double size, struct look *k)
 {
     const double cap = k->cap;
@@ -332,12 +332,12 @@ static bool certain(const struct survey *s, double from, double size, struct loo
         good = good && fabs(joint[i] - k->q[STEPS][i]) <= STEP;
     }
     if (good && k->cap < cap) {
-        fault(s, WAY_SINGULAR, from + 0.5 * size, k->q[STEPS / 2], 0);
+        fault(s, TOOL_PATH_SINGULAR, from + 0.5 * size, k->q[STEPS / 2], 0);
     }
     return good;
 }
 
-/* Whether joints leap in a piece that cannot be shorter. */
+/* Whether joints leap in a segment that cannot be shorter. */
 static bool torn(const struct survey *s, double from, double size, const struct look *k)
 {
     const double half = 0.5 * size * s->path->length, *middle = k->q[STEPS / 2];
@@ -347,9 +347,10 @@ static bool torn(const struct survey *s, double from, double size, const struct 
            && (leaps(middle, k->q[0], &b, half) || leaps(middle, k->q[STEPS], &b, half));
 }
 
-/* Pieces from start to end, each as long as its place among the halves of halves and its evenness
- * allow. WAY_PIECES + 1: too many. */
-static enum way_status cut(struct way *w, const struct survey *s, double joint[OPW_JOINTS])
+/* Segments from start to end, each as long as its place among the halves of halves and its evenness
+ * allow. TOOL_PATH_SEGMENTS + 1: too many. */
+static enum tool_path_status cut(struct tool_path *w, const struct survey *s,
+                                 double joint[OPW_JOINTS])
 {
     double at = 0.0, size = 1.0;
     struct look k;
@@ -357,56 +358,56 @@ static enum way_status cut(struct way *w, const struct survey *s, double joint[O
     w->count = w->next = 0;
     memcpy(k.q[0], joint, sizeof k.q[0]);
     while (at < 1.0) {
-        enum way_status status = walk(s, at, size, &k);
+        enum tool_path_status status = walk(s, at, size, &k);
         const bool least = size * w->path.length <= LEAST;
-        if (status == WAY_OK) {
+        if (status == TOOL_PATH_OK) {
             allow(s, at, size, &k);
             k.even = k.even && certain(s, at, size, &k);
             if (least && torn(s, at, size, &k)) {
-                return fault(s, WAY_SINGULAR, at, k.q[0], 0);
+                return fault(s, TOOL_PATH_SINGULAR, at, k.q[0], 0);
             }
             if (s->l->refuse && (k.even || least) && k.cap < s->l->feed) {
-                return WAY_SINGULAR;
+                return TOOL_PATH_SINGULAR;
             }
         } else if (least) {
             return status;
         }
-        if (status != WAY_OK || (!k.even && !least)) {
+        if (status != TOOL_PATH_OK || (!k.even && !least)) {
             size *= 0.5;
             continue;
         }
         at += size;
-        if (w->count == WAY_PIECES) {
+        if (w->count == TOOL_PATH_SEGMENTS) {
             w->count++;
-            return WAY_OK;
+            return TOOL_PATH_OK;
         }
-        w->piece[w->count++] = (struct way_piece){ at, k.cap, k.acc };
+        w->segment[w->count++] = (struct tool_path_segment){ at, k.cap, k.acc };
         memcpy(k.q[0], k.q[STEPS], sizeof k.q[0]);
         while (at < 1.0 && fmod(at, 2.0 * size) == 0.0 && at + 2.0 * size <= 1.0) {
             size *= 2.0;
         }
     }
     memcpy(joint, k.q[0], sizeof k.q[0]);
-    return WAY_OK;
+    return TOOL_PATH_OK;
 }
 
 /* A mean over a time mixes accelerations of places as far apart as the tool goes in it: the least
  * holds for all of them. */
-static void spread(struct way *w, double smooth)
+static void spread(struct tool_path *w, double smooth)
 {
-    double acc[WAY_PIECES];
+    double acc[TOOL_PATH_SEGMENTS];
 
     for (int n = 0; n < w->count; n++) {
-        acc[n] = w->piece[n].acc;
+        acc[n] = w->segment[n].acc;
     }
     for (int n = 0; n < w->count; n++) {
-        const double reach = w->piece[n].cap * smooth / w->path.length;
-        for (int k = n - 1; k >= 0 && w->piece[n - 1].until - w->piece[k].until < reach; k--) {
-            w->piece[k].acc = el_min(w->piece[k].acc, acc[n]);
+        const double reach = w->segment[n].cap * smooth / w->path.length;
+        for (int k = n - 1; k >= 0 && w->segment[n - 1].until - w->segment[k].until < reach; k--) {
+            w->segment[k].acc = el_min(w->segment[k].acc, acc[n]);
         }
-        for (int k = n + 1; k < w->count && w->piece[k - 1].until - w->piece[n].until < reach;
+        for (int k = n + 1; k < w->count && w->segment[k - 1].until - w->segment[n].until < reach;
              k++) {
-            w->piece[k].acc = el_min(w->piece[k].acc, acc[n]);
+            w->segment[k].acc = el_min(w->segment[k].acc, acc[n]);
         }
     }
 }
@@ -414,12 +415,12 @@ static void spread(struct way *w, double smooth)
 /* In a corner the acceleration may have any direction: what it asks of the joints at a place. */
 static double any_direction(const struct survey *s, const double joint[OPW_JOINTS], double acc)
 {
-    const struct course_move *m = &s->g->course->move[(s->g->course->count - 1) % COURSE_SIZE];
+    const struct arm_move *m = &s->g->moves->move[(s->g->moves->count - 1) % ARM_MOVES_SIZE];
     double way[OPW_JOINTS] = { 0 }, turn[OPW_JOINTS] = { 0 }, rate[OPW_JOINTS];
 
     for (int k = 0; k < 6; k++) {
         double motion[6] = { 0 };
-        motion[k] = k < 3 ? 1.0 : 1.0 / COURSE_LEVER;
+        motion[k] = k < 3 ? 1.0 : 1.0 / ARM_MOVES_LEVER;
         if (!manipulator_rates(s->g->arm, joint, motion, rate)) {
             return acc;
         }
@@ -434,10 +435,11 @@ static double any_direction(const struct survey *s, const double joint[OPW_JOINT
     return acc;
 }
 
-enum way_status way_plan(struct way *w, const struct course_geometry *g, const struct way_limits *l,
-                         double joint[OPW_JOINTS], struct way_fault *fault_)
+enum tool_path_status tool_path_plan(struct tool_path *w, const struct arm_geometry *g,
+                                     const struct tool_path_limits *l, double joint[OPW_JOINTS],
+                                     struct tool_path_fault *fault_)
 {
-    const struct kinematics kinematics = course_kinematics();
+    const struct kinematics kinematics = arm_moves_kinematics();
     struct survey s = { .arm = { .kinematics = &kinematics, .geometry = g },
                         .g = g,
                         .l = l,
@@ -448,43 +450,43 @@ enum way_status way_plan(struct way *w, const struct course_geometry *g, const s
     memcpy(s.origin, joint, sizeof s.origin);
     for (s.wide = 1.0;; s.wide *= 2.0) {
         memcpy(q, joint, sizeof q);
-        const enum way_status status = cut(w, &s, q);
-        if (status != WAY_OK) {
+        const enum tool_path_status status = cut(w, &s, q);
+        if (status != TOOL_PATH_OK) {
             return status;
         }
-        if (w->count <= WAY_PIECES) {
+        if (w->count <= TOOL_PATH_SEGMENTS) {
             break;
         }
         if (s.wide > WIDE) {
-            return fault(&s, WAY_SINGULAR, w->piece[WAY_PIECES - 1].until, q, 0);
+            return fault(&s, TOOL_PATH_SINGULAR, w->segment[TOOL_PATH_SEGMENTS - 1].until, q, 0);
         }
     }
     if (l->corner[0]) {
-        w->piece[0].acc = any_direction(&s, joint, w->piece[0].acc);
+        w->segment[0].acc = any_direction(&s, joint, w->segment[0].acc);
     }
     if (l->corner[1]) {
-        w->piece[w->count - 1].acc = any_direction(&s, q, w->piece[w->count - 1].acc);
+        w->segment[w->count - 1].acc = any_direction(&s, q, w->segment[w->count - 1].acc);
     }
     double least = l->feed;
     for (int n = 0; n < w->count; n++) {
-        least = el_min(least, w->piece[n].cap);
+        least = el_min(least, w->segment[n].cap);
     }
     w->smooth = least < SLOW * l->feed ? 0.0 : l->smooth;
     spread(w, w->smooth);
     memcpy(joint, q, sizeof q);
-    return WAY_OK;
+    return TOOL_PATH_OK;
 }
 
-void way_piece_path(const struct way *w, struct path *piece)
+void tool_path_next(const struct tool_path *w, struct path *segment)
 {
-    const double from = w->next > 0 ? w->piece[w->next - 1].until : 0.0;
-    const double part = w->piece[w->next].until - from, length = w->path.length;
+    const double from = w->next > 0 ? w->segment[w->next - 1].until : 0.0;
+    const double part = w->segment[w->next].until - from, length = w->path.length;
     double slope[AXES];
 
-    *piece = w->path;
-    path_at(&w->path, from * length, piece->start, slope);
-    path_at(&w->path, w->piece[w->next].until * length, piece->end, slope);
-    piece->angle += from * piece->sweep;
-    piece->sweep *= part;
-    piece->length *= part;
+    *segment = w->path;
+    path_at(&w->path, from * length, segment->start, slope);
+    path_at(&w->path, w->segment[w->next].until * length, segment->end, slope);
+    segment->angle += from * segment->sweep;
+    segment->sweep *= part;
+    segment->length *= part;
 }

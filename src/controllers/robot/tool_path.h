@@ -1,20 +1,20 @@
-/* way - a path of the tool and what its joints allow on it: pieces with a speed and an acceleration
- * of their own, as many as it needs, which look-ahead then joins.
+/* tool_path - the tool's path of one move, cut where the joints need it: each segment becomes a
+ * command with a speed and an acceleration of its own, and look-ahead joins them again.
  *
- *   v ^ ──────┐          ┌─────  Far from singular places one piece has it all. Near one, pieces
- *     |       └─┐      ┌─┘       are halved until the joints' limits hardly change in one.
- *     |         └─┐┌┐┌─┘
- *     +-----------++++-------> way
+ *   v ^ ──────┐          ┌─────  Far from singular places the path is one segment. Near one it is
+ *     |       └─┐      ┌─┘       halved, and halved again, until the joints' limits hardly change
+ *     |         └─┐┌┐┌─┘         within a segment.
+ *     +-----------++++-------> place on the path
  */
-#ifndef WAY_H
-#define WAY_H
+#ifndef TOOL_PATH_H
+#define TOOL_PATH_H
 
-#include "course.h"
+#include "arm_moves.h"
 
-/* A path has no more pieces than these. */
-enum { WAY_PIECES = 512 };
+/* The most segments of a path. */
+enum { TOOL_PATH_SEGMENTS = 512 };
 
-struct way_limits {
+struct tool_path_limits {
     double feed;              /* [mm/s] along the path */
     double acc;               /* [mm/s^2] along it */
     double speed[OPW_JOINTS]; /* [rad/s] */
@@ -24,38 +24,40 @@ struct way_limits {
     bool refuse;              /* where the joints do not allow the feed */
 };
 
-struct way_piece {
+struct tool_path_segment {
     double until; /* part of the path at its end, 0 .. 1 */
     double cap;   /* [mm/s] */
     double acc;   /* [mm/s^2] */
 };
 
-struct way {
+struct tool_path {
     struct path path;
-    int32_t count, next; /* pieces; the first that is not yet a command */
+    int32_t count, next; /* segments; the first that is not yet a command */
     double smooth;       /* [s] of its commands: 0 if its joints make it slow */
-    struct way_piece piece[WAY_PIECES];
+    struct tool_path_segment segment[TOOL_PATH_SEGMENTS];
 };
 
-enum way_status {
-    WAY_OK,
-    WAY_FAR,     /* out of reach */
-    WAY_OUTSIDE, /* beyond the limit of a joint */
-    WAY_SINGULAR /* the joints cannot follow: they would jump, or asked to refuse, hurry */
+enum tool_path_status {
+    TOOL_PATH_OK,
+    TOOL_PATH_FAR,     /* out of reach */
+    TOOL_PATH_OUTSIDE, /* beyond the limit of a joint */
+    TOOL_PATH_SINGULAR /* the joints cannot follow: they would jump, or asked to refuse, hurry */
 };
 
-struct way_fault {
+struct tool_path_fault {
     double part;              /* of the path, 0 .. 1 */
     double joint[OPW_JOINTS]; /* [rad] there, or the last known */
     int which;                /* OUTSIDE: joint */
 };
 
-/* Pieces of w->path, its move being the latest of the course. joint[] holds those of its start, and
- * gets those of its end. Refused, joint[] is as it was. */
-enum way_status way_plan(struct way *w, const struct course_geometry *g, const struct way_limits *l,
-                         double joint[OPW_JOINTS], struct way_fault *fault);
+/* Cut w->path, the path of the latest of the arm's moves, into segments. joint[] holds the joints at
+ * its start [rad] and gets those at its end; if the path is refused, it stays as it was. */
+enum tool_path_status tool_path_plan(struct tool_path *w, const struct arm_geometry *g,
+                                     const struct tool_path_limits *l, double joint[OPW_JOINTS],
+                                     struct tool_path_fault *fault);
 
-/* Path of the next piece. Pieces of an arc have the very same radius and bend. */
-void way_piece_path(const struct way *w, struct path *piece);
+/* *segment becomes the path of segment w->next. All segments of an arc have the very same radius and
+ * bend. */
+void tool_path_next(const struct tool_path *w, struct path *segment);
 
 #endif

@@ -1,4 +1,4 @@
-/* Pieces of a way: what corners leave the joints in any direction, what a mean mixes. */
+/* Segments of a way: what corners leave the joints in any direction, what a mean mixes. */
 #include "robot_rig.h"
 
 static const double BENT[OPW_JOINTS] = { 0.1, 0.2, 0.1, 0.1, 1.0, 0.3 };
@@ -61,15 +61,15 @@ static void corners(void)
                 for (int i = 0; i < 3; i++) {
                     way[i] /= sqrt(square);
                 }
-                CHECK(bears(&c, to, way, robot.way.piece[robot.way.count - 1].acc));
-                CHECK(n == 0 || bears(&c, from, way, robot.way.piece[0].acc));
+                CHECK(bears(&c, to, way, robot.tool_path.segment[robot.tool_path.count - 1].acc));
+                CHECK(n == 0 || bears(&c, from, way, robot.tool_path.segment[0].acc));
             }
         }
     }
 }
 
 /* A line past the wrist's singular place, planned for a mean over a time. */
-static struct way planned(struct robot_config *c, double smooth, const double to[3])
+static struct tool_path planned(struct robot_config *c, double smooth, const double to[3])
 {
     static const double ahead[OPW_JOINTS] = { 0.0, 0.2, 0.1, 0.3, 0.35, 0.0 };
     struct robot_refusal why;
@@ -82,10 +82,10 @@ static struct way planned(struct robot_config *c, double smooth, const double to
         m.target.pose.at[i] += to[i];
     }
     CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OK);
-    return robot.way;
+    return robot.tool_path;
 }
 
-/* An acceleration is the least of the pieces that a mean over a time mixes with it. */
+/* An acceleration is the least of the segments that a mean over a time mixes with it. */
 static void mixed(void)
 {
     int lower = 0;
@@ -97,20 +97,20 @@ static void mixed(void)
         for (int i = 0; i < OPW_JOINTS; i++) {
             c.arm.joint[i].acc *= 0.1;
         }
-        const struct way plain = planned(&c, 0.0, to), w = planned(&c, 0.5, to);
+        const struct tool_path plain = planned(&c, 0.0, to), w = planned(&c, 0.5, to);
         CHECK_EQ(w.count, plain.count);
         for (int n = 0; n < w.count && w.smooth > 0.0; n++) {
-            double least = plain.piece[n].acc;
+            double least = plain.segment[n].acc;
             for (int i = 0; i < w.count; i++) {
                 const int first = i < n ? i : n, last = i < n ? n : i;
                 const double gap =
-                    first == last ? 0.0 : w.piece[last - 1].until - w.piece[first].until;
-                if (gap * w.path.length < 0.5 * w.piece[i].cap) {
-                    least = fmin(least, plain.piece[i].acc);
+                    first == last ? 0.0 : w.segment[last - 1].until - w.segment[first].until;
+                if (gap * w.path.length < 0.5 * w.segment[i].cap) {
+                    least = fmin(least, plain.segment[i].acc);
                 }
             }
-            CHECK(w.piece[n].acc <= least);
-            lower += w.piece[n].acc < plain.piece[n].acc;
+            CHECK(w.segment[n].acc <= least);
+            lower += w.segment[n].acc < plain.segment[n].acc;
         }
     }
     CHECK(lower > 20);

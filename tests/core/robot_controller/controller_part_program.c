@@ -98,7 +98,8 @@ static void winding(void)
     while (!controller_done(&controller) && now < LONG) {
         pc_cycle();
         const double *at = controller.robot.pose.at;
-        pieces = controller.robot.way.count > pieces ? controller.robot.way.count : pieces;
+        pieces =
+            controller.robot.tool_path.count > pieces ? controller.robot.tool_path.count : pieces;
         most = fmax(most, controller.robot.line == 2 ? controller.robot.speed : 0.0);
         if (controller.robot.line == 2) {
             const double angle = atan2(-at[1], 850.0 - at[0]);
