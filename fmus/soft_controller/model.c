@@ -18,7 +18,7 @@ struct model {
 #define MODEL_BLOB
 #define MODEL_IN_USE \
     RING_IN_USE(controller.robot.ring) \
-    MEAN_IN_USE(controller.robot.mean, controller.robot.mover) \
+    MEAN_IN_USE(controller.robot.mean, controller.robot.trajectory) \
     FMU_LIST(controller.robot.moves.move, controller.robot.moves.count) \
     FMU_LIST(controller.robot.tool_path.segment, controller.robot.tool_path.count) \
     INTERPRETER_IN_USE(controller.orders.gcode) \

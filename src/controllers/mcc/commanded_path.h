@@ -47,8 +47,8 @@ void commanded_path_push(struct commanded_path *t, const struct commanded_path_p
 /* The point of a frame; the oldest, if it is gone. */
 const struct commanded_path_point *commanded_path_at(const struct commanded_path *t, int64_t frame);
 
-/* The point nearest to a place [mm] on the path, up to COMMANDED_PATH_AHEAD frames behind `frame`. It
- * never goes back along the path; of equal distances the first counts. */
+/* The point nearest to a place [mm] on the path, up to COMMANDED_PATH_AHEAD frames after `frame`.
+ * It never goes back along the path; of equal distances the first counts. */
 struct commanded_path_foot commanded_path_nearest(struct commanded_path *t, const double place[3],
                                                   int64_t frame);
 

@@ -1,5 +1,5 @@
-/* arm_moves - the arm's planned moves, one after another, and the pose and joints that each gives to
- * a place of the core that drives them, whose coordinates are
+/* arm_moves - the arm's planned moves, one after another, and the pose and joints that each gives
+ * to a place of the core that drives them, whose coordinates are
  *
  *     X Y Z   the tool's tip [mm]
  *     U V W   how far the moves 0 3 6 .., 1 4 7 .., 2 5 8 .. have turned the tool

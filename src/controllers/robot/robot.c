@@ -8,7 +8,7 @@
 
 static const double TURN = 6.283185307179586;
 
-/* The mover gets places and no joints: pulses come from the joints at the end of the cycle. */
+/* The trajectory gets places and no joints: pulses come from the joints at the end of the cycle. */
 static const struct mechanism PLACES;
 
 struct arm_geometry robot_geometry(const struct robot *r, struct manipulator *arm)
@@ -31,13 +31,13 @@ static void come_to_rest(struct robot *r, const struct robot_config *c)
     r->rear_zone = 0.0;
     r->tool_path.count = r->tool_path.next = 0;
     r->jogging = r->lost = false;
-    mover_stand(&r->mover, &PLACES, r->rear);
+    trajectory_stand(&r->trajectory, &PLACES, r->rear);
 }
 
 void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS])
 {
     memset(r, 0, sizeof *r);
-    mover_start(&r->mover);
+    trajectory_start(&r->trajectory);
     r->tool = c->arm.tool;
     memcpy(r->joint, joint, sizeof r->joint);
     come_to_rest(r, c);
@@ -45,18 +45,19 @@ void robot_start(struct robot *r, const struct robot_config *c, const double joi
 
 bool robot_idle(const struct robot *r)
 {
-    return !mover_busy(&r->mover) && r->ring.count == 0 && r->tool_path.next >= r->tool_path.count;
+    return !trajectory_busy(&r->trajectory) && r->ring.count == 0
+           && r->tool_path.next >= r->tool_path.count;
 }
 
 bool robot_rests(const struct robot *r)
 {
-    return mover_resting(&r->mover, &r->ring)
-           && (r->tool_path.next >= r->tool_path.count || r->mover.hold);
+    return trajectory_resting(&r->trajectory, &r->ring)
+           && (r->tool_path.next >= r->tool_path.count || r->trajectory.hold);
 }
 
 bool robot_ready(const struct robot *r)
 {
-    return r->tool_path.next >= r->tool_path.count && !r->mover.abort
+    return r->tool_path.next >= r->tool_path.count && !r->trajectory.abort
            && (!r->jogging || robot_idle(r)) && r->ring.count < RING_SIZE - ROBOT_ROOM;
 }
 
@@ -146,7 +147,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
     double joint[OPW_JOINTS];
     struct pose pose = r->pose;
-    const struct mover_beside beside = { &r->ring, &r->mean, NULL };
+    const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct point point;
 
     memcpy(joint, r->joint, sizeof joint);
@@ -155,11 +156,11 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         return;
     }
     robot_feed(r);
-    for (double left = c->cycle; left > 0.0 && !mover_resting(&r->mover, &r->ring);) {
-        left = mover_advance(&r->mover, &beside, left);
+    for (double left = c->cycle; left > 0.0 && !trajectory_resting(&r->trajectory, &r->ring);) {
+        left = trajectory_advance(&r->trajectory, &beside, left);
         robot_feed(r);
     }
-    mover_point(&r->mover, &beside, &PLACES, c->cycle, &point);
+    trajectory_point(&r->trajectory, &beside, &PLACES, c->cycle, &point);
     predict(r, c, point.place, joint);
     if (!mechanism_joints(&m, point.place, joint)
         || manipulator_outside(&arm, r->joint, joint) >= 0) {
@@ -173,30 +174,30 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     show(r, c, joint, &pose);
     r->solved += arm_moves_by_joints(&r->moves, point.place) ? 0.0 : r->speed * c->cycle;
     r->line = point.line;
-    mover_accept(&r->mover, &beside, &point);
+    trajectory_accept(&r->trajectory, &beside, &point);
 }
 
 void robot_hold(struct robot *r, bool on)
 {
-    mover_hold(&r->mover, on);
+    trajectory_hold(&r->trajectory, on);
 }
 
 void robot_abort(struct robot *r)
 {
     r->tool_path.next = r->tool_path.count;
-    mover_abort(&r->mover, &r->ring);
+    trajectory_abort(&r->trajectory, &r->ring);
 }
 
 void robot_stop(struct robot *r)
 {
     r->tool_path.next = r->tool_path.count;
-    mover_stop(&r->mover, &r->ring);
+    trajectory_stop(&r->trajectory, &r->ring);
 }
 
 void robot_override(struct robot *r, double share)
 {
     const double s = el_max(0.0, el_min(1.0, share));
-    mover_override(&r->mover, s, s);
+    trajectory_override(&r->trajectory, s, s);
 }
 
 void robot_end(const struct robot *r, double joint[OPW_JOINTS])

@@ -1,6 +1,6 @@
 /* robot - a six-axis arm that moves: lines, circles, moves of the joints, jogging.
  *
- *     robot_move, robot_jog ──> tool_path ──> ring ──> mover ──> robot_cycle: joints
+ *     robot_move, robot_jog ──> tool_path ──> ring ──> trajectory ──> robot_cycle: joints
  *     refused before          segments       look-ahead         each cycle
  *     anything moves
  *
@@ -10,7 +10,7 @@
 #ifndef ROBOT_H
 #define ROBOT_H
 
-#include "mover.h"
+#include "trajectory.h"
 #include "tool_path.h"
 
 /* Beside opw_flag: a target says nothing of its branch; of a joint's whole turns. */
@@ -97,7 +97,7 @@ struct robot_refusal {
 enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
 
 struct robot {
-    struct mover mover;
+    struct trajectory trajectory;
     struct ring ring;
     struct track_mean mean;
     struct arm_moves moves;

@@ -114,7 +114,7 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
     if (same(r, frame, direction)) {
         return ROBOT_OK;
     }
-    if (!robot_idle(r) || r->mover.abort || r->mover.hold) {
+    if (!robot_idle(r) || r->trajectory.abort || r->trajectory.hold) {
         return ROBOT_BUSY;
     }
     robot_settle(r, c);

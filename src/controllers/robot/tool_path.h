@@ -50,14 +50,14 @@ struct tool_path_fault {
     int which;                /* OUTSIDE: joint */
 };
 
-/* Cut w->path, the path of the latest of the arm's moves, into segments. joint[] holds the joints at
- * its start [rad] and gets those at its end; if the path is refused, it stays as it was. */
+/* Cut w->path, the path of the latest of the arm's moves, into segments. joint[] holds the joints
+ * at its start [rad] and gets those at its end; if the path is refused, it stays as it was. */
 enum tool_path_status tool_path_plan(struct tool_path *w, const struct arm_geometry *g,
                                      const struct tool_path_limits *l, double joint[OPW_JOINTS],
                                      struct tool_path_fault *fault);
 
-/* *segment becomes the path of segment w->next. All segments of an arc have the very same radius and
- * bend. */
+/* *segment becomes the path of segment w->next. All segments of an arc have the very same radius
+ * and bend. */
 void tool_path_next(const struct tool_path *w, struct path *segment);
 
 #endif

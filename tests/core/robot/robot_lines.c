@@ -23,7 +23,7 @@ static struct rig_watch line(const struct robot_config *c, const double a[3], co
     return w;
 }
 
-/* Far from singular places: one segment, ramps as the closed form has them, all of it at the feed. */
+/* Far from singular places: one segment, ramps as the closed form has them, else the feed. */
 static void plain(const struct robot_config *c)
 {
     const double a[3] = { 1100, -450, 350 }, b[3] = { 1100, 450, 350 };

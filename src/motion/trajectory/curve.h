@@ -3,8 +3,8 @@
  *     ring ──> shape ──pieces──> pace ──way──> point
  *              smooth path       speed along it
  *
- * Shape and pace are large and stand beside the mover, which keeps the place of the motion in them:
- * an earlier place can be put back until what lies behind the tool is dropped.
+ * Shape and pace are large and stand beside the trajectory, which keeps the place of the motion in
+ * them: an earlier place can be put back until what lies behind the tool is dropped.
  */
 #ifndef CURVE_H
 #define CURVE_H
@@ -13,7 +13,7 @@
 #include "ring.h"
 #include "shape.h"
 
-/* What stands beside the mover. */
+/* What stands beside the trajectory. */
 struct curve_plan {
     struct pace_limits limits; /* limits of chains from now on */
     bool last;                 /* no more commands come for now: none is waited for */

@@ -1,4 +1,4 @@
-/* Curves without a mover: single block and what comes of it, places that are put back, extents. */
+/* Curves by themselves: single block and what comes of it, places that are put back, extents. */
 #include <math.h>
 #include <string.h>
 

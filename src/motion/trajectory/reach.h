@@ -9,12 +9,12 @@
 #ifndef REACH_H
 #define REACH_H
 
-#include "mover.h"
+#include "trajectory.h"
 
 /* First joint that the ramp would bring further beyond a bound than the latest point is; -1 none.
  * The points of the ramp are dt seconds apart. With kinematics there is no box: the places of the
  * points decide, those of a chain where it goes so far in dt at the joints' highest speed. */
-int reach_beyond(const struct mover *p, const struct mover_beside *b, const struct mechanism *m,
-                 double dt);
+int reach_beyond(const struct trajectory *p, const struct trajectory_beside *b,
+                 const struct mechanism *m, double dt);
 
 #endif

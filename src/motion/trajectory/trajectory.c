@@ -1,4 +1,4 @@
-#include "mover.h"
+#include "trajectory.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,13 +10,13 @@ static bool is_ptp(const struct command *c)
     return c->type == COMMAND_PTP || c->type == COMMAND_PTP_ASYN;
 }
 
-void mover_start(struct mover *p)
+void trajectory_start(struct trajectory *p)
 {
     memset(p, 0, sizeof *p);
     p->override[0] = p->override[1] = p->adaptive = 1.0;
 }
 
-bool mover_stand(struct mover *p, const struct mechanism *m, const double place[AXES])
+bool trajectory_stand(struct trajectory *p, const struct mechanism *m, const double place[AXES])
 {
     double joint[AXES];
 
@@ -29,83 +29,83 @@ bool mover_stand(struct mover *p, const struct mechanism *m, const double place[
     return true;
 }
 
-bool mover_held(const struct mover *p)
+bool trajectory_held(const struct trajectory *p)
 {
     return p->hold && !(p->overrides & OUTPUTS_HOLD_OFF);
 }
 
 /* Whether the motion is on a ramp to rest, or rests there. */
-static bool brakes(const struct mover *p)
+static bool brakes(const struct trajectory *p)
 {
-    return mover_held(p) || p->abort || p->leave;
+    return trajectory_held(p) || p->abort || p->leave;
 }
 
 /* Override in force for a kind of command, and for the motion under way. */
-static double in_force(const struct mover *p, bool ptp)
+static double in_force(const struct trajectory *p, bool ptp)
 {
     const double panel = p->overrides & OUTPUTS_FEED_FIXED ? 1.0 : p->override[ptp];
 
     return brakes(p) ? 0.0 : p->overrides & OUTPUTS_ADAPTIVE ? panel * p->adaptive : panel;
 }
 
-bool mover_ordered(const struct mover *p)
+bool trajectory_ordered(const struct trajectory *p)
 {
-    return p->motion == MOVER_AXES && p->mix.count == 0;
+    return p->motion == TRAJECTORY_AXES && p->mix.count == 0;
 }
 
-bool mover_in_joints(const struct mover *p)
+bool trajectory_in_joints(const struct trajectory *p)
 {
-    return p->motion == MOVER_AXES || (p->joints && !mover_busy(p));
+    return p->motion == TRAJECTORY_AXES || (p->joints && !trajectory_busy(p));
 }
 
-bool mover_busy(const struct mover *p)
+bool trajectory_busy(const struct trajectory *p)
 {
-    return p->motion != MOVER_MIX || p->mix.count > 0;
+    return p->motion != TRAJECTORY_MIX || p->mix.count > 0;
 }
 
 /* Single block: whether the next command is the first of a block that may not begin yet. A
  * block is a line of the program, or one call. */
-static bool blocked(const struct mover *p, const struct ring *r)
+static bool blocked(const struct trajectory *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
     return p->single && !p->allowed && next && (next->line == 0 || next->line != p->block);
 }
 
-bool mover_waits(const struct mover *p, const struct ring *r)
+bool trajectory_waits(const struct trajectory *p, const struct ring *r)
 {
-    if (p->motion == MOVER_CURVE) {
+    if (p->motion == TRAJECTORY_CURVE) {
         return curve_waits(&p->curve) && (p->stopped || (p->single && !p->allowed));
     }
-    return !mover_busy(p) && (p->stopped || blocked(p, r));
+    return !trajectory_busy(p) && (p->stopped || blocked(p, r));
 }
 
-bool mover_resting(const struct mover *p, const struct ring *r)
+bool trajectory_resting(const struct trajectory *p, const struct ring *r)
 {
-    if (p->motion == MOVER_CHAIN) {
+    if (p->motion == TRAJECTORY_CHAIN) {
         return in_force(p, false) <= 0.0 && track_rests(&p->track);
     }
-    if (p->motion == MOVER_CURVE) {
+    if (p->motion == TRAJECTORY_CURVE) {
         return curve_rests(&p->curve)
-               && (in_force(p, false) <= 0.0 || p->confirming || mover_waits(p, r));
+               && (in_force(p, false) <= 0.0 || p->confirming || trajectory_waits(p, r));
     }
-    if (mover_ordered(p)) {
+    if (trajectory_ordered(p)) {
         return axes_resting(&p->axes);
     }
     return mix_rests(&p->mix, brakes(p))
-           && (p->mix.count > 0 || brakes(p) || p->confirming || mover_waits(p, r)
+           && (p->mix.count > 0 || brakes(p) || p->confirming || trajectory_waits(p, r)
                || r->count == 0);
 }
 
-bool mover_moving(const struct mover *p)
+bool trajectory_moving(const struct trajectory *p)
 {
-    return p->motion == MOVER_CHAIN   ? !track_rests(&p->track)
-           : p->motion == MOVER_CURVE ? !curve_rests(&p->curve)
-           : mover_ordered(p)         ? !axes_resting(&p->axes)
-                                      : mix_moves(&p->mix);
+    return p->motion == TRAJECTORY_CHAIN   ? !track_rests(&p->track)
+           : p->motion == TRAJECTORY_CURVE ? !curve_rests(&p->curve)
+           : trajectory_ordered(p)         ? !axes_resting(&p->axes)
+                                           : mix_moves(&p->mix);
 }
 
 /* A command of axes lasts as long as the last of them. */
-static void wait_for_axes(struct mover *p)
+static void wait_for_axes(struct trajectory *p)
 {
     struct profile *wait = &p->mix.move[0].profile;
     profile_wait(wait, axes_left(&p->axes));
@@ -113,11 +113,11 @@ static void wait_for_axes(struct mover *p)
 }
 
 /* Plan what is under way afresh from where it is; chain and curve do it by themselves. */
-static void replan(struct mover *p)
+static void replan(struct trajectory *p)
 {
     const struct mix *x = &p->mix;
 
-    if (p->motion == MOVER_AXES) {
+    if (p->motion == TRAJECTORY_AXES) {
         axes_set_ratio(&p->axes, in_force(p, true));
         if (x->count > 0) {
             wait_for_axes(p);
@@ -127,7 +127,7 @@ static void replan(struct mover *p)
     }
 }
 
-bool mover_order(struct mover *p, const struct mechanism *m)
+bool trajectory_order(struct trajectory *p, const struct mechanism *m)
 {
     double joint[AXES];
 
@@ -139,7 +139,7 @@ bool mover_order(struct mover *p, const struct mechanism *m)
         }
     }
     axes_start(&p->axes, joint, in_force(p, true));
-    p->motion = MOVER_AXES;
+    p->motion = TRAJECTORY_AXES;
     return true;
 }
 
@@ -151,22 +151,22 @@ static void place_of_axes(const struct axes *a, double point[AXES], double veloc
 }
 
 /* The motion ends at a place: nothing is under way any more. */
-static void rest_at(struct mover *p, const double place[AXES], bool joints)
+static void rest_at(struct trajectory *p, const double place[AXES], bool joints)
 {
     memcpy(p->rest, place, sizeof p->rest);
     p->joints = joints;
-    p->motion = MOVER_MIX;
+    p->motion = TRAJECTORY_MIX;
     p->mix.count = 0;
 }
 
-void mover_bind(struct mover *p)
+void trajectory_bind(struct trajectory *p)
 {
     double place[AXES], velocity[AXES];
     place_of_axes(&p->axes, place, velocity);
     rest_at(p, place, true);
 }
 
-void mover_hold(struct mover *p, bool on)
+void trajectory_hold(struct trajectory *p, bool on)
 {
     if (p->hold != on) {
         p->hold = on;
@@ -174,42 +174,43 @@ void mover_hold(struct mover *p, bool on)
     }
 }
 
-void mover_single(struct mover *p, const struct mover_beside *b, bool on)
+void trajectory_single(struct trajectory *p, const struct trajectory_beside *b, bool on)
 {
-    if (on && !p->single && p->motion == MOVER_CHAIN) {
+    if (on && !p->single && p->motion == TRAJECTORY_CHAIN) {
         track_close(&p->track, b->ring);
-    } else if (on != p->single && p->motion == MOVER_CURVE) {
+    } else if (on != p->single && p->motion == TRAJECTORY_CURVE) {
         curve_single(&p->curve, b->curve, on);
     }
-    p->stopped = p->stopped || (p->single && !on && mover_waits(p, b->ring));
+    p->stopped = p->stopped || (p->single && !on && trajectory_waits(p, b->ring));
     p->allowed = p->allowed && on;
     p->single = on;
 }
 
-void mover_allow(struct mover *p)
+void trajectory_allow(struct trajectory *p)
 {
     p->allowed = p->single;
 }
 
-void mover_ramp(const struct mover *p, struct mover *ramp)
+void trajectory_ramp(const struct trajectory *p, struct trajectory *ramp)
 {
     *ramp = *p;
     ramp->abort = true;
     replan(ramp);
 }
 
-void mover_shift(struct mover *ramp, double dt)
+void trajectory_shift(struct trajectory *ramp, double dt)
 {
     mix_shift(&ramp->mix, dt);
     axes_advance(&ramp->axes, dt);
 }
 
-double mover_left(const struct mover *ramp)
+double trajectory_left(const struct trajectory *ramp)
 {
-    return el_max(mix_left(&ramp->mix), ramp->motion == MOVER_AXES ? axes_left(&ramp->axes) : 0.0);
+    return el_max(mix_left(&ramp->mix),
+                  ramp->motion == TRAJECTORY_AXES ? axes_left(&ramp->axes) : 0.0);
 }
 
-void mover_continue(struct mover *p)
+void trajectory_continue(struct trajectory *p)
 {
     p->stopped = false;
     if (p->outputs.asks) {
@@ -217,10 +218,10 @@ void mover_continue(struct mover *p)
         p->outputs.tool = p->outputs.asked;
         p->untold = true;
     }
-    mover_allow(p);
+    trajectory_allow(p);
 }
 
-void mover_override(struct mover *p, double feed, double ptp)
+void trajectory_override(struct trajectory *p, double feed, double ptp)
 {
     if (p->override[0] != feed || p->override[1] != ptp) {
         p->override[0] = feed;
@@ -229,26 +230,26 @@ void mover_override(struct mover *p, double feed, double ptp)
     }
 }
 
-void mover_place(const struct mover *p, const struct ring *r, double point[AXES],
-                 double velocity[AXES])
+void trajectory_place(const struct trajectory *p, const struct ring *r, double point[AXES],
+                      double velocity[AXES])
 {
     switch (p->motion) {
-    case MOVER_CHAIN: track_place(&p->track, r, point, velocity); break;
-    case MOVER_CURVE:
+    case TRAJECTORY_CHAIN: track_place(&p->track, r, point, velocity); break;
+    case TRAJECTORY_CURVE:
         memcpy(point, p->curve.point, sizeof p->curve.point);
         memcpy(velocity, p->curve.velocity, sizeof p->curve.velocity);
         break;
-    case MOVER_AXES: place_of_axes(&p->axes, point, velocity); break;
-    default:         mix_place(&p->mix, p->rest, point, velocity);
+    case TRAJECTORY_AXES: place_of_axes(&p->axes, point, velocity); break;
+    default:              mix_place(&p->mix, p->rest, point, velocity);
     }
 }
 
-void mover_stop(struct mover *p, struct ring *r)
+void trajectory_stop(struct trajectory *p, struct ring *r)
 {
     double velocity[AXES], at[AXES];
 
-    mover_place(p, r, at, velocity);
-    rest_at(p, at, mover_in_joints(p));
+    trajectory_place(p, r, at, velocity);
+    rest_at(p, at, trajectory_in_joints(p));
     p->hold = p->abort = p->leave = p->stopped = p->allowed = p->confirming = false;
     p->untold =
         p->untold || p->outputs.spindle != 0.0 || p->outputs.coolant != 0 || p->outputs.asks;
@@ -259,7 +260,7 @@ void mover_stop(struct mover *p, struct ring *r)
     ring_clear(r);
 }
 
-void mover_adapt(struct mover *p, double share)
+void trajectory_adapt(struct trajectory *p, double share)
 {
     if (p->adaptive != share) {
         p->adaptive = share;
@@ -267,36 +268,36 @@ void mover_adapt(struct mover *p, double share)
     }
 }
 
-void mover_abort(struct mover *p, struct ring *r)
+void trajectory_abort(struct trajectory *p, struct ring *r)
 {
     p->abort = true;
     replan(p);
-    if (mover_resting(p, r)) {
-        mover_stop(p, r);
+    if (trajectory_resting(p, r)) {
+        trajectory_stop(p, r);
     }
 }
 
 /* The older command has ended. */
-static void retire(struct mover *p)
+static void retire(struct trajectory *p)
 {
     const struct command ended = p->mix.move[0].command;
 
     mix_retire(&p->mix);
     if (p->mix.count == 0) {
-        rest_at(p, ended.path.end, p->motion == MOVER_AXES);
+        rest_at(p, ended.path.end, p->motion == TRAJECTORY_AXES);
         p->confirming = p->confirm && ended.type != COMMAND_DELAY;
         p->leave = false;
     }
 }
 
-void mover_leave(struct mover *p, const struct ring *r)
+void trajectory_leave(struct trajectory *p, const struct ring *r)
 {
     double at[AXES], velocity[AXES];
 
-    p->leave = p->motion == MOVER_MIX && p->mix.count == 1;
+    p->leave = p->motion == TRAJECTORY_MIX && p->mix.count == 1;
     replan(p);
-    if (p->leave && mover_resting(p, r)) {
-        mover_place(p, r, at, velocity);
+    if (p->leave && trajectory_resting(p, r)) {
+        trajectory_place(p, r, at, velocity);
         rest_at(p, at, false);
         p->confirming = p->confirm;
         p->leave = false;
@@ -304,10 +305,10 @@ void mover_leave(struct mover *p, const struct ring *r)
 }
 
 /* Whether the next command may begin, now or in the deceleration of the one under way. */
-static bool may_start(const struct mover *p, const struct ring *r)
+static bool may_start(const struct trajectory *p, const struct ring *r)
 {
     const struct command *next = ring_head(r);
-    if (!next || p->motion != MOVER_MIX || brakes(p) || p->stopped || p->confirming
+    if (!next || p->motion != TRAJECTORY_MIX || brakes(p) || p->stopped || p->confirming
         || blocked(p, r)) {
         return false;
     }
@@ -315,7 +316,7 @@ static bool may_start(const struct mover *p, const struct ring *r)
 }
 
 /* A command begins: its outputs and its line count from now on. Index 0: it takes no time. */
-static void begin(struct mover *p, const struct shape_mark *k)
+static void begin(struct trajectory *p, const struct shape_mark *k)
 {
     p->outputs.digital = (p->outputs.digital | k->set) & ~k->clear;
     for (int i = 0; i < OUTPUTS_ANALOG; i++) {
@@ -326,7 +327,7 @@ static void begin(struct mover *p, const struct shape_mark *k)
     p->started = k->index > 0 ? k->index : p->started;
 }
 
-static void begin_command(struct mover *p, const struct command *c)
+static void begin_command(struct trajectory *p, const struct command *c)
 {
     const struct shape_mark k = { .index = command_lasts(c) ? c->index : 0,
                                   .line = c->line,
@@ -336,7 +337,8 @@ static void begin_command(struct mover *p, const struct command *c)
     begin(p, &k);
 }
 
-static void begin_axes(struct mover *p, const struct command *c, const struct axes_limits l[AXES])
+static void begin_axes(struct trajectory *p, const struct command *c,
+                       const struct axes_limits l[AXES])
 {
     axes_start(&p->axes, c->path.start, in_force(p, true));
     for (int i = 0; i < AXES; i++) {
@@ -345,23 +347,23 @@ static void begin_axes(struct mover *p, const struct command *c, const struct ax
         }
     }
     p->mix.move[p->mix.count++].command = *c;
-    p->motion = MOVER_AXES;
+    p->motion = TRAJECTORY_AXES;
     wait_for_axes(p);
 }
 
-static void begin_next(struct mover *p, const struct mover_beside *b)
+static void begin_next(struct trajectory *p, const struct trajectory_beside *b)
 {
     struct ring *r = b->ring;
     const struct command *c = ring_head(r);
 
     if (p->mix.count == 0 && !p->single && b->curve && curve_begins(r)) {
         curve_start(&p->curve, b->curve, r);
-        p->motion = MOVER_CURVE;
+        p->motion = TRAJECTORY_CURVE;
         return;
     }
     if (p->mix.count == 0 && !p->single && track_begins(r)) {
         track_start(&p->track, r);
-        p->motion = MOVER_CHAIN;
+        p->motion = TRAJECTORY_CHAIN;
         return;
     }
     begin_command(p, c);
@@ -384,7 +386,7 @@ static void begin_next(struct mover *p, const struct mover_beside *b)
     ring_pop(r);
 }
 
-static void begin_chained(struct mover *p, const struct ring *r)
+static void begin_chained(struct trajectory *p, const struct ring *r)
 {
     const struct command *c;
     while ((c = track_begun(&p->track, r)) != NULL) {
@@ -392,7 +394,7 @@ static void begin_chained(struct mover *p, const struct ring *r)
     }
 }
 
-static void begin_curved(struct mover *p, const struct curve_plan *m)
+static void begin_curved(struct trajectory *p, const struct curve_plan *m)
 {
     const struct shape_mark *k;
     while ((k = curve_begun(&p->curve, m)) != NULL) {
@@ -401,19 +403,19 @@ static void begin_curved(struct mover *p, const struct curve_plan *m)
 }
 
 /* The motion that has looked ahead is over. */
-static void end_ahead(struct mover *p, struct ring *r, const double place[AXES])
+static void end_ahead(struct trajectory *p, struct ring *r, const double place[AXES])
 {
     rest_at(p, place, false);
     p->confirming = p->confirm;
     if (p->abort) {
-        mover_stop(p, r); /* the ramp of the abort was that to its end */
+        trajectory_stop(p, r); /* the ramp of the abort was that to its end */
     }
 }
 
-static double advance_curve(struct mover *p, const struct mover_beside *b, double dt)
+static double advance_curve(struct trajectory *p, const struct trajectory_beside *b, double dt)
 {
     if (curve_waits(&p->curve)) {
-        if (p->confirming || brakes(p) || mover_waits(p, b->ring)) {
+        if (p->confirming || brakes(p) || trajectory_waits(p, b->ring)) {
             return 0.0;
         }
         curve_go(&p->curve, b->curve, p->single);
@@ -427,7 +429,7 @@ static double advance_curve(struct mover *p, const struct mover_beside *b, doubl
     return left;
 }
 
-static double advance_chain(struct mover *p, struct ring *r, double dt)
+static double advance_chain(struct trajectory *p, struct ring *r, double dt)
 {
     struct track *t = &p->track;
     const double left = track_advance(t, r, in_force(p, false), dt);
@@ -444,7 +446,7 @@ static double advance_chain(struct mover *p, struct ring *r, double dt)
 }
 
 /* Let time pass up to the next end or beginning of a command; returns the time left. */
-static double advance_commands(struct mover *p, bool startable, double dt)
+static double advance_commands(struct trajectory *p, bool startable, double dt)
 {
     struct profile *old = &p->mix.move[0].profile;
     const double event = startable ? old->tail : old->total;
@@ -454,20 +456,20 @@ static double advance_commands(struct mover *p, bool startable, double dt)
     if (step < dt) {
         old->t = event; /* met exactly, whatever the sum rounds to */
     }
-    if (p->motion == MOVER_AXES) {
+    if (p->motion == TRAJECTORY_AXES) {
         axes_advance(&p->axes, step);
     }
     return dt - step;
 }
 
-double mover_advance(struct mover *p, const struct mover_beside *b, double dt)
+double trajectory_advance(struct trajectory *p, const struct trajectory_beside *b, double dt)
 {
     struct ring *r = b->ring;
 
-    if (p->motion == MOVER_CHAIN) {
+    if (p->motion == TRAJECTORY_CHAIN) {
         return advance_chain(p, r, dt);
     }
-    if (p->motion == MOVER_CURVE) {
+    if (p->motion == TRAJECTORY_CURVE) {
         return advance_curve(p, b, dt);
     }
     for (;;) {
@@ -482,18 +484,18 @@ double mover_advance(struct mover *p, const struct mover_beside *b, double dt)
             retire(p);
             continue;
         }
-        if (mover_resting(p, r)) {
+        if (trajectory_resting(p, r)) {
             if (p->abort) {
-                mover_stop(p, r);
+                trajectory_stop(p, r);
             } else if (p->leave) {
-                mover_leave(p, r);
+                trajectory_leave(p, r);
             }
             return dt;
         }
         if (dt <= 0.0) {
             return 0.0;
         }
-        if (mover_ordered(p)) {
+        if (trajectory_ordered(p)) {
             axes_advance(&p->axes, dt);
             dt = 0.0;
         } else {
@@ -502,21 +504,22 @@ double mover_advance(struct mover *p, const struct mover_beside *b, double dt)
     }
 }
 
-void mover_accept(struct mover *p, const struct mover_beside *b, const struct point *point)
+void trajectory_accept(struct trajectory *p, const struct trajectory_beside *b,
+                       const struct point *point)
 {
     memcpy(p->pulses, point->pulses, sizeof p->pulses);
     p->untold = false;
-    if (p->motion == MOVER_CHAIN) {
+    if (p->motion == TRAJECTORY_CHAIN) {
         track_drop(&p->track, b->ring);
-    } else if (p->motion == MOVER_CURVE) {
+    } else if (p->motion == TRAJECTORY_CURVE) {
         curve_drop(&p->curve, b->curve);
     }
 }
 
-bool mover_joints(const struct mover *p, const struct mechanism *m, const double place[AXES],
-                  double joint[AXES])
+bool trajectory_joints(const struct trajectory *p, const struct mechanism *m,
+                       const double place[AXES], double joint[AXES])
 {
-    if (mover_in_joints(p)) {
+    if (trajectory_in_joints(p)) {
         memcpy(joint, place, AXES * sizeof *joint);
         return true;
     }
@@ -524,39 +527,39 @@ bool mover_joints(const struct mover *p, const struct mechanism *m, const double
 }
 
 /* What looks ahead moves the tool to where the planned motion is. */
-static void sample(struct mover *p, const struct mover_beside *b, double dt)
+static void sample(struct trajectory *p, const struct trajectory_beside *b, double dt)
 {
-    if (p->motion == MOVER_CHAIN) {
+    if (p->motion == TRAJECTORY_CHAIN) {
         track_sample(&p->track, b->mean, b->ring, dt);
         begin_chained(p, b->ring);
         if (p->abort && track_rests(&p->track)) {
-            mover_stop(p, b->ring);
+            trajectory_stop(p, b->ring);
         }
-    } else if (p->motion == MOVER_CURVE) {
+    } else if (p->motion == TRAJECTORY_CURVE) {
         curve_sample(&p->curve, b->curve);
         begin_curved(p, b->curve);
         if (p->abort && curve_rests(&p->curve)) {
-            mover_stop(p, b->ring);
+            trajectory_stop(p, b->ring);
         }
     }
 }
 
-bool mover_point(struct mover *p, const struct mover_beside *b, const struct mechanism *m,
-                 double dt, struct point *point)
+bool trajectory_point(struct trajectory *p, const struct trajectory_beside *b,
+                      const struct mechanism *m, double dt, struct point *point)
 {
     double velocity[AXES], joint[AXES];
 
     sample(p, b, dt);
     struct ring *r = b->ring;
-    mover_place(p, r, point->place, velocity);
+    trajectory_place(p, r, point->place, velocity);
     const double *v = velocity;
     point->feed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (point->feed == 0.0) {
         point->feed = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
     }
     mechanism_near(m, p->pulses, joint);
-    const bool reached = mover_joints(p, m, point->place, joint);
-    if (mover_in_joints(p)) {
+    const bool reached = trajectory_joints(p, m, point->place, joint);
+    if (trajectory_in_joints(p)) {
         mechanism_place(m, joint, point->place);
     }
     memcpy(point->pulses, p->pulses, sizeof point->pulses);

@@ -15,12 +15,12 @@ struct instant {
 };
 
 struct ramp_view {
-    struct mover ramp; /* the ramp, whose clocks are at `at` */
-    double at;         /* [s] */
-    double dt;         /* [s] time from point to point */
-    double acc[AXES];  /* [mm/s^2] highest acceleration of independent axes */
-    double from[AXES]; /* [pulses] position of the latest point */
-    double near[AXES]; /* [mm] joints there, if there are kinematics */
+    struct trajectory ramp; /* the ramp, whose clocks are at `at` */
+    double at;              /* [s] */
+    double dt;              /* [s] time from point to point */
+    double acc[AXES];       /* [mm/s^2] highest acceleration of independent axes */
+    double from[AXES];      /* [pulses] position of the latest point */
+    double near[AXES];      /* [mm] joints there, if there are kinematics */
     const struct ring *ring;
     const struct mechanism *machine;
 };
@@ -36,11 +36,11 @@ static struct instant instant_at(struct ramp_view *v, double t, const double nea
     struct instant x = { .t = t };
     double place[AXES], velocity[AXES];
 
-    mover_shift(&v->ramp, t - v->at);
+    trajectory_shift(&v->ramp, t - v->at);
     v->at = t;
-    mover_place(&v->ramp, v->ring, place, velocity);
+    trajectory_place(&v->ramp, v->ring, place, velocity);
     memcpy(x.joint, near, sizeof x.joint);
-    x.reached = mover_joints(&v->ramp, v->machine, place, x.joint);
+    x.reached = trajectory_joints(&v->ramp, v->machine, place, x.joint);
     for (int i = 0; i < v->ramp.mix.count; i++) {
         x.move[i] = profile_state(&v->ramp.mix.move[i].profile);
     }
@@ -63,7 +63,7 @@ static double move_strays(const struct path *way, const struct scurve_start *a,
  * goes no further than at its highest speed. */
 static bool between(const struct ramp_view *v, const struct instant *a, const struct instant *b)
 {
-    const bool paths = v->ramp.motion == MOVER_MIX;
+    const bool paths = v->ramp.motion == TRAJECTORY_MIX;
     const double dt = b->t - a->t;
     double low[AXES], high[AXES];
 
@@ -105,7 +105,7 @@ static int search(struct ramp_view *v, int64_t i, const struct instant *a, int64
 
 static int beyond_in_time(struct ramp_view *v)
 {
-    const double time = mover_left(&v->ramp);
+    const double time = trajectory_left(&v->ramp);
     const int64_t last = (int64_t)el_min(ceil(time / v->dt), 1e15) + 1;
     const struct instant first = instant_at(v, 0.0, v->near);
     const struct instant end = instant_at(v, (double)last * v->dt, first.joint);
@@ -228,7 +228,7 @@ static int beyond_on_way(const struct way *w, const struct ramp_view *v)
     return -1;
 }
 
-static int beyond_in_chain(const struct mover *p, struct ring *r, const struct ramp_view *v)
+static int beyond_in_chain(const struct trajectory *p, struct ring *r, const struct ramp_view *v)
 {
     struct track rest = p->track;
     const double from = rest.out_base + rest.out_s;
@@ -252,8 +252,8 @@ static int beyond_in_chain(const struct mover *p, struct ring *r, const struct r
     return beyond(v, low, high);
 }
 
-int reach_beyond(const struct mover *p, const struct mover_beside *b, const struct mechanism *m,
-                 double dt)
+int reach_beyond(const struct trajectory *p, const struct trajectory_beside *b,
+                 const struct mechanism *m, double dt)
 {
     struct ring *r = b->ring;
     struct ramp_view v = { .dt = dt, .ring = r, .machine = m };
@@ -263,15 +263,15 @@ int reach_beyond(const struct mover *p, const struct mover_beside *b, const stru
         v.from[i] = p->pulses[i];
     }
     mechanism_near(m, p->pulses, v.near);
-    if (p->motion == MOVER_CHAIN) {
+    if (p->motion == TRAJECTORY_CHAIN) {
         return beyond_in_chain(p, r, &v);
     }
-    if (p->motion == MOVER_CURVE) {
+    if (p->motion == TRAJECTORY_CURVE) {
         curve_stop_extent(&p->curve, b->curve, low, high);
         return beyond(&v, low, high);
     }
-    mover_ramp(p, &v.ramp);
-    const bool paths = p->motion == MOVER_MIX;
+    trajectory_ramp(p, &v.ramp);
+    const bool paths = p->motion == TRAJECTORY_MIX;
     if (paths && m->kinematics) {
         return beyond_in_time(&v);
     }
