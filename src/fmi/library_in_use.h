@@ -15,7 +15,7 @@
     FMU_LIST(in.flow.call, in.flow.level) \
     FMU_LIST(in.made, in.count)
 
-/* A struct ring, and the struct track_mean of a trajectory. */
+/* A struct ring, and the struct lookahead_mean of a trajectory. */
 #define RING_IN_USE(ring) FMU_RING(ring.entry, ring.head, ring.count, 0)
 #define MEAN_IN_USE(mean, trajectory) \
     FMU_WHEN(mean, trajectory.motion, TRAJECTORY_CHAIN, TRAJECTORY_CHAIN)

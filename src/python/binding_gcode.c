@@ -19,7 +19,7 @@ struct gcode_reader {
     double period; /* [s] from point to point */
     struct trajectory trajectory;
     struct ring ring;
-    struct track_mean mean;
+    struct lookahead_mean mean;
     struct curve_plan curve;
 };
 

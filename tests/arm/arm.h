@@ -19,7 +19,7 @@ struct arm {
     struct kernel kernel;
     struct trajectory trajectory;
     struct ring ring;
-    struct track_mean mean;
+    struct lookahead_mean mean;
     struct dda dda;
     struct fifo fifo[ARM_JOINTS];
     int32_t entry[ARM_JOINTS][ARM_DEPTH];

@@ -114,7 +114,7 @@ struct mcc {
     struct interpreter program;
     struct ring ring;
     struct trajectory trajectory;
-    struct track_mean mean;
+    struct lookahead_mean mean;
     struct curve_plan curve_plan;
     struct queue queue;
     struct point written;   /* the latest point the card took */

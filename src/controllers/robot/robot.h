@@ -99,7 +99,7 @@ enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
 struct robot {
     struct trajectory trajectory;
     struct ring ring;
-    struct track_mean mean;
+    struct lookahead_mean mean;
     struct arm_moves moves;
     struct pose tool;           /* in force */
     struct tool_path tool_path; /* of the latest move; its segments go into the ring one by one */

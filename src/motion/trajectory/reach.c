@@ -128,7 +128,7 @@ static void widen(const struct path *p, double from, double to, double margin, d
 
 /* Way of a chain from the tool to its rest. */
 struct way {
-    const struct track *t; /* the chain, brought to rest */
+    const struct lookahead *t; /* the chain, brought to rest */
     const struct ring *ring;
     double from, to; /* [mm] on the chain */
 };
@@ -141,7 +141,7 @@ static const struct path *path_of(const struct way *w, int32_t i)
 /* Whether a command, its corner with it, begins before the rest. */
 static bool begins(const struct way *w, int32_t i, double base)
 {
-    return base - track_half(w->t, w->ring, i) <= w->to;
+    return base - lookahead_half(w->t, w->ring, i) <= w->to;
 }
 
 /* A corner takes both of its paths from half before the tool to half after it. Lines it leaves to
@@ -153,7 +153,8 @@ static void box_of_chain(const struct way *w, double low[AXES], double high[AXES
 
     for (int32_t i = first; i < w->t->joined && begins(w, i, base); i++) {
         const struct path *p = path_of(w, i);
-        const double half = track_half(w->t, w->ring, i), next = track_half(w->t, w->ring, i + 1);
+        const double half = lookahead_half(w->t, w->ring, i),
+                     next = lookahead_half(w->t, w->ring, i + 1);
         const bool bent = path_bend(p) > 0.0 || (half > 0.0 && path_bend(path_of(w, i - 1)) > 0.0)
                           || (next > 0.0 && path_bend(path_of(w, i + 1)) > 0.0);
         widen(p, el_max(0.0, w->from - base - next), el_min(p->length, w->to - base + half),
@@ -191,12 +192,13 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
 
     for (int32_t i = w->t->out; i < w->t->joined && begins(w, i, base); i++) {
         const struct path *p = path_of(w, i);
-        const double half = track_half(w->t, w->ring, i), from = w->from - base, to = w->to - base;
+        const double half = lookahead_half(w->t, w->ring, i), from = w->from - base,
+                     to = w->to - base;
         if (half > 0.0 && from < half && to > -half) {
             widen_by_corner(w, i, el_max(-half, from), el_min(half, to), low, high);
         }
-        widen(p, el_max(half, from), el_min(p->length - track_half(w->t, w->ring, i + 1), to), 0.0,
-              low, high);
+        widen(p, el_max(half, from), el_min(p->length - lookahead_half(w->t, w->ring, i + 1), to),
+              0.0, low, high);
         base += p->length;
     }
     for (int k = 0; k < AXES; k++) {
@@ -208,7 +210,7 @@ static void extent_of_chain(const struct way *w, double low[AXES], double high[A
 /* First joint beyond its bounds at places of a chain, as far apart as the tool goes in dt. */
 static int beyond_on_way(const struct way *w, const struct ramp_view *v)
 {
-    struct track tool = *w->t;
+    struct lookahead tool = *w->t;
     double joint[AXES], place[AXES], velocity[AXES], step = INFINITY;
 
     for (int32_t i = w->t->out; i < w->t->joined; i++) {
@@ -217,8 +219,8 @@ static int beyond_on_way(const struct way *w, const struct ramp_view *v)
     memcpy(joint, v->near, sizeof joint);
     for (double at = w->from; at < w->to;) {
         at = el_min(at + step, w->to);
-        track_go(&tool, w->ring, at);
-        track_place(&tool, w->ring, place, velocity);
+        lookahead_go(&tool, w->ring, at);
+        lookahead_place(&tool, w->ring, place, velocity);
         const bool reached = mechanism_joints(v->machine, place, joint);
         const int axis = reached ? beyond(v, joint, joint) : 0;
         if (axis >= 0) {
@@ -230,16 +232,16 @@ static int beyond_on_way(const struct way *w, const struct ramp_view *v)
 
 static int beyond_in_chain(const struct trajectory *p, struct ring *r, const struct ramp_view *v)
 {
-    struct track rest = p->track;
+    struct lookahead rest = p->lookahead;
     const double from = rest.out_base + rest.out_s;
     double place[AXES], low[AXES], high[AXES], velocity[AXES];
 
-    track_to_rest(&rest, r);
+    lookahead_to_rest(&rest, r);
     const struct way w = { &rest, r, from, rest.base + rest.s };
     if (v->machine->kinematics) {
         return beyond_on_way(&w, v);
     }
-    track_place(&p->track, r, place, velocity);
+    lookahead_place(&p->lookahead, r, place, velocity);
     memcpy(low, place, sizeof low);
     memcpy(high, place, sizeof high);
     box_of_chain(&w, low, high);

@@ -12,7 +12,7 @@ enum { RING_SIZE = 256 };
 struct ring_entry {
     struct command command;
     union {
-        struct {                       /* in a chain (track.h) */
+        struct {                       /* in a chain (lookahead.h) */
             struct corner corner;      /* at its start, with the command before */
             double body, turn;         /* [mm/s] most by the bend: of the command, of that corner */
             struct brake enter, leave; /* limits before the end of the corner at its start, and

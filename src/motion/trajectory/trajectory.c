@@ -82,7 +82,7 @@ bool trajectory_waits(const struct trajectory *p, const struct ring *r)
 bool trajectory_resting(const struct trajectory *p, const struct ring *r)
 {
     if (p->motion == TRAJECTORY_CHAIN) {
-        return in_force(p, false) <= 0.0 && track_rests(&p->track);
+        return in_force(p, false) <= 0.0 && lookahead_rests(&p->lookahead);
     }
     if (p->motion == TRAJECTORY_CURVE) {
         return curve_rests(&p->curve)
@@ -98,7 +98,7 @@ bool trajectory_resting(const struct trajectory *p, const struct ring *r)
 
 bool trajectory_moving(const struct trajectory *p)
 {
-    return p->motion == TRAJECTORY_CHAIN   ? !track_rests(&p->track)
+    return p->motion == TRAJECTORY_CHAIN   ? !lookahead_rests(&p->lookahead)
            : p->motion == TRAJECTORY_CURVE ? !curve_rests(&p->curve)
            : trajectory_ordered(p)         ? !axes_resting(&p->axes)
                                            : mix_moves(&p->mix);
@@ -177,7 +177,7 @@ void trajectory_hold(struct trajectory *p, bool on)
 void trajectory_single(struct trajectory *p, const struct trajectory_beside *b, bool on)
 {
     if (on && !p->single && p->motion == TRAJECTORY_CHAIN) {
-        track_close(&p->track, b->ring);
+        lookahead_close(&p->lookahead, b->ring);
     } else if (on != p->single && p->motion == TRAJECTORY_CURVE) {
         curve_single(&p->curve, b->curve, on);
     }
@@ -234,7 +234,7 @@ void trajectory_place(const struct trajectory *p, const struct ring *r, double p
                       double velocity[AXES])
 {
     switch (p->motion) {
-    case TRAJECTORY_CHAIN: track_place(&p->track, r, point, velocity); break;
+    case TRAJECTORY_CHAIN: lookahead_place(&p->lookahead, r, point, velocity); break;
     case TRAJECTORY_CURVE:
         memcpy(point, p->curve.point, sizeof p->curve.point);
         memcpy(velocity, p->curve.velocity, sizeof p->curve.velocity);
@@ -361,8 +361,8 @@ static void begin_next(struct trajectory *p, const struct trajectory_beside *b)
         p->motion = TRAJECTORY_CURVE;
         return;
     }
-    if (p->mix.count == 0 && !p->single && track_begins(r)) {
-        track_start(&p->track, r);
+    if (p->mix.count == 0 && !p->single && lookahead_begins(r)) {
+        lookahead_start(&p->lookahead, r);
         p->motion = TRAJECTORY_CHAIN;
         return;
     }
@@ -389,7 +389,7 @@ static void begin_next(struct trajectory *p, const struct trajectory_beside *b)
 static void begin_chained(struct trajectory *p, const struct ring *r)
 {
     const struct command *c;
-    while ((c = track_begun(&p->track, r)) != NULL) {
+    while ((c = lookahead_begun(&p->lookahead, r)) != NULL) {
         begin_command(p, c);
     }
 }
@@ -431,9 +431,9 @@ static double advance_curve(struct trajectory *p, const struct trajectory_beside
 
 static double advance_chain(struct trajectory *p, struct ring *r, double dt)
 {
-    struct track *t = &p->track;
-    const double left = track_advance(t, r, in_force(p, false), dt);
-    if (left <= 0.0 || (t->smooth > 0.0 && !track_done(t))) {
+    struct lookahead *t = &p->lookahead;
+    const double left = lookahead_advance(t, r, in_force(p, false), dt);
+    if (left <= 0.0 || (t->smooth > 0.0 && !lookahead_done(t))) {
         return 0.0; /* the tool has to come after */
     }
     begin_chained(p, r);
@@ -510,7 +510,7 @@ void trajectory_accept(struct trajectory *p, const struct trajectory_beside *b,
     memcpy(p->pulses, point->pulses, sizeof p->pulses);
     p->untold = false;
     if (p->motion == TRAJECTORY_CHAIN) {
-        track_drop(&p->track, b->ring);
+        lookahead_drop(&p->lookahead, b->ring);
     } else if (p->motion == TRAJECTORY_CURVE) {
         curve_drop(&p->curve, b->curve);
     }
@@ -530,9 +530,9 @@ bool trajectory_joints(const struct trajectory *p, const struct mechanism *m,
 static void sample(struct trajectory *p, const struct trajectory_beside *b, double dt)
 {
     if (p->motion == TRAJECTORY_CHAIN) {
-        track_sample(&p->track, b->mean, b->ring, dt);
+        lookahead_sample(&p->lookahead, b->mean, b->ring, dt);
         begin_chained(p, b->ring);
-        if (p->abort && track_rests(&p->track)) {
+        if (p->abort && lookahead_rests(&p->lookahead)) {
             trajectory_stop(p, b->ring);
         }
     } else if (p->motion == TRAJECTORY_CURVE) {

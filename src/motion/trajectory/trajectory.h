@@ -5,7 +5,7 @@
  * next one, so no time is lost between them. Four motions take turns:
  *
  *     mix      commands one by one, or two at a time by path mixing      mix.h
- *     chain    commands with a corner tolerance as one by look-ahead     track.h
+ *     chain    commands with a corner tolerance as one by look-ahead     lookahead.h
  *     curve    the same as one smooth curve                              curve.h
  *     axes     each joint for itself: by a command, or by orders         axes.h
  *
@@ -23,7 +23,7 @@
 #include "curve.h"
 #include "mix.h"
 #include "queue.h"
-#include "track.h"
+#include "lookahead.h"
 
 enum trajectory_motion { TRAJECTORY_MIX, TRAJECTORY_CHAIN, TRAJECTORY_AXES, TRAJECTORY_CURVE };
 
@@ -31,32 +31,32 @@ enum trajectory_motion { TRAJECTORY_MIX, TRAJECTORY_CHAIN, TRAJECTORY_AXES, TRAJ
  * back. */
 struct trajectory_beside {
     struct ring *ring;
-    struct track_mean *mean;
+    struct lookahead_mean *mean;
     struct curve_plan *curve; /* NULL: what asks for a curve becomes a chain */
 };
 
 struct trajectory {
     enum trajectory_motion motion; /* the motion under way, or the latest */
-    struct mix mix;       /* TRAJECTORY_MIX; in TRAJECTORY_AXES the command, none: by orders */
-    struct track track;   /* TRAJECTORY_CHAIN */
-    struct curve curve;   /* TRAJECTORY_CURVE */
-    struct axes axes;     /* TRAJECTORY_AXES */
-    double rest[AXES];    /* [mm] where nothing is under way */
-    bool joints;          /* `rest` is a place of joints */
-    int32_t pulses[AXES]; /* [pulses] position of the latest point */
-    double override[2];   /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
-    double adaptive;      /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
-    uint32_t overrides;   /* enum outputs_overrides */
-    bool hold;            /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
-    bool leave;           /* ramp to rest, then drop the command under way */
-    bool abort;           /* ramp to rest, then drop everything */
-    bool stopped;         /* M0, M1: at rest until trajectory_continue */
-    bool single;          /* each block waits for trajectory_continue */
-    bool allowed;         /* the next block may begin nevertheless */
-    int32_t block;        /* line of the latest block */
-    bool confirm;         /* in-position check: a motion that ends at rest waits for it */
-    bool confirming;      /* one waits now */
-    bool untold;          /* outputs or line have changed since the latest point */
+    struct mix mix; /* TRAJECTORY_MIX; in TRAJECTORY_AXES the command, none: by orders */
+    struct lookahead lookahead; /* TRAJECTORY_CHAIN */
+    struct curve curve;         /* TRAJECTORY_CURVE */
+    struct axes axes;           /* TRAJECTORY_AXES */
+    double rest[AXES];          /* [mm] where nothing is under way */
+    bool joints;                /* `rest` is a place of joints */
+    int32_t pulses[AXES];       /* [pulses] position of the latest point */
+    double override[2];         /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
+    double adaptive;            /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
+    uint32_t overrides;         /* enum outputs_overrides */
+    bool hold;                  /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
+    bool leave;                 /* ramp to rest, then drop the command under way */
+    bool abort;                 /* ramp to rest, then drop everything */
+    bool stopped;               /* M0, M1: at rest until trajectory_continue */
+    bool single;                /* each block waits for trajectory_continue */
+    bool allowed;               /* the next block may begin nevertheless */
+    int32_t block;              /* line of the latest block */
+    bool confirm;               /* in-position check: a motion that ends at rest waits for it */
+    bool confirming;            /* one waits now */
+    bool untold;                /* outputs or line have changed since the latest point */
     struct outputs outputs;
     struct outputs_surface surface; /* if it has a speed, outputs.spindle is the most */
     int32_t started, line;          /* index and source line of the latest command begun */

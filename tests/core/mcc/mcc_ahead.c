@@ -231,7 +231,7 @@ static void tolerance(void)
     send_zigzag(side);
     while (point(&r)) {
         CHECK(off_zigzag(side, &r) <= 0.1 * (1.0 + 1e-9));
-        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.trajectory.track.v) : slowest;
+        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.trajectory.lookahead.v) : slowest;
     }
     const double half = 0.1 / (0.1875 * sqrt(2.0));
     const double turn = sqrt(500.0 * half / (0.75 * sqrt(2.0)));

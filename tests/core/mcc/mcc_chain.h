@@ -84,13 +84,13 @@ static inline void smooth_ramps(bool on)
 
 static inline double way_of_tool(void)
 {
-    return m.trajectory.track.out_base + m.trajectory.track.out_s;
+    return m.trajectory.lookahead.out_base + m.trajectory.lookahead.out_s;
 }
 
 /* Another one for each chain: the index of its first command. */
 static inline int chain_number(void)
 {
-    return m.trajectory.track.started;
+    return m.trajectory.lookahead.started;
 }
 
 struct limits {

@@ -124,8 +124,8 @@ static void feeds(bool smooth)
                 look(&x, way_of_tool(), &l);
                 /* S: the mean speed of a DDA time, part of which may lie in the one before. */
                 const double most = fmax(feed[r.last.command], smooth ? feed[was] : 0.0);
-                CHECK(m.trajectory.track.out_v <= most * (1.0 + 1e-6));
-                fastest += m.trajectory.track.out_v > 0.99 * most;
+                CHECK(m.trajectory.lookahead.out_v <= most * (1.0 + 1e-6));
+                fastest += m.trajectory.lookahead.out_v > 0.99 * most;
             }
         }
         CHECK(sent == COUNT && MCC_check_stop(&m));

@@ -1,4 +1,4 @@
-/* track - look-ahead: commands in a row that have a corner tolerance are one motion.
+/* lookahead - commands in a row that have a corner tolerance are one motion.
  *
  *   v ^     ____          ___         limits of the commands and of their corners; from the end of
  *     |    /    \   __   /   \        the last known command backwards, the speed at every border
@@ -12,27 +12,27 @@
  *
  * The commands stay in the ring until the tool has left them.
  */
-#ifndef TRACK_H
-#define TRACK_H
+#ifndef LOOKAHEAD_H
+#define LOOKAHEAD_H
 
 #include "ring.h"
 
 enum {
-    TRACK_MEAN = 2048, /* frames of the mean, and one more */
-    TRACK_CAPS = 8
+    LOOKAHEAD_MEAN = 2048, /* frames of the mean, and one more */
+    LOOKAHEAD_CAPS = 8
 };
 
 /* A limit left behind that still holds for some way: the tool is behind the planned motion. */
-struct track_cap {
+struct lookahead_cap {
     double speed; /* [mm/s] */
     double until; /* [mm] on the chain */
 };
 
-struct track_mean {
-    double sample[TRACK_MEAN]; /* [mm] way at the latest points */
+struct lookahead_mean {
+    double sample[LOOKAHEAD_MEAN]; /* [mm] way at the latest points */
 };
 
-struct track {
+struct lookahead {
     bool closed;     /* no further command joins */
     int32_t started; /* index of its first command */
     int32_t joined;  /* commands from the head of the ring that are in the chain */
@@ -46,7 +46,7 @@ struct track {
     bool turning; /* it is in the corner at that command's start */
     double base;  /* [mm] start of that command on the chain */
     double s, v;  /* [mm] place of the planned motion from there, [mm/s] */
-    struct track_cap cap[TRACK_CAPS];
+    struct lookahead_cap cap[LOOKAHEAD_CAPS];
     int32_t caps;
 
     int32_t taps, next; /* samples of the mean, 0 before the first; place of the next */
@@ -54,7 +54,7 @@ struct track {
     double sum, zero;   /* [mm] sum of the samples, each counted from `zero` */
 
     int32_t out;         /* command of the tool, from the head */
-    int32_t begun;       /* number of commands of which track_begun has told */
+    int32_t begun;       /* number of commands of which lookahead_begun has told */
     double out_base;     /* [mm] start of the tool's command on the chain */
     double out_s, out_v; /* [mm] place of the tool from there, [mm/s] */
     double way;          /* [mm] the tool on the chain: base + s of the planned motion once it
@@ -62,48 +62,48 @@ struct track {
 };
 
 /* Whether the first command of the ring begins a chain. */
-bool track_begins(const struct ring *r);
+bool lookahead_begins(const struct ring *r);
 
 /* Begin one, at rest. */
-void track_start(struct track *t, struct ring *r);
+void lookahead_start(struct lookahead *t, struct ring *r);
 
 /* Join what the ring has, and let up to dt seconds pass on the planned motion under an override; 0
  * brings it to rest. Returns the time left: above 0 only at the end of the chain. */
-double track_advance(struct track *t, struct ring *r, double override, double dt);
+double lookahead_advance(struct lookahead *t, struct ring *r, double override, double dt);
 
 /* End with the first command in which the motion can still be brought to rest. */
-void track_close(struct track *t, const struct ring *r);
+void lookahead_close(struct lookahead *t, const struct ring *r);
 
 /* A frame of dt seconds ends: the tool follows the planned motion. */
-void track_sample(struct track *t, struct track_mean *m, struct ring *r, double dt);
+void lookahead_sample(struct lookahead *t, struct lookahead_mean *m, struct ring *r, double dt);
 
 /* The next command that the tool has begun since it was asked last, or NULL; all of them once the
  * planned motion has ended. */
-const struct command *track_begun(struct track *t, const struct ring *r);
+const struct command *lookahead_begun(struct lookahead *t, const struct ring *r);
 
 /* Drop commands that the tool has left. */
-void track_drop(struct track *t, struct ring *r);
+void lookahead_drop(struct lookahead *t, struct ring *r);
 
 /* Let the planned motion go to where an override of 0 brings it to rest. */
-void track_to_rest(struct track *t, struct ring *r);
+void lookahead_to_rest(struct lookahead *t, struct ring *r);
 
 /* Half length of the corner at the start of a command of the chain; 0: it has none. [mm] */
-double track_half(const struct track *t, const struct ring *r, int32_t i);
+double lookahead_half(const struct lookahead *t, const struct ring *r, int32_t i);
 
 /* Whether the planned motion stands and the tool is there. */
-bool track_rests(const struct track *t);
+bool lookahead_rests(const struct lookahead *t);
 
 /* Whether the planned motion is at the end of what is joined. */
-bool track_at_end(const struct track *t, const struct ring *r);
+bool lookahead_at_end(const struct lookahead *t, const struct ring *r);
 
 /* Whether the planned motion stands at the end of what is joined, and the tool is there. */
-bool track_done(const struct track *t);
+bool lookahead_done(const struct lookahead *t);
 
 /* Move the tool to a place further on the chain. [mm] */
-void track_go(struct track *t, const struct ring *r, double way);
+void lookahead_go(struct lookahead *t, const struct ring *r, double way);
 
 /* Place of the tool [mm] and its velocity [mm/s]. */
-void track_place(const struct track *t, const struct ring *r, double point[AXES],
-                 double velocity[AXES]);
+void lookahead_place(const struct lookahead *t, const struct ring *r, double point[AXES],
+                     double velocity[AXES]);
 
 #endif

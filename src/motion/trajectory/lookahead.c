@@ -1,4 +1,4 @@
-#include "track.h"
+#include "lookahead.h"
 
 #include <math.h>
 #include <string.h>
@@ -26,19 +26,19 @@ static double bend_speed(const struct command *c, double bend, double twist)
     return v;
 }
 
-double track_half(const struct track *t, const struct ring *r, int32_t i)
+double lookahead_half(const struct lookahead *t, const struct ring *r, int32_t i)
 {
     return i > 0 && i < t->joined ? ring_peek(r, i)->corner.half : 0.0;
 }
 
-bool track_begins(const struct ring *r)
+bool lookahead_begins(const struct ring *r)
 {
     const struct command *c = ring_head(r);
     return c && c->tolerance > 0.0 && command_blends(c);
 }
 
 /* Append a command: its limits on its own, and those of its corner with the one before. */
-static void add(struct track *t, struct ring *r, const struct corner *k)
+static void add(struct lookahead *t, struct ring *r, const struct corner *k)
 {
     struct ring_entry *n = ring_at(r, t->joined);
     const double bend = path_bend(&n->command.path);
@@ -58,14 +58,14 @@ static void add(struct track *t, struct ring *r, const struct corner *k)
 }
 
 /* Whether the motion can still be as slow as `speed` once it has gone `way` on, its mean, too. */
-static bool slow_at(const struct track *t, double speed, double way)
+static bool slow_at(const struct lookahead *t, double speed, double way)
 {
     const double brake = el_max(0.0, way - speed * t->smooth);
     return way >= 0.0 && t->v * t->v <= speed * speed + 2.0 * t->dec * brake;
 }
 
 /* Whether the corner with the next command, and that command, are not too slow for the motion. */
-static bool in_time(const struct track *t, const struct ring *r, const struct corner *k,
+static bool in_time(const struct lookahead *t, const struct ring *r, const struct corner *k,
                     double override)
 {
     const struct command *last = &ring_peek(r, t->joined - 1)->command;
@@ -80,7 +80,7 @@ static bool in_time(const struct track *t, const struct ring *r, const struct co
 }
 
 /* Take commands of the ring into the chain while they fit smoothly. */
-static void join(struct track *t, struct ring *r, double override)
+static void join(struct lookahead *t, struct ring *r, double override)
 {
     while (!t->closed && t->joined < r->count) {
         const struct command *a = &ring_peek(r, t->joined - 1)->command;
@@ -100,7 +100,7 @@ static void join(struct track *t, struct ring *r, double override)
     }
 }
 
-void track_start(struct track *t, struct ring *r)
+void lookahead_start(struct lookahead *t, struct ring *r)
 {
     const struct corner none = { 0.0, 0.0, 0.0 };
 
@@ -140,7 +140,7 @@ static struct ramp_limits ramp_of(const struct ring *r, int32_t i, bool turning)
 }
 
 /* Plan the speeds from the end backwards. */
-static void plan(struct track *t, struct ring *r, double override)
+static void plan(struct lookahead *t, struct ring *r, double override)
 {
     struct brake b;
 
@@ -148,11 +148,11 @@ static void plan(struct track *t, struct ring *r, double override)
     t->dec = INFINITY;
     for (int32_t i = t->joined - 1; i >= t->at; i--) {
         struct ring_entry *n = ring_at(r, i);
-        const double dec = n->command.ramp.dec, half = track_half(t, r, i);
+        const double dec = n->command.ramp.dec, half = lookahead_half(t, r, i);
         const double body = body_limit(n, override), turn = turn_limit(r, i, override);
 
         n->leave = b;
-        brake_back(&b, n->command.path.length - half - track_half(t, r, i + 1), dec);
+        brake_back(&b, n->command.path.length - half - lookahead_half(t, r, i + 1), dec);
         brake_limit(&b, body, body * t->smooth);
         n->enter = b;
         if (half > 0.0) {
@@ -166,10 +166,10 @@ static void plan(struct track *t, struct ring *r, double override)
 }
 
 /* Where the corner or the command's own part ends. */
-static double border(const struct track *t, const struct ring *r)
+static double border(const struct lookahead *t, const struct ring *r)
 {
-    return t->turning ? track_half(t, r, t->at)
-                      : ring_peek(r, t->at)->command.path.length - track_half(t, r, t->at + 1);
+    return t->turning ? lookahead_half(t, r, t->at)
+                      : ring_peek(r, t->at)->command.path.length - lookahead_half(t, r, t->at + 1);
 }
 
 /* One piece of the way with constant limits: up to `end`, at most `top` fast, and no faster than
@@ -179,7 +179,7 @@ struct piece {
     double acc, dec;
 };
 
-static struct piece next_piece(const struct track *t, const struct ring *r, double override)
+static struct piece next_piece(const struct lookahead *t, const struct ring *r, double override)
 {
     const struct ring_entry *n = ring_peek(r, t->at);
     const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
@@ -201,7 +201,7 @@ static struct piece next_piece(const struct track *t, const struct ring *r, doub
 }
 
 /* Move on by constant accelerations: up to time dt or way `way`. Returns the time used. */
-static double glide(struct track *t, double acc, double to, double way, double dt, double *done)
+static double glide(struct lookahead *t, double acc, double to, double way, double dt, double *done)
 {
     double time = acc != 0.0 ? (to - t->v) / acc : (t->v > 0.0 ? way / t->v : dt);
     time = el_max(0.0, el_min(time, dt));
@@ -216,7 +216,8 @@ static const double ROUNDING = 1e-7;
 
 /* Too fast for the piece: slower, to the limit or as much as the way allows, at most `leave` at its
  * end. Returns the time left of dt. */
-static double slow_down(struct track *t, const struct piece *p, double leave, bool fits, double dt)
+static double slow_down(struct lookahead *t, const struct piece *p, double leave, bool fits,
+                        double dt)
 {
     const double way = p->end - t->s, v = t->v;
     const double to = v > p->top && fits ? p->top : el_min(p->top, leave);
@@ -240,7 +241,7 @@ static double slow_down(struct track *t, const struct piece *p, double leave, bo
 
 /* Drive the piece for up to dt; returns the time left. Ends on the piece's end exactly if it gets
  * there. */
-static double drive(struct track *t, const struct piece *p, double dt)
+static double drive(struct lookahead *t, const struct piece *p, double dt)
 {
     const double way = p->end - t->s, v = t->v;
     double done, leave = el_min(p->leave, sqrt(v * v + 2.0 * p->acc * way));
@@ -270,7 +271,7 @@ static double drive(struct track *t, const struct piece *p, double dt)
 }
 
 /* A limit that has been left goes on for the way the mean is behind. */
-static void keep_limit(struct track *t, double speed)
+static void keep_limit(struct lookahead *t, double speed)
 {
     const double way = t->base + t->s, until = way + speed * t->smooth;
     int32_t n = 0;
@@ -279,22 +280,22 @@ static void keep_limit(struct track *t, double speed)
         return;
     }
     for (int32_t i = 0; i < t->caps; i++) {
-        const struct track_cap *c = &t->cap[i];
+        const struct lookahead_cap *c = &t->cap[i];
         if (c->until > way && !(c->speed >= speed && c->until <= until)) {
             t->cap[n++] = *c;
         }
     }
-    if (n == TRACK_CAPS) { /* two become one that holds for both */
+    if (n == LOOKAHEAD_CAPS) { /* two become one that holds for both */
         n--;
         t->cap[n - 1].speed = el_min(t->cap[n - 1].speed, t->cap[n].speed);
         t->cap[n - 1].until = el_max(t->cap[n - 1].until, t->cap[n].until);
     }
-    t->cap[n] = (struct track_cap){ speed, until };
+    t->cap[n] = (struct lookahead_cap){ speed, until };
     t->caps = n + 1;
 }
 
 /* Go over the border to the next piece of the way. */
-static void cross(struct track *t, const struct ring *r, double override)
+static void cross(struct lookahead *t, const struct ring *r, double override)
 {
     keep_limit(t, t->turning ? turn_limit(r, t->at, override)
                              : body_limit(ring_peek(r, t->at), override));
@@ -305,21 +306,21 @@ static void cross(struct track *t, const struct ring *r, double override)
         t->base += length;
         t->s -= length;
         t->at++;
-        t->turning = track_half(t, r, t->at) > 0.0;
+        t->turning = lookahead_half(t, r, t->at) > 0.0;
     }
 }
 
-bool track_at_end(const struct track *t, const struct ring *r)
+bool lookahead_at_end(const struct lookahead *t, const struct ring *r)
 {
     return t->at == t->joined - 1 && !t->turning
            && t->s >= ring_peek(r, t->at)->command.path.length;
 }
 
-double track_advance(struct track *t, struct ring *r, double override, double dt)
+double lookahead_advance(struct lookahead *t, struct ring *r, double override, double dt)
 {
     join(t, r, override > 0.0 ? override : t->override);
     while (dt > 0.0) {
-        if (track_at_end(t, r)) {
+        if (lookahead_at_end(t, r)) {
             t->v = 0.0;
             return dt;
         }
@@ -336,14 +337,14 @@ double track_advance(struct track *t, struct ring *r, double override, double dt
             return 0.0;
         }
         dt = p.end > t->s ? drive(t, &p, dt) : dt;
-        if (t->s >= border(t, r) && !track_at_end(t, r)) {
+        if (t->s >= border(t, r) && !lookahead_at_end(t, r)) {
             cross(t, r, override);
         }
     }
     return dt;
 }
 
-void track_close(struct track *t, const struct ring *r)
+void lookahead_close(struct lookahead *t, const struct ring *r)
 {
     double end = t->base, dec = INFINITY;
 
@@ -361,7 +362,7 @@ void track_close(struct track *t, const struct ring *r)
     }
 }
 
-void track_to_rest(struct track *t, struct ring *r)
+void lookahead_to_rest(struct lookahead *t, struct ring *r)
 {
-    track_advance(t, r, 0.0, INFINITY);
+    lookahead_advance(t, r, 0.0, INFINITY);
 }
