@@ -25,7 +25,7 @@
     FMU_WHEN(curve.shape, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
     FMU_WHEN(curve.shape.run.vertex, curve.shape.running, 1, 1) \
     FMU_LIST(curve.shape.run.vertex, curve.shape.run.vertices) \
-    FMU_BETWEEN(curve.shape.piece, curve.shape.gone, curve.shape.made, 0) \
+    FMU_BETWEEN(curve.shape.segment, curve.shape.gone, curve.shape.made, 0) \
     FMU_BETWEEN(curve.shape.mark, curve.shape.marks_gone, curve.shape.marks, 0) \
     FMU_WHEN(curve.pace, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
     FMU_RING(curve.pace.ring, curve.pace.at.head, curve.pace.count, PACE_KEPT) \

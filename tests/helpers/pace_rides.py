@@ -1,4 +1,4 @@
-"""Rides along chains of smooth pieces, planned by src/motion/smooth/pace."""
+"""Rides along chains of smooth segments, planned by src/motion/smooth/pace."""
 
 import ctypes
 import os
@@ -34,7 +34,7 @@ LIBRARY = ctypes.CDLL(os.environ.get("PACE_BATCH", str(ROOT / "build/lib/pace_ba
 _TOLD, _SAMPLE, _LIMITS, _DOUBLES = (
     np.ctypeslib.ndpointer(t, flags="C_CONTIGUOUS") for t in (TOLD, SAMPLE, LIMITS, float)
 )
-LIBRARY.pace_batch_pieces.argtypes = [ctypes.c_int64, _TOLD]
+LIBRARY.pace_batch_segments.argtypes = [ctypes.c_int64, _TOLD]
 LIBRARY.pace_batch_ride.argtypes = [
     ctypes.c_int64,
     _LIMITS,
@@ -55,13 +55,13 @@ LIBRARY.pace_batch_path.restype = None
 LIBRARY.pace_batch_go.argtypes = [ctypes.c_int64, ctypes.c_double, ctypes.c_double, _SAMPLE]
 for each in ("cells", "nodes", "boxes"):
     getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_int64
-for each in ("pieces", "ride", "stop_way", "gap", "go"):
+for each in ("segments", "ride", "stop_way", "gap", "go"):
     getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_double
 
 
 @dataclass
 class Chain:
-    """Pieces in a row, each begun where the one before ends with its r, r' and r''."""
+    """Segments in a row, each begun where the one before ends with its r, r' and r''."""
 
     rows: list[np.ndarray] = field(default_factory=list)
     feed: float = 100.0
@@ -145,7 +145,7 @@ def random_chain(dice: np.random.Generator, count: int, size: float, feed: float
 
 def look(told: np.ndarray, ways: np.ndarray) -> np.ndarray:
     """Points, r' and r'' of the path at rising ways."""
-    LIBRARY.pace_batch_pieces(len(told), told)
+    LIBRARY.pace_batch_segments(len(told), told)
     states = np.zeros(len(ways), STATE)
     LIBRARY.pace_batch_path(len(told), len(ways), np.ascontiguousarray(ways), states)
     return states
@@ -159,8 +159,8 @@ def limits(acc: float | np.ndarray = 0.0, speed: float = 0.0, jerk: float = 0.0)
 
 
 def planned(told: np.ndarray, bounds: np.ndarray, what: str) -> np.ndarray:
-    """Rows of CELL, NODE or BOX ("cells", "nodes", "boxes") of a plan of all pieces from rest."""
-    LIBRARY.pace_batch_pieces(len(told), told)
+    """Rows of CELL, NODE or BOX ("cells", "nodes", "boxes") of a plan of all segments from rest."""
+    LIBRARY.pace_batch_segments(len(told), told)
     rows = np.zeros(2048, {"cells": CELL, "nodes": NODE, "boxes": BOX}[what])
     known = (ctypes.c_int64(len(told)), bounds.ctypes.data_as(ctypes.c_void_p))
     room = (ctypes.c_int64(len(rows)), rows.ctypes.data_as(ctypes.c_void_p))
@@ -191,9 +191,9 @@ class Orders:
 
 
 def ride(told: np.ndarray, bounds: np.ndarray, orders: Orders | None = None) -> Ride:
-    """Ride along the pieces, so many known ahead, for so many steps at most."""
+    """Ride along the segments, so many known ahead, for so many steps at most."""
     o = orders or Orders()
-    length = LIBRARY.pace_batch_pieces(len(told), told)
+    length = LIBRARY.pace_batch_segments(len(told), told)
     steps = np.zeros(o.most, SAMPLE)
     overrides = np.array(o.overrides, float)
     time = LIBRARY.pace_batch_ride(
@@ -204,7 +204,7 @@ def ride(told: np.ndarray, bounds: np.ndarray, orders: Orders | None = None) -> 
 
 
 def random_ride(seed: int, smooth: bool) -> tuple[Ride, np.ndarray, Orders]:
-    """Random pieces, limits, overrides, holds and look-ahead, and how the ride went."""
+    """Random segments, limits, overrides, holds and look-ahead, and how the ride went."""
     dice = np.random.default_rng(seed)
     count, size = int(dice.integers(1, 14)), float(10 ** dice.uniform(-1, 1.5))
     told = random_chain(dice, count, size, float(10 ** dice.uniform(1, 2.8))).told()

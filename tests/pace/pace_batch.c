@@ -1,14 +1,14 @@
-/* Rides along chains of pieces in one call, for tests/helpers/pace_rides.py. */
+/* Rides along chains of segments in one call, for tests/helpers/pace_rides.py. */
 #include <math.h>
 #include <string.h>
 
 #include "pace.h"
 
 struct told {
-    double kind;                        /* enum piece_kind */
-    double feed, cap, acc, dec, jerk;   /* [mm/s], [mm/s^2], [mm/s^3] */
-    double length;                      /* [mm] of a curve */
-    double control[PIECE_POINTS][AXES]; /* line, arc: start, end, then centre X Y, ccw */
+    double kind;                          /* enum segment_kind */
+    double feed, cap, acc, dec, jerk;     /* [mm/s], [mm/s^2], [mm/s^3] */
+    double length;                        /* [mm] of a curve */
+    double control[SEGMENT_POINTS][AXES]; /* line, arc: start, end, then centre X Y, ccw */
 };
 
 /* What the motion is at one moment, and axis by axis. */
@@ -18,29 +18,29 @@ struct sample {
 };
 
 static struct pace pace;
-static struct piece pieces[100000];
+static struct segment segments[100000];
 static double starts[100001];
 
-/* Make the pieces; returns the length of the chain. [mm] */
-double pace_batch_pieces(int64_t n, const struct told *told)
+/* Make the segments; returns the length of the chain. [mm] */
+double pace_batch_segments(int64_t n, const struct told *told)
 {
     for (int64_t i = 0; i < n; i++) {
         const struct told *t = &told[i];
-        struct piece *p = &pieces[i];
+        struct segment *p = &segments[i];
         struct path path;
         memset(p, 0, sizeof *p);
-        p->kind = (enum piece_kind)(int)t->kind;
+        p->kind = (enum segment_kind)(int)t->kind;
         p->feed = t->feed;
         p->cap = t->cap;
         p->ramp = (struct ramp_limits){ t->acc, t->dec, t->jerk, t->jerk };
         p->length = t->length;
-        if (p->kind == PIECE_CURVE) {
+        if (p->kind == SEGMENT_CURVE) {
             memcpy(p->origin, t->control[0], sizeof p->origin);
-            for (int k = 0; k < PIECE_POINTS * AXES; k++) {
+            for (int k = 0; k < SEGMENT_POINTS * AXES; k++) {
                 p->control[k / AXES][k % AXES] =
                     t->control[k / AXES][k % AXES] - p->origin[k % AXES];
             }
-        } else if (p->kind == PIECE_ARC) {
+        } else if (p->kind == SEGMENT_ARC) {
             double miss;
             path_arc(&p->path, PATH_XY, t->control[0], t->control[1], t->control[2],
                      t->control[2][2] > 0.0, 1, &miss);
@@ -55,23 +55,23 @@ double pace_batch_pieces(int64_t n, const struct told *told)
     return starts[n];
 }
 
-static void look(int64_t *piece, int64_t n, struct sample *s)
+static void look(int64_t *segment, int64_t n, struct sample *s)
 {
-    struct piece_state state;
-    struct piece_bounds b;
+    struct segment_state state;
+    struct segment_bounds b;
 
-    while (*piece + 1 < n && pace.at.way >= starts[*piece + 1]) {
-        ++*piece;
+    while (*segment + 1 < n && pace.at.way >= starts[*segment + 1]) {
+        ++*segment;
     }
-    double u = pace.at.way - starts[*piece];
-    u = u < 0.0 ? 0.0 : u > pieces[*piece].length ? pieces[*piece].length : u;
-    piece_at(&pieces[*piece], u, &state);
+    double u = pace.at.way - starts[*segment];
+    u = u < 0.0 ? 0.0 : u > segments[*segment].length ? segments[*segment].length : u;
+    segment_at(&segments[*segment], u, &state);
     s->way = pace.at.way;
     s->rate = pace.at.rate;
     s->gain = pace.at.gain;
     s->twitch = pace.at.twitch;
-    const double from = fmin(u, (1.0 - 1e-9) * pieces[*piece].length);
-    piece_bounds(&pieces[*piece], from, from + 1e-9 * pieces[*piece].length, &b);
+    const double from = fmin(u, (1.0 - 1e-9) * segments[*segment].length);
+    segment_bounds(&segments[*segment], from, from + 1e-9 * segments[*segment].length, &b);
     for (int k = 0; k < AXES; k++) {
         s->point[k] = state.point[k];
         s->velocity[k] = state.slope[k] * pace.at.rate;
@@ -82,10 +82,10 @@ static void look(int64_t *piece, int64_t n, struct sample *s)
     }
 }
 
-/* Ride along the n pieces that were made, of which `ahead` are known at a time (besides the one of
- * the motion), with an override for each of `count` steps of dt; the last one goes on. Returns the
- * time to the end [s], or -1 if there is none or a step spends all it may without its time; samples
- * (or NULL) are taken after each step. */
+/* Ride along the n segments that were made, of which `ahead` are known at a time (besides the one
+ * of the motion), with an override for each of `count` steps of dt; the last one goes on. Returns
+ * the time to the end [s], or -1 if there is none or a step spends all it may without its time;
+ * samples (or NULL) are taken after each step. */
 double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, double dt,
                        int64_t count, const double *override, int64_t most, struct sample *s)
 {
@@ -96,7 +96,7 @@ double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, do
         while (at + 1 < n && pace.at.way >= starts[at + 1]) {
             at++;
         }
-        while (joined < n && joined <= at + ahead && pace_join(&pace, &pieces[joined])) {
+        while (joined < n && joined <= at + ahead && pace_join(&pace, &segments[joined])) {
             starts[++joined] = pace.end;
         }
         const double left = pace_advance(&pace, override[i < count ? i : count - 1], dt);
@@ -144,15 +144,15 @@ double pace_batch_go(int64_t n, double override, double dt, struct sample *s)
 }
 
 /* The path at n ways. */
-void pace_batch_path(int64_t pieces_made, int64_t n, const double *way, struct piece_state *s)
+void pace_batch_path(int64_t segments_made, int64_t n, const double *way, struct segment_state *s)
 {
     int64_t at = 0;
 
     for (int64_t i = 0; i < n; i++) {
-        while (at + 1 < pieces_made && way[i] >= starts[at + 1]) {
+        while (at + 1 < segments_made && way[i] >= starts[at + 1]) {
             at++;
         }
-        piece_at(&pieces[at], way[i] - starts[at], &s[i]);
+        segment_at(&segments[at], way[i] - starts[at], &s[i]);
     }
 }
 
@@ -163,12 +163,12 @@ struct known {
     double plane[PACE_PLANES][2];
 };
 
-/* Plan the n pieces, which must fit, from rest. */
+/* Plan the n segments, which must fit, from rest. */
 static void plan_all(int64_t n, const struct pace_limits *l, double override)
 {
     pace_start(&pace, l);
     for (int64_t i = 0; i < n; i++) {
-        pace_join(&pace, &pieces[i]);
+        pace_join(&pace, &segments[i]);
     }
     pace_advance(&pace, override, 0.0);
 }

@@ -1,4 +1,4 @@
-"""Random rides along smooth pieces: what they take of the limits of their axes, and which too much.
+"""Random rides along smooth segments: what they take of their axes' limits, and which too much.
 
     PYTHONPATH=tests/helpers python tests/pace/random_rides.py --first 0 --count 1000 [-j 2]
 
@@ -45,7 +45,7 @@ def parts(first: int, count: int) -> Iterator[range]:
 
 def main() -> int:
     """Ride, and say what was found."""
-    asked = argparse.ArgumentParser(description="Random rides along smooth pieces")
+    asked = argparse.ArgumentParser(description="Random rides along smooth segments")
     asked.add_argument("--first", type=int, default=0, help="first seed")
     asked.add_argument("--count", type=int, default=1000, help="how many seeds")
     asked.add_argument("-j", type=int, default=1, help="processes")

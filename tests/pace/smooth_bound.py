@@ -15,7 +15,7 @@ def bound(told: np.ndarray, acc: float, jerk: float, feed: float, step: float = 
     With x = (du/dt)^2 an axis has the jerk (r' x'' / 2 + 3/2 r'' x' + r''' x) sqrt(x); the tangent
     of 1 / sqrt(x) lies below it, so that each program stays within the limit.
     """
-    length = LIBRARY.pace_batch_pieces(len(told), told)
+    length = LIBRARY.pace_batch_segments(len(told), told)
     n = int(np.ceil(length / step))
     h = length / n
     ways = h * (np.arange(n) + 0.5)

@@ -1,4 +1,4 @@
-"""Speed along smooth pieces: each axis within its limits, as quick as toppra's bound."""
+"""Speed along smooth segments: each axis within its limits, as quick as toppra's bound."""
 
 import itertools
 
@@ -123,7 +123,7 @@ def test_bound(seed: int) -> None:
     told = random_chain(dice, 8, 5.0).told()
     least = bound(told, 1000.0, 100.0)
     ratio = ride(told, limits(1000.0), Orders(1e-2)).time / least
-    print(f"{len(told)} pieces: {least:.4f} s, {ratio:.4f}")
+    print(f"{len(told)} segments: {least:.4f} s, {ratio:.4f}")
     assert 0.9995 < ratio < 1.025
 
 
@@ -225,7 +225,7 @@ def test_smooth_slow_line(feed: float) -> None:
 
 @pytest.mark.parametrize("seed", range(5))
 def test_smooth_parts_meet(seed: int) -> None:
-    """Parts of pieces end where the next ones begin, to the bit: no rest between them."""
+    """Parts of segments end where the next ones begin, to the bit: no rest between them."""
     told = random_chain(np.random.default_rng(seed), 10, 3.0).told()
     ride(told, limits(1000.0, jerk=50_000.0), Orders(most=1))
     assert LIBRARY.pace_batch_gap() == 0.0
@@ -268,13 +268,13 @@ def test_smooth_bound(name: str, told: np.ndarray) -> None:
 
 
 def lengths(told: np.ndarray) -> list[float]:
-    """Length of each piece."""
-    return [LIBRARY.pace_batch_pieces(1, told[i : i + 1]) for i in range(len(told))]
+    """Length of each segment."""
+    return [LIBRARY.pace_batch_segments(1, told[i : i + 1]) for i in range(len(told))]
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_streaming(seed: int) -> None:
-    """Known in time, pieces that come one by one take as long as all at once."""
+    """Known in time, segments that come one by one take as long as all at once."""
     told = random_chain(np.random.default_rng(seed), 30, 2.0).told()
     whole = ride(told, limits(1000.0)).time
     assert ride(told, limits(1000.0), Orders(ahead=20)).time == pytest.approx(whole, rel=1e-12)

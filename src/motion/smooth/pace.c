@@ -46,27 +46,27 @@ void pace_start(struct pace *p, const struct pace_limits *l)
     p->end = p->at.base = p->at.left = p->at.way = p->at.rate = p->at.gain = 0.0;
 }
 
-bool pace_join(struct pace *p, const struct piece *piece)
+bool pace_join(struct pace *p, const struct segment *segment)
 {
     struct pace_cell cell[PACE_SPLIT];
 
     if (p->end <= 0.0 && !pace_by_axes(&p->limits)) {
-        p->smooth = piece->ramp.acc_jerk > 0.0 || piece->ramp.dec_jerk > 0.0;
+        p->smooth = segment->ramp.acc_jerk > 0.0 || segment->ramp.dec_jerk > 0.0;
     }
     if (p->smooth) {
-        return pace_smooth_join(p, piece);
+        return pace_smooth_join(p, segment);
     }
     if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
         return false;
     }
-    const int32_t n = pace_cut(piece, &p->limits, cell);
+    const int32_t n = pace_cut(segment, &p->limits, cell);
     for (int32_t i = 0; i < n; i++) {
         if (p->count == 0) {
             p->at.left = cell[i].length;
         }
         *cell_at(p, p->count++) = cell[i];
     }
-    p->end += piece->length;
+    p->end += segment->length;
     return true;
 }
 
@@ -110,21 +110,21 @@ static void plan(struct pace *p, double override)
     p->override = override;
 }
 
-/* A stretch of constant acceleration. */
-struct stretch {
+/* A phase of constant acceleration. */
+struct phase {
     double acc; /* [mm/s^2] */
     double way; /* [mm] */
     double x;   /* [mm^2/s^2] at its end */
 };
 
-/* The stretch to the end of the cell, with at most x1 there. */
-static struct stretch across(double acc, double left, double x, double x1)
+/* The phase to the end of the cell, with at most x1 there. */
+static struct phase across(double acc, double left, double x, double x1)
 {
-    return (struct stretch){ acc, left, el_min(x1, el_max(0.0, x + 2.0 * acc * left)) };
+    return (struct phase){ acc, left, el_min(x1, el_max(0.0, x + 2.0 * acc * left)) };
 }
 
-/* The slowest stretch within the limits: to rest, to the cell's end, or until they allow more. */
-static struct stretch halt(const struct pace_cell *c, double left, double x)
+/* The slowest phase within the limits: to rest, to the cell's end, or until they allow more. */
+static struct phase halt(const struct pace_cell *c, double left, double x)
 {
     const struct pace_span span = pace_span(c, left, x);
     const double fall = pace_fall(c, x);
@@ -133,7 +133,7 @@ static struct stretch halt(const struct pace_cell *c, double left, double x)
     const double to = c->bend * x > SLIGHT ? 0.5 * x : 0.0;
 
     return acc < 0.0 && x - to < -2.0 * acc * left
-               ? (struct stretch){ acc, (x - to) / (-2.0 * acc), to }
+               ? (struct phase){ acc, (x - to) / (-2.0 * acc), to }
                : across(acc, left, x, INFINITY);
 }
 
@@ -142,11 +142,11 @@ struct line {
     double x, fall;
 };
 
-/* The fastest stretch within the limits: with an acceleration of at most `want`, up to x = `until`
+/* The fastest phase within the limits: with an acceleration of at most `want`, up to x = `until`
  * or to x1 at the end of the cell. Below the line `safe`, from which the rest can be driven, also
  * with what is within the limits anywhere in the cell. */
-static struct stretch hurry(const struct pace_cell *c, double left, double x, double want,
-                            double until, struct line safe, double x1)
+static struct phase hurry(const struct pace_cell *c, double left, double x, double want,
+                          double until, struct line safe, double x1)
 {
     const struct pace_span span = pace_span(c, left, x);
     double acc = el_min(span.high, want);
@@ -163,57 +163,57 @@ static struct stretch hurry(const struct pace_cell *c, double left, double x, do
         }
     }
     return acc > 0.0 && x + 2.0 * acc * left > until
-               ? (struct stretch){ acc, (until - x) / (2.0 * acc), until }
+               ? (struct phase){ acc, (until - x) / (2.0 * acc), until }
                : across(acc, left, x, x1);
 }
 
 /* What comes next where the limits allow more than the feed: up or down to it, along it, and down
  * the line of steepest braking to x1. */
-static struct stretch next_feed(const struct pace_cell *c, double left, double x, double most,
-                                double x1)
+static struct phase next_feed(const struct pace_cell *c, double left, double x, double most,
+                              double x1)
 {
     const double slope = (c->top - x1) / c->length, line = x1 + slope * left;
     const double goal = el_min(most, line);
 
     if (x > goal * (1.0 + SAME)) {
-        const struct stretch s = halt(c, left, x);
+        const struct phase s = halt(c, left, x);
         const double steeper = -2.0 * s.acc - slope;
         double way = x <= most ? 0.0 : s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : INFINITY;
         if (x > line) {
             way = steeper > 0.0 ? el_max(way, (x - line) / steeper) : left;
         }
-        return way < s.way ? (struct stretch){ s.acc, way, el_min(most, x1 + slope * (left - way)) }
+        return way < s.way ? (struct phase){ s.acc, way, el_min(most, x1 + slope * (left - way)) }
                            : s;
     }
     if (x >= goal * (1.0 - SAME)) {
         if (line <= most * (1.0 + SAME)) {
-            return (struct stretch){ -0.5 * slope, left, x1 };
+            return (struct phase){ -0.5 * slope, left, x1 };
         }
-        return (struct stretch){ 0.0, slope > 0.0 ? el_min(left, (line - most) / slope) : left, x };
+        return (struct phase){ 0.0, slope > 0.0 ? el_min(left, (line - most) / slope) : left, x };
     }
-    const struct stretch s = hurry(c, left, x, INFINITY, most, (struct line){ most, 0.0 }, x1);
+    const struct phase s = hurry(c, left, x, INFINITY, most, (struct line){ most, 0.0 }, x1);
     const double way = (line - x) / (2.0 * s.acc + slope);
-    return way < s.way ? (struct stretch){ s.acc, way, x1 + slope * (left - way) } : s;
+    return way < s.way ? (struct phase){ s.acc, way, x1 + slope * (left - way) } : s;
 }
 
 /* What comes next where the limits allow less than the feed: to x1 at the end of the cell, or as
  * near to it as they allow. */
-static struct stretch next_bend(const struct pace_cell *c, double left, double x, double most,
-                                double x1)
+static struct phase next_bend(const struct pace_cell *c, double left, double x, double most,
+                              double x1)
 {
     const double acc = 0.5 * (x1 - x) / left, fall = (c->most - c->top) / c->length;
     const struct line safe = { c->top + fall * left, fall };
-    const struct stretch s = halt(c, left, x);
+    const struct phase s = halt(c, left, x);
 
     if (x > most * (1.0 + SAME)) {
         const double way = s.acc < 0.0 ? (most - x) / (2.0 * s.acc) : INFINITY;
-        return way < s.way ? (struct stretch){ s.acc, way, most } : s;
+        return way < s.way ? (struct phase){ s.acc, way, most } : s;
     }
     return acc <= s.acc ? s : hurry(c, left, x, acc, INFINITY, safe, x1);
 }
 
 /* What comes next under an override. */
-static struct stretch next(const struct pace *p, double x, double override)
+static struct phase next(const struct pace *p, double x, double override)
 {
     const struct pace_cell *c = cell_peek(p, 0);
     const double most = feed_limit(c, override), x1 = end_limit(p, 0, p->at.planned, override);
@@ -228,8 +228,8 @@ bool pace_at_end(const struct pace *p)
     return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !steps);
 }
 
-/* Drive a stretch for up to dt; returns the time used. */
-static double drive(struct pace *p, const struct stretch *s, double dt)
+/* Drive a phase for up to dt; returns the time used. */
+static double drive(struct pace *p, const struct phase *s, double dt)
 {
     const double v = p->at.rate, to = sqrt(s->x);
     const double time = v + to > 0.0 ? 2.0 * s->way / (v + to) : s->way > 0.0 ? INFINITY : 0.0;
@@ -277,7 +277,7 @@ static double advance(struct pace *p, double override, double dt)
             p->at.gain = 0.0;
             return 0.0;
         }
-        const struct stretch s =
+        const struct phase s =
             override > 0.0 ? next(p, x, override) : halt(cell_peek(p, 0), p->at.left, x);
         dt -= drive(p, &s, dt);
         cross(p);
@@ -300,7 +300,7 @@ double pace_advance(struct pace *p, double override, double dt)
     return left;
 }
 
-/* Where the most braking leads if it is looked for only where a stretch ends. [mm] */
+/* Where the most braking leads if it is looked for only where a phase ends. [mm] */
 static double rest_way(const struct pace *p)
 {
     double x = p->at.rate * p->at.rate, base = p->at.base;
@@ -309,7 +309,7 @@ static double rest_way(const struct pace *p)
         const struct pace_cell *c = cell_peek(p, i);
         double left = i == 0 ? p->at.left : c->length;
         while (left > 0.0 && x > 0.0) {
-            const struct stretch s = halt(c, left, x);
+            const struct phase s = halt(c, left, x);
             left = s.way < left ? left - s.way : 0.0;
             x = s.x;
         }

@@ -1,4 +1,4 @@
-/* pace - the way u(t) along a chain of pieces, as quick as the limits allow.
+/* pace - the way u(t) along a chain of segments, as quick as the limits allow.
  *
  *   x ^     ____          ___         x = (du/dt)^2. From the end of the known cells backwards, the
  *     |    /    \   __   /   \        most x from which the rest can be driven; forwards, the most
@@ -44,9 +44,9 @@ struct pace {
     bool pending;  /* the other one will be, as soon as the motion can turn into it */
     struct pace_place at;
     int32_t count;   /* cells from that of the motion on */
-    bool closed;     /* no further piece joins */
+    bool closed;     /* no further segment joins */
     double override; /* the one of the latest plan */
-    double end;      /* [mm] end of the pieces, from the start of the chain */
+    double end;      /* [mm] end of the segments, from the start of the chain */
     union pace_element ring[PACE_CELLS];
     struct pace_plan plan[2]; /* with limited jerk */
 };
@@ -54,12 +54,12 @@ struct pace {
 /* Back to an earlier place, from which fewer than PACE_KEPT cells have been crossed. */
 void pace_put(struct pace *p, const struct pace_place *place);
 
-/* A chain begins at rest, without pieces. Its jerk is limited if one of an axis is given, or,
- * without limits of the axes, by the ramp of its first piece. */
+/* A chain begins at rest, without segments. Its jerk is limited if one of an axis is given, or,
+ * without limits of the axes, by the ramp of its first segment. */
 void pace_start(struct pace *p, const struct pace_limits *l);
 
-/* Append a piece; false: no room until the motion has passed others, or it is closed. */
-bool pace_join(struct pace *p, const struct piece *piece);
+/* Append a segment; false: no room until the motion has passed others, or it is closed. */
+bool pace_join(struct pace *p, const struct segment *segment);
 
 /* Let up to dt seconds pass under an override (>= 0; 0: to rest, as quickly as the limits allow).
  * Returns the time left: above 0 only at rest at the end of the chain. */
@@ -72,10 +72,10 @@ double pace_advance(struct pace *p, double override, double dt);
  * longer (4e-4 of it without that). [mm] */
 double pace_stop_way(const struct pace *p);
 
-/* Whether the motion, that much further on [mm], brakes for the end of the known pieces. */
+/* Whether the motion, that much further on [mm], brakes for the end of the known segments. */
 bool pace_nears_end(const struct pace *p, double further);
 
-/* Whether it rests at the end of the known pieces. */
+/* Whether it rests at the end of the known segments. */
 bool pace_at_end(const struct pace *p);
 
 #endif

@@ -128,7 +128,7 @@ static void add_row(struct pace_box *g, const struct range r[3], double acc, dou
 }
 
 /* The limits along the path and across it; all jerk by r'' and r''' counts as one across. */
-static void path_rule(struct pace_box *g, const struct piece *p, const struct piece_bounds *b)
+static void path_rule(struct pace_box *g, const struct segment *p, const struct segment_bounds *b)
 {
     const double acc = 1.0 / el_min(p->ramp.acc, p->ramp.dec);
     const double jerk =
@@ -146,8 +146,8 @@ static void path_rule(struct pace_box *g, const struct piece *p, const struct pi
     g->row[1].acc[1] = narrow((struct range){ -across * acc, across * acc });
 }
 
-void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_limits *l,
-                   double from, double length, const struct piece_bounds *b)
+void pace_box_make(struct pace_box *g, const struct segment *p, const struct pace_limits *l,
+                   double from, double length, const struct segment_bounds *b)
 {
     memset(g, 0, sizeof *g);
     g->from = from;

@@ -38,9 +38,9 @@ struct pace_state {
 /* Whether the axes have limits of their own. */
 bool pace_by_axes(const struct pace_limits *l);
 
-/* The box of a part of a piece that begins at `from` [mm], by the bounds of that part. */
-void pace_box_make(struct pace_box *g, const struct piece *p, const struct pace_limits *l,
-                   double from, double length, const struct piece_bounds *b);
+/* The box of a part of a segment that begins at `from` [mm], by the bounds of that part. */
+void pace_box_make(struct pace_box *g, const struct segment *p, const struct pace_limits *l,
+                   double from, double length, const struct segment_bounds *b);
 
 /* Join a box and the next one to one; false, and not done: it would be slower than two. */
 bool pace_box_join(struct pace_box *g, const struct pace_box *next);

@@ -122,9 +122,9 @@ static void limit_rows(struct pace_cell *c, struct row row[AXES], int count)
     c->flat = sum > 0.0 ? 1.0 / sum : INFINITY;
 }
 
-/* Limits of the cell, a part of a piece. */
-static void limit(struct pace_cell *c, const struct piece *p, const struct pace_limits *l,
-                  const struct piece_bounds *b)
+/* Limits of the cell, a part of a segment. */
+static void limit(struct pace_cell *c, const struct segment *p, const struct pace_limits *l,
+                  const struct segment_bounds *b)
 {
     struct row row[AXES];
     int count = 0;
@@ -153,24 +153,24 @@ static void limit(struct pace_cell *c, const struct piece *p, const struct pace_
     limit_rows(c, row, count);
 }
 
-void pace_part_first(struct pace_part *part, const struct piece *p)
+void pace_part_first(struct pace_part *part, const struct segment *p)
 {
-    const struct piece_bounds *b = &part->bounds;
+    const struct segment_bounds *b = &part->bounds;
 
-    part->piece = p;
+    part->segment = p;
     part->next = 0;
     part->to = 0.0;
-    piece_rest_start(&part->rest, p);
-    piece_rest_bounds(&part->rest, &part->bounds);
+    segment_rest_start(&part->rest, p);
+    segment_rest_bounds(&part->rest, &part->bounds);
     const double turn = b->most[1] * p->length / TURN;
     const double sag = p->length * sqrt(b->most[2] / 8.0 / SAG);
     const double n = ceil(most(turn, sag));
-    part->count = p->kind == PIECE_LINE || n < 1.0 ? 1 : n < PACE_SPLIT ? (int32_t)n : PACE_SPLIT;
+    part->count = p->kind == SEGMENT_LINE || n < 1.0 ? 1 : n < PACE_SPLIT ? (int32_t)n : PACE_SPLIT;
 }
 
 bool pace_part_next(struct pace_part *part)
 {
-    const double length = part->piece->length;
+    const double length = part->segment->length;
 
     if (part->next == part->count) {
         return false;
@@ -179,12 +179,12 @@ bool pace_part_next(struct pace_part *part)
     part->next++;
     part->to = part->next < part->count ? length * part->next / part->count : length;
     if (part->count > 1) {
-        piece_rest_cut(&part->rest, part->to, &part->bounds);
+        segment_rest_cut(&part->rest, part->to, &part->bounds);
     }
     return true;
 }
 
-int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
+int32_t pace_cut(const struct segment *p, const struct pace_limits *l,
                  struct pace_cell cell[PACE_SPLIT])
 {
     struct pace_part part;

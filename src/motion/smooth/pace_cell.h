@@ -1,4 +1,4 @@
-/* pace_cell - a short part of a piece, and what the speed along it may be.
+/* pace_cell - a short part of a segment, and what the speed along it may be.
  *
  * With x = (du/dt)^2 and a = d2u/dt2 axis k has the acceleration r''_k x + r'_k a. While a is
  * constant x runs straight over the cell, from x0 at its start to x1 at its end, so r''_k x is at
@@ -11,18 +11,18 @@
 
 #include <stdint.h>
 
-#include "piece.h"
+#include "segment.h"
 
 struct pace_limits {
     double speed[AXES]; /* [mm/s] highest of each axis; 0: no limit */
     double acc[AXES];   /* [mm/s^2] of each axis, > 0; or all 0: along the path and across it
-                         * within the ramp of the piece, each by itself */
+                         * within the ramp of the segment, each by itself */
     double jerk[AXES];  /* [mm/s^3] of each axis, with acc; 0: no limit */
 };
 
 enum {
     PACE_PLANES = 11, /* more are joined to fewer, a little inside */
-    PACE_SPLIT = 32   /* cells of a piece, at most */
+    PACE_SPLIT = 32   /* cells of a segment, at most */
 };
 
 struct pace_cell {
@@ -38,21 +38,21 @@ struct pace_cell {
                   * whatever the feed; else x at the end of a cell begun with `most` */
 };
 
-/* A piece in up to PACE_SPLIT parts of equal length, one after another: as many as its turn and the
- * bend of r' ask for. */
+/* A segment in up to PACE_SPLIT parts of equal length, one after another: as many as its turn and
+ * the bend of r' ask for. */
 struct pace_part {
-    const struct piece *piece;
+    const struct segment *segment;
     int32_t count, next;
-    double from, to;            /* [mm] the latest part of the piece */
-    struct piece_bounds bounds; /* bounds over that part */
-    struct piece_rest rest;
+    double from, to;              /* [mm] the latest part of the segment */
+    struct segment_bounds bounds; /* bounds over that part */
+    struct segment_rest rest;
 };
 
-void pace_part_first(struct pace_part *part, const struct piece *p);
+void pace_part_first(struct pace_part *part, const struct segment *p);
 bool pace_part_next(struct pace_part *part);
 
-/* Cut a piece into cells; returns their number, 1 .. PACE_SPLIT. */
-int32_t pace_cut(const struct piece *p, const struct pace_limits *l,
+/* Cut a segment into cells; returns their number, 1 .. PACE_SPLIT. */
+int32_t pace_cut(const struct segment *p, const struct pace_limits *l,
                  struct pace_cell cell[PACE_SPLIT]);
 
 /* Most x at the start, up to `most`, from which x1 or less is reached: that is *end. */

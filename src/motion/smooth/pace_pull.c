@@ -11,7 +11,7 @@ struct range {
     double low, high;
 };
 
-static struct range of(const struct piece_bounds *b, int n, int axis)
+static struct range of(const struct segment_bounds *b, int n, int axis)
 {
     return (struct range){ b->low[n - 1][axis], b->high[n - 1][axis] };
 }
@@ -49,7 +49,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct piece_bounds *b)
+void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct segment_bounds *b)
 {
     for (int e = 0; e < 2; e++) {
         l->p[e] = b->slope[e][axis];
@@ -63,7 +63,7 @@ void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct p
 }
 
 /* s = (r'' r'' + r' r''' - q^2) / p along a curve, from the axes `first` and two more. */
-static struct range twist(const struct piece_bounds *b, int first)
+static struct range twist(const struct segment_bounds *b, int first)
 {
     struct range slope = { 0.0, 0.0 }, both = slope, turn = slope;
 
@@ -81,8 +81,8 @@ static struct range twist(const struct piece_bounds *b, int first)
 }
 
 /* The pull along the path, whose axes are `first` and two more. */
-static void look_along(struct pace_pull *l, const struct piece *p, double length,
-                       const struct piece_bounds *b, int first)
+static void look_along(struct pace_pull *l, const struct segment *p, double length,
+                       const struct segment_bounds *b, int first)
 {
     struct range s = { 0.0, 0.0 };
 
@@ -91,9 +91,9 @@ static void look_along(struct pace_pull *l, const struct piece *p, double length
         l->p[e] = el_max(sqrt(dot(r1, r1)), LEAST * b->most[0]);
         l->q[e] = dot(r1, b->bend[e] + first) / l->p[e];
     }
-    if (p->kind == PIECE_CURVE) {
+    if (p->kind == SEGMENT_CURVE) {
         s = twist(b, first);
-    } else if (p->kind == PIECE_ARC && p->path.plane != PATH_TILTED) { /* of a spiral */
+    } else if (p->kind == SEGMENT_ARC && p->path.plane != PATH_TILTED) { /* of a spiral */
         const double turns = p->path.growth * p->path.sweep / (p->path.length * p->path.length);
         s.high = turns * turns / el_min(l->p[0], l->p[1]);
         s.low = -s.high;
@@ -108,7 +108,7 @@ static void look_along(struct pace_pull *l, const struct piece *p, double length
 /* The most n: it is at most |r'' - k r'| for any k. With a k that is right at both ends and
  * straight in between, that vector leaves its chord as the spread of its derivative allows. */
 static double most_across(const struct pace_pull *along, double length,
-                          const struct piece_bounds *b, int first)
+                          const struct segment_bounds *b, int first)
 {
     const double k[2] = { along->q[0] / along->p[0], along->q[1] / along->p[1] };
     const double grows = fabs(k[1] - k[0]), most = el_max(fabs(k[0]), fabs(k[1]));
@@ -127,8 +127,8 @@ static double most_across(const struct pace_pull *along, double length,
                                   + sqrt(dot(strays, strays)));
 }
 
-double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,
-                      const struct piece_bounds *b)
+double pace_pull_path(struct pace_pull *along, const struct segment *p, double length,
+                      const struct segment_bounds *b)
 {
     const int first = b->axes > 0 && b->axis[0] >= 3 ? 3 : 0;
 

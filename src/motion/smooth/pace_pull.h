@@ -12,7 +12,7 @@
 #ifndef PACE_PULL_H
 #define PACE_PULL_H
 
-#include "piece.h"
+#include "segment.h"
 
 struct pace_pull {
     double p[2], q[2]; /* at both ends; q [1/mm] */
@@ -20,11 +20,12 @@ struct pace_pull {
     double most[3];    /* bounds of |p|, |q| [1/mm], |s| [1/mm^2] */
 };
 
-/* The pull of an axis that moves, over a part of a piece with this length [mm] and these bounds. */
-void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct piece_bounds *b);
+/* The pull of an axis that moves, over a part of a segment with this length [mm] and these
+ * bounds. */
+void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct segment_bounds *b);
 
 /* The pull of the way along the path. Returns the most n. [1/mm] */
-double pace_pull_path(struct pace_pull *along, const struct piece *p, double length,
-                      const struct piece_bounds *b);
+double pace_pull_path(struct pace_pull *along, const struct segment *p, double length,
+                      const struct segment_bounds *b);
 
 #endif

@@ -54,7 +54,7 @@ static void append(struct pace *p, const struct pace_box *g)
     p->end = last->from + last->length;
 }
 
-bool pace_smooth_join(struct pace *p, const struct piece *piece)
+bool pace_smooth_join(struct pace *p, const struct segment *segment)
 {
     struct pace_part part;
     struct pace_box g;
@@ -62,8 +62,8 @@ bool pace_smooth_join(struct pace *p, const struct piece *piece)
     if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
         return false;
     }
-    for (pace_part_first(&part, piece); pace_part_next(&part);) {
-        pace_box_make(&g, piece, &p->limits, p->end, part.to - part.from, &part.bounds);
+    for (pace_part_first(&part, segment); pace_part_next(&part);) {
+        pace_box_make(&g, segment, &p->limits, p->end, part.to - part.from, &part.bounds);
         append(p, &g);
     }
     p->at.left = box_at(p, 0)->from + box_at(p, 0)->length - p->at.here;

@@ -4,7 +4,7 @@
 
 #include "pace.h"
 
-bool pace_smooth_join(struct pace *p, const struct piece *piece);
+bool pace_smooth_join(struct pace *p, const struct segment *segment);
 double pace_smooth_advance(struct pace *p, double override, double dt);
 double pace_smooth_stop_way(const struct pace *p);
 bool pace_smooth_nears_end(const struct pace *p, double further);

@@ -71,9 +71,9 @@ void brake_back(struct brake *b, double way, double dec)
     b->count = n;
 }
 
-struct brake_piece brake_next(const struct brake *b, double s, double place, double dec)
+struct brake_segment brake_next(const struct brake *b, double s, double place, double dec)
 {
-    struct brake_piece p = { place, INFINITY, INFINITY };
+    struct brake_segment p = { place, INFINITY, INFINITY };
 
     for (int32_t i = 0; i < b->count; i++) {
         if (place - b->step[i].even > s) {

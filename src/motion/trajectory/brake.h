@@ -33,14 +33,14 @@ void brake_limit(struct brake *b, double speed, double even);
  * between them is dec. */
 void brake_back(struct brake *b, double way, double dec);
 
-/* What is allowed on a piece of the way. */
-struct brake_piece {
+/* What is allowed on a segment of the way. */
+struct brake_segment {
     double end;   /* [mm] */
     double top;   /* [mm/s] most speed on it; INFINITY: what can be braked to `leave` */
     double leave; /* [mm/s] most speed at its end */
 };
 
-/* The piece that begins at s; the place is at `place`, beyond s. */
-struct brake_piece brake_next(const struct brake *b, double s, double place, double dec);
+/* The segment that begins at s; the place is at `place`, beyond s. */
+struct brake_segment brake_next(const struct brake *b, double s, double place, double dec);
 
 #endif

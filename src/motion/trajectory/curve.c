@@ -31,18 +31,18 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
     c->place = m->pace.at;
 }
 
-/* Places that are nearer to each other are one: a goal at the end of a piece is that end, though
+/* Places that are nearer to each other are one: a goal at the end of a segment is that end, though
  * lengths summed from elsewhere tell it otherwise by their rounding. A sliver of 1e-16 mm between
  * them would have no acceleration that could be told. [mm] */
 static const double NEAR = 1e-9;
 
-/* Give the pace the next finished piece, or what is left of it, or what lies before the goal. */
+/* Give the pace the next finished segment, or what is left of it, or what lies before the goal. */
 static bool join_one(const struct curve *c, struct curve_plan *m)
 {
-    const struct piece *whole = shape_piece(&m->shape, m->joined);
+    const struct segment *whole = shape_segment(&m->shape, m->joined);
     const double goal = c->goal - m->joined_way;
     const double to = goal > whole->length - NEAR ? whole->length : el_max(goal, m->part);
-    struct piece part;
+    struct segment part;
 
     if (m->part <= 0.0 && to >= whole->length) {
         if (!pace_join(&m->pace, whole)) {
@@ -65,7 +65,8 @@ static bool join_one(const struct curve *c, struct curve_plan *m)
     return true;
 }
 
-/* Give the pace finished pieces up to the goal, to one that ends at rest, or to the last of all. */
+/* Give the pace finished segments up to the goal, to one that ends at rest, or to the last of
+ * all. */
 static void join(struct curve *c, struct curve_plan *m)
 {
     while (!m->pace.closed && m->joined < shape_count(&m->shape) && join_one(c, m)) {
@@ -111,7 +112,7 @@ static bool starves(const struct curve *c, const struct curve_plan *m)
     return c->idle > 0 && pace_nears_end(&m->pace, WAIT * c->place.rate);
 }
 
-/* The motion has come to a rest behind which pieces go on, but not to its goal. */
+/* The motion has come to a rest behind which segments go on, but not to its goal. */
 static bool rests_between(const struct curve *c, const struct curve_plan *m)
 {
     return m->pace.closed && pace_at_end(&m->pace) && m->joined < shape_count(&m->shape)
@@ -135,20 +136,20 @@ static double way_of(const struct curve *c)
     return c->start + c->place.way;
 }
 
-/* Pieces that the pace has, the last one perhaps in part. */
-static int32_t pieces_known(const struct curve_plan *m)
+/* Segments that the pace has, the last one perhaps in part. */
+static int32_t segments_known(const struct curve_plan *m)
 {
     return m->joined + (m->part > 0.0);
 }
 
-/* The piece at a way, which lies not before the one found last. */
-static const struct piece *find(struct curve *c, const struct curve_plan *m, double way)
+/* The segment at a way, which lies not before the one found last. */
+static const struct segment *find(struct curve *c, const struct curve_plan *m, double way)
 {
-    const struct piece *p = shape_piece(&m->shape, c->at);
+    const struct segment *p = shape_segment(&m->shape, c->at);
 
-    while (way >= c->base + p->length && c->at + 1 < pieces_known(m)) {
+    while (way >= c->base + p->length && c->at + 1 < segments_known(m)) {
         c->base += p->length;
-        p = shape_piece(&m->shape, ++c->at);
+        p = shape_segment(&m->shape, ++c->at);
     }
     return p;
 }
@@ -197,8 +198,8 @@ static double halt_smooth(struct curve *c, struct curve_plan *m)
     if (ends) {
         m->joined = c->at;
         m->joined_way = c->base;
-        while (m->joined_way + shape_piece(&m->shape, m->joined)->length <= goal) {
-            m->joined_way += shape_piece(&m->shape, m->joined++)->length;
+        while (m->joined_way + shape_segment(&m->shape, m->joined)->length <= goal) {
+            m->joined_way += shape_segment(&m->shape, m->joined++)->length;
         }
         m->part = goal - m->joined_way;
         c->place = m->pace.at;
@@ -277,7 +278,7 @@ void curve_single(struct curve *c, struct curve_plan *m, bool on)
     if (!on && !curve_waits(c)) {
         c->goal = INFINITY;
         m->pace.closed =
-            m->part <= 0.0 && m->joined > 0 && shape_piece(&m->shape, m->joined - 1)->rest;
+            m->part <= 0.0 && m->joined > 0 && shape_segment(&m->shape, m->joined - 1)->rest;
     }
 }
 
@@ -297,15 +298,15 @@ bool curve_waits(const struct curve *c)
 
 void curve_sample(struct curve *c, struct curve_plan *m)
 {
-    struct piece_state s;
+    struct segment_state s;
 
     c->idle++;
-    if (pieces_known(m) == 0) {
+    if (segments_known(m) == 0) {
         return;
     }
     const double way = way_of(c);
-    const struct piece *p = find(c, m, way);
-    piece_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
+    const struct segment *p = find(c, m, way);
+    segment_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
     for (int i = 0; i < AXES; i++) {
         c->point[i] = s.point[i];
         c->velocity[i] = c->place.rate * s.slope[i];
@@ -343,11 +344,11 @@ bool curve_done(const struct curve *c, const struct curve_plan *m)
            && m->joined == shape_count(&m->shape);
 }
 
-static void place_on_piece(const void *piece, double u, double place[AXES])
+static void place_on_segment(const void *segment, double u, double place[AXES])
 {
-    struct piece_state s;
+    struct segment_state s;
 
-    piece_at(piece, u, &s);
+    segment_at(segment, u, &s);
     memcpy(place, s.point, sizeof s.point);
 }
 
@@ -360,15 +361,15 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
     memcpy(high, c->point, sizeof c->point);
     resume(&at, m);
     const double stop = at.start + pace_stop_way(&m->pace);
-    for (double from = way_of(&at); pieces_known(m) > 0 && from < stop;) {
-        const struct piece *p = find(&at, m, from);
+    for (double from = way_of(&at); segments_known(m) > 0 && from < stop;) {
+        const struct segment *p = find(&at, m, from);
         const double end = el_min(stop, at.base + p->length);
-        struct piece_bounds b;
+        struct segment_bounds b;
         if (!(end > from)) {
             break;
         }
-        piece_bounds(p, from - at.base, end - at.base, &b);
-        struct bow bow = { place_on_piece, p, 0.0 };
+        segment_bounds(p, from - at.base, end - at.base, &b);
+        struct bow bow = { place_on_segment, p, 0.0 };
         for (int k = 0; k < AXES; k++) {
             bow.bend = el_max(bow.bend, el_max(-b.low[1][k], b.high[1][k]));
         }

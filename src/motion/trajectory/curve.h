@@ -1,6 +1,6 @@
 /* curve - commands in a row as one smooth curve, driven as fast as the limits of the axes allow.
  *
- *     ring ──> shape ──pieces──> pace ──way──> point
+ *     ring ──> shape ──segments──> pace ──way──> point
  *              smooth path       speed along it
  *
  * Shape and pace are large and stand beside the trajectory, which keeps the place of the motion in
@@ -18,7 +18,7 @@ struct curve_plan {
     struct pace_limits limits; /* limits of chains from now on */
     bool last;                 /* no more commands come for now: none is waited for */
     double end[AXES];          /* [mm] end of the latest command taken */
-    int32_t joined;            /* number of finished pieces of the shape that the pace has */
+    int32_t joined;            /* number of finished segments of the shape that the pace has */
     double joined_way;         /* [mm] their end on the chain */
     double part;               /* [mm] length of the next one that the pace has, too */
     double start;              /* [mm] where the pace begins, from the start of the chain */
@@ -35,8 +35,8 @@ struct curve {
     int32_t line;            /* line of the latest mark */
     int32_t idle;            /* points since the ring has been empty */
     int32_t begun;           /* number of marks of the shape that the tool has passed */
-    int32_t at;              /* piece of the tool, from the first that the shape keeps */
-    double base;             /* [mm] start of that piece on the chain */
+    int32_t at;              /* segment of the tool, from the first that the shape keeps */
+    double base;             /* [mm] start of that segment on the chain */
     double point[AXES], velocity[AXES]; /* [mm], [mm/s] of the tool */
 };
 

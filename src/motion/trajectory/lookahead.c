@@ -172,21 +172,22 @@ static double border(const struct lookahead *t, const struct ring *r)
                       : ring_peek(r, t->at)->command.path.length - lookahead_half(t, r, t->at + 1);
 }
 
-/* One piece of the way with constant limits: up to `end`, at most `top` fast, and no faster than
+/* One segment of the way with constant limits: up to `end`, at most `top` fast, and no faster than
  * `leave` there. */
-struct piece {
+struct limit_segment {
     double end, top, leave;
     double acc, dec;
 };
 
-static struct piece next_piece(const struct lookahead *t, const struct ring *r, double override)
+static struct limit_segment next_limit_segment(const struct lookahead *t, const struct ring *r,
+                                               double override)
 {
     const struct ring_entry *n = ring_peek(r, t->at);
     const double most = t->turning ? turn_limit(r, t->at, override) : body_limit(n, override);
     const struct ramp_limits ramp = ramp_of(r, t->at, t->turning);
-    const struct brake_piece b =
+    const struct brake_segment b =
         brake_next(t->turning ? &n->enter : &n->leave, t->s, border(t, r), ramp.dec);
-    struct piece p = { b.end, el_min(most, b.top), b.leave, ramp.acc, ramp.dec };
+    struct limit_segment p = { b.end, el_min(most, b.top), b.leave, ramp.acc, ramp.dec };
 
     for (int32_t i = 0; i < t->caps; i++) {
         const double until = t->cap[i].until - t->base;
@@ -214,9 +215,9 @@ static double glide(struct lookahead *t, double acc, double to, double way, doub
 /* Part by which braking may be harder to meet a plan again that rounding has missed. */
 static const double ROUNDING = 1e-7;
 
-/* Too fast for the piece: slower, to the limit or as much as the way allows, at most `leave` at its
- * end. Returns the time left of dt. */
-static double slow_down(struct lookahead *t, const struct piece *p, double leave, bool fits,
+/* Too fast for the segment: slower, to the limit or as much as the way allows, at most `leave` at
+ * its end. Returns the time left of dt. */
+static double slow_down(struct lookahead *t, const struct limit_segment *p, double leave, bool fits,
                         double dt)
 {
     const double way = p->end - t->s, v = t->v;
@@ -239,9 +240,9 @@ static double slow_down(struct lookahead *t, const struct piece *p, double leave
     return dt - used;
 }
 
-/* Drive the piece for up to dt; returns the time left. Ends on the piece's end exactly if it gets
- * there. */
-static double drive(struct lookahead *t, const struct piece *p, double dt)
+/* Drive the segment for up to dt; returns the time left. Ends on the segment's end exactly if it
+ * gets there. */
+static double drive(struct lookahead *t, const struct limit_segment *p, double dt)
 {
     const double way = p->end - t->s, v = t->v;
     double done, leave = el_min(p->leave, sqrt(v * v + 2.0 * p->acc * way));
@@ -294,7 +295,7 @@ static void keep_limit(struct lookahead *t, double speed)
     t->caps = n + 1;
 }
 
-/* Go over the border to the next piece of the way. */
+/* Go over the border to the next segment of the way. */
 static void cross(struct lookahead *t, const struct ring *r, double override)
 {
     keep_limit(t, t->turning ? turn_limit(r, t->at, override)
@@ -329,7 +330,7 @@ double lookahead_advance(struct lookahead *t, struct ring *r, double override, d
                 || PLAN_SHARE * (t->joined - t->planned) > t->planned - t->at)) {
             plan(t, r, override);
         }
-        struct piece p = next_piece(t, r, override);
+        struct limit_segment p = next_limit_segment(t, r, override);
         if (override <= 0.0) {
             p.top = 0.0;
         }

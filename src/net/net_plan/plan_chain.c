@@ -5,7 +5,7 @@
 
 #include "el_extremes.h"
 
-/* Ramps by which pieces would be driven if axes had no limits; they have. [mm/s^2] */
+/* Ramps by which segments would be driven if axes had no limits; they have. [mm/s^2] */
 static const double ANY = 1.0;
 
 void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
@@ -55,11 +55,11 @@ bool plan_chain_ready(const struct plan_chain *c)
     return c->full || !c->open;
 }
 
-/* Finished pieces to the pace, up to one with a rest at its end. */
+/* Finished segments to the pace, up to one with a rest at its end. */
 static void join(struct plan_chain *c)
 {
     while (!c->pace.closed && c->joined < shape_count(&c->shape)) {
-        const struct piece *p = shape_piece(&c->shape, c->joined);
+        const struct segment *p = shape_segment(&c->shape, c->joined);
         if (!pace_join(&c->pace, p)) {
             return;
         }
@@ -72,25 +72,25 @@ static void join(struct plan_chain *c)
 static void look(struct plan_chain *c)
 {
     const double way = c->pace.at.way;
-    struct piece_state s;
+    struct segment_state s;
     int32_t passed = 0;
 
     if (c->joined == 0) {
         return;
     }
-    while (passed + 1 < c->joined && way >= c->base + shape_piece(&c->shape, passed)->length) {
-        c->base += shape_piece(&c->shape, passed)->length;
+    while (passed + 1 < c->joined && way >= c->base + shape_segment(&c->shape, passed)->length) {
+        c->base += shape_segment(&c->shape, passed)->length;
         passed++;
     }
-    const struct piece *p = shape_piece(&c->shape, passed);
-    piece_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
+    const struct segment *p = shape_segment(&c->shape, passed);
+    segment_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
     memcpy(c->place, s.point, sizeof s.point);
     c->joined -= passed;
     shape_drop(&c->shape, passed);
     shape_drop_marks(&c->shape, shape_marks(&c->shape));
 }
 
-/* It rests where a piece says so, or at the end. */
+/* It rests where a segment says so, or at the end. */
 static bool rests(const struct plan_chain *c)
 {
     return c->pace.closed && pace_at_end(&c->pace);
@@ -101,7 +101,7 @@ double plan_chain_advance(struct plan_chain *c, double dt)
     join(c);
     dt = pace_advance(&c->pace, 1.0, dt);
     look(c);
-    while (rests(c)) { /* the next stretch begins at rest */
+    while (rests(c)) { /* the next segments begin at rest */
         shape_drop(&c->shape, c->joined);
         c->joined = 0;
         c->base = 0.0;

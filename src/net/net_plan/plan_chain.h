@@ -1,6 +1,6 @@
 /* plan_chain - a line of vertices as one smooth curve, driven as fast as the axes allow.
  *
- *     vertices ──> shape ──pieces──> pace ──way──> place
+ *     vertices ──> shape ──segments──> pace ──way──> place
  *
  * The curve keeps within a tolerance of the line, both ways. Vertices come as there is room; what
  * is behind the tool is forgotten, so the size does not depend on how many there are.
@@ -17,8 +17,8 @@ struct plan_chain {
     int32_t stops;      /* rests before its end so far */
     double tolerance;   /* [mm] */
     double end[AXES];   /* [mm] the latest vertex */
-    int32_t joined;     /* pieces that the pace has, from the first that the shape keeps */
-    double base;        /* [mm] of the pace: start of the first piece that the shape keeps */
+    int32_t joined;     /* segments that the pace has, from the first that the shape keeps */
+    double base;        /* [mm] of the pace: start of the first segment that the shape keeps */
     double place[AXES]; /* [mm] where the motion is */
     struct pace_limits limits;
     struct shape shape;

@@ -13,7 +13,7 @@ static void begin(void)
 {
     const double start[AXES] = { 0.0 }, end[AXES] = { LENGTH };
     struct pace_limits l = { .speed = { 0.0 } };
-    struct piece p;
+    struct segment p;
     struct path path;
 
     for (int k = 0; k < AXES; k++) {
@@ -21,7 +21,7 @@ static void begin(void)
         l.jerk[k] = 20000.0;
     }
     memset(&p, 0, sizeof p);
-    p.kind = PIECE_LINE;
+    p.kind = SEGMENT_LINE;
     p.feed = p.cap = 50.0;
     p.ramp = (struct ramp_limits){ 1000.0, 1000.0, 20000.0, 20000.0 };
     path_line(&path, start, end);

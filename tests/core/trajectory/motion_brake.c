@@ -132,8 +132,8 @@ static void needless(void)
     CHECK_EQ(b.step[1].speed, 4.0);
 }
 
-/* The pieces from a point up to the place are what the limits allow, without a gap. */
-static void pieces(uint64_t *seed)
+/* The segments from a point up to the place are what the limits allow, without a gap. */
+static void segments(uint64_t *seed)
 {
     const double dec = check_real(seed, 10.0, 1000.0), place = check_real(seed, 5.0, 9.0);
     struct brake b;
@@ -145,7 +145,7 @@ static void pieces(uint64_t *seed)
         brake_limit(&b, check_real(seed, 0.0, 50.0), check_real(seed, 0.0, 3.0));
     }
     for (; s < place && n < 2 * BRAKE_STEPS; n++) {
-        const struct brake_piece p = brake_next(&b, s, place, dec);
+        const struct brake_segment p = brake_next(&b, s, place, dec);
         CHECK(p.end > s && p.end <= place);
         /* It is as long as the even way of no limit begins. */
         for (int k = 0; k < b.count; k++) {
@@ -171,7 +171,7 @@ int main(void)
     for (int i = 0; i < 3000; i += CHECK_EACH) {
         limits(&seed);
         many(&seed);
-        pieces(&seed);
+        segments(&seed);
     }
     merged();
     needless();

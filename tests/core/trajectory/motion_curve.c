@@ -106,11 +106,11 @@ static double length_to(double goal)
     double base = curve.base, way = curve.start + curve.place.way, sum = 0.0;
 
     for (int i = curve.at; way < goal; i++) {
-        const struct piece *p = shape_piece(&plan.shape, i);
+        const struct segment *p = shape_segment(&plan.shape, i);
         const double part = (fmin(goal, base + p->length) - way) / parts;
         for (int k = 0; k < parts; k++) {
-            struct piece_state s;
-            piece_at(p, way - base + part * (k + 0.5), &s);
+            struct segment_state s;
+            segment_at(p, way - base + part * (k + 0.5), &s);
             sum += part * hypot(s.slope[0], s.slope[1]);
         }
         base += p->length;
@@ -153,7 +153,7 @@ static void blocks(void)
 }
 
 /* Single block that is switched off again before the goal, or while it waits for none, changes
- * nothing but what it has closed; also where the goal was the end of a piece. */
+ * nothing but what it has closed; also where the goal was the end of a segment. */
 static void off(void (*way)(int count, double size))
 {
     int direct, there;
@@ -183,7 +183,7 @@ static void off(void (*way)(int count, double size))
  * room for what is before. Single block waits for that. */
 static void unknown_block(void)
 {
-    static const int first = SHAPE_PIECES / 2;
+    static const int first = SHAPE_SEGMENTS / 2;
     int told = 0;
 
     begin();
@@ -204,7 +204,7 @@ static void unknown_block(void)
     CHECK_EQ(seen, first);
 }
 
-/* Lines in a row as one: a block that begins where a piece does is stopped at to the bit. Calls,
+/* Lines in a row as one: a block that begins where a segment does is stopped at to the bit. Calls,
  * without a line of a program, are blocks of their own. */
 static void in_a_row(int32_t line)
 {
@@ -248,8 +248,8 @@ static void two_lines(void)
     CHECK(curve_done(&curve, &plan) && seen == 6);
 }
 
-/* Where the motion was is put back: what has been planned ahead, over ends of pieces and cells, is
- * driven to the bit as without. */
+/* Where the motion was is put back: what has been planned ahead, over ends of segments and cells,
+ * is driven to the bit as without. */
 static void put_back(void)
 {
     static struct curve direct[2000];
@@ -375,11 +375,11 @@ static void look_to(double goal, double min[2], double max[2])
     memcpy(min, curve.point, 2 * sizeof *min);
     memcpy(max, curve.point, 2 * sizeof *max);
     for (int i = curve.at; way < goal; i++) {
-        const struct piece *p = shape_piece(&plan.shape, i);
+        const struct segment *p = shape_segment(&plan.shape, i);
         const double part = fmin(goal, base + p->length) - way;
         for (int n = 1; n <= steps; n++) {
-            struct piece_state s;
-            piece_at(p, way - base + part * n / steps, &s);
+            struct segment_state s;
+            segment_at(p, way - base + part * n / steps, &s);
             for (int k = 0; k < 2; k++) {
                 min[k] = fmin(min[k], s.point[k]);
                 max[k] = fmax(max[k], s.point[k]);

@@ -8,16 +8,16 @@
 enum { LINES = 2000 };
 
 static struct shape shape;
-static struct piece before;
-static double jump[3]; /* most of place [mm], r' and r'' [1/mm] where pieces meet */
+static struct segment before;
+static double jump[3]; /* most of place [mm], r' and r'' [1/mm] where segments meet */
 
 static void drain(void)
 {
     for (int32_t k = 0; k < shape_count(&shape); k++) {
-        const struct piece *p = shape_piece(&shape, k);
-        struct piece_state a, b;
-        piece_at(&before, before.length, &a);
-        piece_at(p, 0.0, &b);
+        const struct segment *p = shape_segment(&shape, k);
+        struct segment_state a, b;
+        segment_at(&before, before.length, &a);
+        segment_at(p, 0.0, &b);
         for (int i = 0; i < AXES && before.length > 0.0 && !before.rest; i++) {
             jump[0] = fmax(jump[0], fabs(a.point[i] - b.point[i]));
             jump[1] = fmax(jump[1], fabs(a.slope[i] - b.slope[i]));
@@ -29,7 +29,7 @@ static void drain(void)
     shape_drop_marks(&shape, shape_marks(&shape));
 }
 
-/* A walk of steps that turn by up to half a radian. Returns the number of pieces. */
+/* A walk of steps that turn by up to half a radian. Returns the number of segments. */
 static int64_t walk(double start, double step, double tolerance, double merge)
 {
     double from[AXES] = { start, start }, angle = 0.0;
@@ -78,7 +78,7 @@ int main(void)
     for (int k = 0; k < 5; k++) {
         const int64_t near = walk(0.0, rows[k][0], rows[k][1], rows[k][2]);
         const int64_t far = walk(1000.0, rows[k][0], rows[k][1], rows[k][2]);
-        printf("%g mm, %g mm: %d pieces, %d at 1 m, jumps of r %.0e, r' %.0e, r'' %.0e /mm\n",
+        printf("%g mm, %g mm: %d segments, %d at 1 m, jumps of r %.0e, r' %.0e, r'' %.0e /mm\n",
                rows[k][0], rows[k][1], (int)near, (int)far, jump[0], jump[1], jump[2]);
         CHECK(jump[0] <= 1e-12); /* two roundings of 1 m */
         CHECK(jump[1] <= 1e-13);

@@ -1,22 +1,22 @@
-/* Pieces of a smooth path: derivatives against difference quotients, bounds against samples. */
+/* Segments of a smooth path: derivatives against difference quotients, bounds against samples. */
 #include <string.h>
 
 #include "check.h"
-#include "piece.h"
+#include "segment.h"
 
 static const double PI = 3.14159265358979323846;
 
 enum { PARTS = 64 };
 
 /* r''' as a difference quotient of r''. */
-static void third(const struct piece *p, double u, double jerk[AXES])
+static void third(const struct segment *p, double u, double jerk[AXES])
 {
     const double du = 1e-5 * p->length;
-    struct piece_state a, b;
+    struct segment_state a, b;
     const double from = fmax(0.0, u - du), to = fmin(p->length, u + du);
 
-    piece_at(p, from, &a);
-    piece_at(p, to, &b);
+    segment_at(p, from, &a);
+    segment_at(p, to, &b);
     for (int i = 0; i < AXES; i++) {
         jerk[i] = (b.bend[i] - a.bend[i]) / (to - from);
     }
@@ -28,13 +28,13 @@ static double norm3(const double a[3])
 }
 
 /* Both ends of a part, and the axes that move. */
-static void ends(const struct piece *p, double from, double to, const struct piece_bounds *b)
+static void ends(const struct segment *p, double from, double to, const struct segment_bounds *b)
 {
     int32_t axes = 0;
 
     for (int end = 0; end < 2; end++) {
-        struct piece_state s;
-        piece_at(p, end ? to : from, &s);
+        struct segment_state s;
+        segment_at(p, end ? to : from, &s);
         for (int i = 0; i < AXES; i++) {
             CHECK_NEAR(b->slope[end][i], s.slope[i], 1e-12);
             CHECK_NEAR(b->bend[end][i], s.bend[i], 1e-12 * (b->most[1] + 1.0 / p->length));
@@ -49,17 +49,17 @@ static void ends(const struct piece *p, double from, double to, const struct pie
 }
 
 /* Parts cut off one after another are bounded as by themselves. */
-static void cuts(const struct piece *p, int32_t n)
+static void cuts(const struct segment *p, int32_t n)
 {
-    struct piece_rest rest;
+    struct segment_rest rest;
     double from = 0.0;
 
-    piece_rest_start(&rest, p);
+    segment_rest_start(&rest, p);
     for (int32_t k = 1; k <= n; k++) {
         const double to = k < n ? p->length * k / n : p->length;
-        struct piece_bounds a, b;
-        piece_bounds(p, from, to, &a);
-        piece_rest_cut(&rest, to, &b);
+        struct segment_bounds a, b;
+        segment_bounds(p, from, to, &a);
+        segment_rest_cut(&rest, to, &b);
         for (int m = 0; m < 3; m++) {
             const double little = 1e-12 * (a.most[m] + 1.0 / pow(p->length, m));
             CHECK_NEAR(b.most[m], a.most[m], little);
@@ -74,19 +74,19 @@ static void cuts(const struct piece *p, int32_t n)
 }
 
 /* Extremes over samples of a part, beside the bounds; `slack` of |bounds| may miss. */
-static void hold(const struct piece *p, double from, double to, bool tool, double slack)
+static void hold(const struct segment *p, double from, double to, bool tool, double slack)
 {
-    struct piece_bounds b, most;
-    struct piece_state s;
+    struct segment_bounds b, most;
+    struct segment_state s;
     double jerk[AXES];
 
-    const int samples = p->kind == PIECE_ARC ? 400 : 60; /* arcs of several turns */
-    piece_bounds(p, from, to, &b);
+    const int samples = p->kind == SEGMENT_ARC ? 400 : 60; /* arcs of several turns */
+    segment_bounds(p, from, to, &b);
     ends(p, from, to, &b);
     memset(&most, 0, sizeof most);
     for (int k = 0; k <= samples; k++) {
         const double u = from + (to - from) * k / samples;
-        piece_at(p, u, &s);
+        segment_at(p, u, &s);
         third(p, u, jerk);
         const double *d[3] = { s.slope, s.bend, jerk };
         for (int n = 0; n < 3; n++) {
@@ -113,14 +113,14 @@ static void hold(const struct piece *p, double from, double to, bool tool, doubl
 }
 
 /* Place, r' and r'' agree with one another. */
-static void smooth(const struct piece *p)
+static void smooth(const struct segment *p)
 {
     for (int k = 1; k < 20; k++) {
         const double u = p->length * k / 20.0, du = 1e-5 * p->length;
-        struct piece_state a, b, s;
-        piece_at(p, u - du, &a);
-        piece_at(p, u + du, &b);
-        piece_at(p, u, &s);
+        struct segment_state a, b, s;
+        segment_at(p, u - du, &a);
+        segment_at(p, u + du, &b);
+        segment_at(p, u, &s);
         for (int i = 0; i < AXES; i++) {
             CHECK_NEAR(s.slope[i], (b.point[i] - a.point[i]) / (2.0 * du), 1e-6 * norm3(s.slope));
             CHECK_NEAR(s.bend[i], (b.slope[i] - a.slope[i]) / (2.0 * du), 1e-6 / p->length);
@@ -130,14 +130,14 @@ static void smooth(const struct piece *p)
 
 static void line(void)
 {
-    struct piece p = { .kind = PIECE_LINE,
-                       .length = 5.0,
-                       .start = { 1, 2, 3, 4, 5, 6 },
-                       .slope = { 0.6, 0.0, -0.8, 0.1, 0, 0 } };
-    struct piece_state s;
-    struct piece_bounds b;
+    struct segment p = { .kind = SEGMENT_LINE,
+                         .length = 5.0,
+                         .start = { 1, 2, 3, 4, 5, 6 },
+                         .slope = { 0.6, 0.0, -0.8, 0.1, 0, 0 } };
+    struct segment_state s;
+    struct segment_bounds b;
 
-    piece_at(&p, 5.0, &s);
+    segment_at(&p, 5.0, &s);
     CHECK_NEAR(s.point[0], 4.0, 1e-15);
     CHECK_NEAR(s.point[2], -1.0, 1e-15);
     CHECK_NEAR(s.point[3], 4.5, 1e-15);
@@ -146,7 +146,7 @@ static void line(void)
     CHECK_NEAR(p.slope[2], -0.8, 0.0);
     memset(p.slope, 0, sizeof p.slope);
     p.slope[4] = 1.0;
-    piece_bounds(&p, 1.0, 2.0, &b);
+    segment_bounds(&p, 1.0, 2.0, &b);
     CHECK_NEAR(b.most[0], 1.0, 0.0);
     CHECK_NEAR(b.most[1], 0.0, 0.0);
 }
@@ -155,7 +155,7 @@ static void line(void)
 static void arcs(uint64_t *random)
 {
     for (int k = 0; k < 100; k++) {
-        struct piece p = { .kind = PIECE_ARC };
+        struct segment p = { .kind = SEGMENT_ARC };
         double start[AXES], end[AXES], centre[2], miss;
         for (int i = 0; i < AXES; i++) {
             start[i] = check_real(random, -10.0, 10.0);
@@ -196,7 +196,7 @@ static void arcs(uint64_t *random)
 static void cubics(uint64_t *random)
 {
     for (int k = 0; k < 10; k++) {
-        struct piece p = { .kind = PIECE_CUBIC };
+        struct segment p = { .kind = SEGMENT_CUBIC };
         double end[AXES], inner[2][3];
         const double start[AXES] = { 100.0, -200.0, 3.0, 0.0, 1.0, 2.0 };
         for (int i = 0; i < AXES; i++) {
@@ -214,10 +214,10 @@ static void cubics(uint64_t *random)
         for (int part = 0; part < PARTS; part++) {
             const double from = p.length * part / PARTS, to = p.length * (part + 1) / PARTS;
             hold(&p, from, to, true, 0.0);
-            struct piece_bounds b;
-            struct piece_state s;
-            piece_bounds(&p, from, to, &b);
-            piece_at(&p, from, &s);
+            struct segment_bounds b;
+            struct segment_state s;
+            segment_bounds(&p, from, to, &b);
+            segment_at(&p, from, &s);
             const double bend = norm3(s.bend), turn = (to - from) * b.most[1];
             CHECK(b.most[1] <= 1.2 * (bend + (to - from) * b.most[2]));
             CHECK(b.high[0][1] - b.low[0][1] <= 1.0001 * turn);
@@ -229,18 +229,18 @@ static void cubics(uint64_t *random)
 static void curves(uint64_t *random)
 {
     for (int k = 0; k < 100; k++) {
-        struct piece p = { .kind = PIECE_CURVE, .length = check_real(random, 0.01, 10.0) };
+        struct segment p = { .kind = SEGMENT_CURVE, .length = check_real(random, 0.01, 10.0) };
         const bool tool = k % 5 != 0;
         for (int i = tool ? 0 : 3; i < (k % 2 || !tool ? AXES : 2); i++) {
             p.origin[i] = 100.0;
-            for (int c = 1; c < PIECE_POINTS; c++) {
+            for (int c = 1; c < SEGMENT_POINTS; c++) {
                 p.control[c][i] = p.length * (0.2 * c + check_real(random, -0.3, 0.3));
             }
         }
-        struct piece_state s;
-        piece_at(&p, p.length, &s);
+        struct segment_state s;
+        segment_at(&p, p.length, &s);
         for (int i = 0; i < AXES; i++) {
-            CHECK_NEAR(s.point[i], p.origin[i] + p.control[PIECE_POINTS - 1][i], 0.0);
+            CHECK_NEAR(s.point[i], p.origin[i] + p.control[SEGMENT_POINTS - 1][i], 0.0);
         }
         if (tool) {
             smooth(&p);

@@ -1,22 +1,22 @@
-/* piece - one stretch of a smooth path: r(u), 0 <= u <= length, u nearly the length of the way.
+/* segment - one segment of a smooth path: r(u), 0 <= u <= length, u nearly the length of the way.
  *
  * Lines, arcs and cubics keep their exact geometry and u is their length. A curve is a polynomial
  * of degree 5 in Bernstein's form, so that hulls of its control points and of those of its
  * derivatives bound it exactly. They count from its start: r' and r'' of a curve of micrometres are
- * differences of small numbers, also far from the origin of the coordinates. Pieces that follow
+ * differences of small numbers, also far from the origin of the coordinates. Segments that follow
  * each other have the same r, r' and r'' where they meet, or the motion rests there.
  */
-#ifndef PIECE_H
-#define PIECE_H
+#ifndef SEGMENT_H
+#define SEGMENT_H
 
 #include "command.h"
 
-enum piece_kind { PIECE_LINE, PIECE_ARC, PIECE_CURVE, PIECE_CUBIC };
+enum segment_kind { SEGMENT_LINE, SEGMENT_ARC, SEGMENT_CURVE, SEGMENT_CUBIC };
 
-enum { PIECE_POINTS = 6 }; /* control points of a curve */
+enum { SEGMENT_POINTS = 6 }; /* control points of a curve */
 
-struct piece {
-    enum piece_kind kind;
+struct segment {
+    enum segment_kind kind;
     double length;           /* [mm] range of the parameter u */
     double feed;             /* [mm/s] least programmed feed of the commands in it */
     double cap;              /* [mm/s] highest speed any override may bring */
@@ -26,9 +26,9 @@ struct piece {
         struct {
             double start[AXES], slope[AXES];
         }; /* line: |slope| is 1 */
-        struct {                                /* curve: */
-            double origin[AXES];                /* [mm] its start */
-            double control[PIECE_POINTS][AXES]; /* [mm] from its start; the first is 0 */
+        struct {                                  /* curve: */
+            double origin[AXES];                  /* [mm] its start */
+            double control[SEGMENT_POINTS][AXES]; /* [mm] from its start; the first is 0 */
         };
         struct {
             struct path path;
@@ -39,14 +39,15 @@ struct piece {
 };
 
 /* Place [mm], r' and r'' [1/mm] at u. */
-struct piece_state {
+struct segment_state {
     double point[AXES], slope[AXES], bend[AXES];
 };
 
-void piece_at(const struct piece *p, double u, struct piece_state *s);
+void segment_at(const struct segment *p, double u, struct segment_state *s);
 
-/* Derivatives over a part of a piece: bounds, axis by axis and of their length, and at its ends. */
-struct piece_bounds {
+/* Derivatives over a part of a segment: bounds, axis by axis and of their length, and at its
+ * ends. */
+struct segment_bounds {
     int32_t axes, axis[AXES];             /* number of axes that move, and which; all of the
                                            * others is 0 */
     double low[3][AXES], high[3][AXES];   /* bounds of r', r'' [1/mm], r''' [1/mm^2] */
@@ -56,30 +57,30 @@ struct piece_bounds {
 };
 
 /* Exact bounds or a little outside, between from and to, 0 <= from < to <= length. */
-void piece_bounds(const struct piece *p, double from, double to, struct piece_bounds *b);
+void segment_bounds(const struct segment *p, double from, double to, struct segment_bounds *b);
 
-enum { PIECE_DERIVATIVES = 3 };
+enum { SEGMENT_DERIVATIVES = 3 };
 
 /* Control values of the derivatives over a part of a curve. */
-struct piece_hull {
+struct segment_hull {
     int32_t axes, axis[AXES]; /* number of axes that move, and which */
-    double control[AXES][PIECE_DERIVATIVES][PIECE_POINTS - 1];
+    double control[AXES][SEGMENT_DERIVATIVES][SEGMENT_POINTS - 1];
 };
 
-/* What is left of a piece from which parts are cut off one after another. It has the same bounds as
- * by piece_bounds, for less work. */
-struct piece_rest {
-    const struct piece *piece;
-    double from;            /* [mm] where it begins on the piece */
-    struct piece_hull hull; /* its control values, if it is a curve */
+/* What is left of a segment from which parts are cut off one after another. It has the same bounds
+ * as by segment_bounds, for less work. */
+struct segment_rest {
+    const struct segment *segment;
+    double from;              /* [mm] where it begins on the segment */
+    struct segment_hull hull; /* its control values, if it is a curve */
 };
 
-void piece_rest_start(struct piece_rest *r, const struct piece *p);
+void segment_rest_start(struct segment_rest *r, const struct segment *p);
 
 /* Bounds over all that is left. */
-void piece_rest_bounds(const struct piece_rest *r, struct piece_bounds *b);
+void segment_rest_bounds(const struct segment_rest *r, struct segment_bounds *b);
 
 /* Cut off what lies before `to`: bounds over that. */
-void piece_rest_cut(struct piece_rest *r, double to, struct piece_bounds *b);
+void segment_rest_cut(struct segment_rest *r, double to, struct segment_bounds *b);
 
 #endif

@@ -1,4 +1,4 @@
-#include "piece_arc.h"
+#include "segment_arc.h"
 
 #include <math.h>
 #include <string.h>
@@ -6,10 +6,10 @@
 #include "bernstein.h"
 #include "el_extremes.h"
 
-enum { DEGREE = PIECE_POINTS - 1 };
+enum { DEGREE = SEGMENT_POINTS - 1 };
 
 /* A cubic in X Y Z; U V W follow evenly with its length. */
-static void cubic_at(const struct piece *p, double u, struct piece_state *s)
+static void cubic_at(const struct segment *p, double u, struct segment_state *s)
 {
     const struct path *c = &p->path;
     const double way = p->from + u;
@@ -23,7 +23,7 @@ static void cubic_at(const struct piece *p, double u, struct piece_state *s)
 }
 
 /* De Casteljau, from 0: the last three, two and one give r'', r' and r. */
-static void curve_at(const struct piece *p, double u, struct piece_state *s)
+static void curve_at(const struct segment *p, double u, struct segment_state *s)
 {
     const double t = u / p->length, per = DEGREE / p->length, both = per * (DEGREE - 1) / p->length;
     const bool end = !(t < 1.0);
@@ -48,13 +48,13 @@ static void curve_at(const struct piece *p, double u, struct piece_state *s)
     }
 }
 
-void piece_at(const struct piece *p, double u, struct piece_state *s)
+void segment_at(const struct segment *p, double u, struct segment_state *s)
 {
-    if (p->kind == PIECE_ARC) {
-        piece_arc_at(p, u, s);
-    } else if (p->kind == PIECE_CURVE) {
+    if (p->kind == SEGMENT_ARC) {
+        segment_arc_at(p, u, s);
+    } else if (p->kind == SEGMENT_CURVE) {
         curve_at(p, u, s);
-    } else if (p->kind == PIECE_CUBIC) {
+    } else if (p->kind == SEGMENT_CUBIC) {
         cubic_at(p, u, s);
     } else {
         for (int i = 0; i < AXES; i++) {
@@ -66,11 +66,11 @@ void piece_at(const struct piece *p, double u, struct piece_state *s)
 }
 
 /* From the middle r' and r'' change by at most half the length times a bound of r'' and r'''. */
-static void cubic_bounds(const struct piece *p, double from, double to, struct piece_bounds *b)
+static void cubic_bounds(const struct segment *p, double from, double to, struct segment_bounds *b)
 {
     const struct path *c = &p->path;
     const double half = 0.5 * (to - from);
-    struct piece_state s[2], middle;
+    struct segment_state s[2], middle;
 
     b->most[0] = 1.0;
     bezier_most(&c->bezier, c->start, c->end, c->length, p->from + from, p->from + to, &b->most[1],
@@ -96,7 +96,7 @@ static void cubic_bounds(const struct piece *p, double from, double to, struct p
     }
 }
 
-static void line_bounds(const struct piece *p, struct piece_bounds *b)
+static void line_bounds(const struct segment *p, struct segment_bounds *b)
 {
     double square[2] = { 0.0, 0.0 }; /* of |r'| in X Y Z, in U V W */
 
@@ -110,10 +110,10 @@ static void line_bounds(const struct piece *p, struct piece_bounds *b)
 }
 
 /* Bounds of the n-th derivative, from its control values. */
-static inline void hull_bounds(const struct piece_hull *h, int n, struct piece_bounds *b)
+static inline void hull_bounds(const struct segment_hull *h, int n, struct segment_bounds *b)
 {
     const int last = DEGREE - n, first = h->axis[0] < 3 ? 0 : 3;
-    double square[PIECE_POINTS] = { 0.0 }, most = 0.0;
+    double square[SEGMENT_POINTS] = { 0.0 }, most = 0.0;
 
     for (int i = 0; i < h->axes; i++) {
         const double *c = h->control[i][n - 1];
@@ -137,7 +137,7 @@ static inline void hull_bounds(const struct piece_hull *h, int n, struct piece_b
     b->most[n - 1] = sqrt(most);
 }
 
-static void curve_bounds(const struct piece_hull *h, struct piece_bounds *b)
+static void curve_bounds(const struct segment_hull *h, struct segment_bounds *b)
 {
     b->axes = h->axes;
     hull_bounds(h, 1, b);
@@ -152,22 +152,22 @@ static void curve_bounds(const struct piece_hull *h, struct piece_bounds *b)
     }
 }
 
-void piece_rest_start(struct piece_rest *r, const struct piece *p)
+void segment_rest_start(struct segment_rest *r, const struct segment *p)
 {
     const double one = DEGREE / p->length, two = one * (DEGREE - 1) / p->length;
     const double three = two * (DEGREE - 2) / p->length;
-    struct piece_hull *h = &r->hull;
+    struct segment_hull *h = &r->hull;
 
-    r->piece = p;
+    r->segment = p;
     r->from = 0.0;
     h->axes = h->axis[0] = 0;
-    for (int i = 0; p->kind == PIECE_CURVE && i < AXES; i++) {
+    for (int i = 0; p->kind == SEGMENT_CURVE && i < AXES; i++) {
         const double c1 = p->control[1][i], c2 = p->control[2][i], c3 = p->control[3][i];
         const double c4 = p->control[4][i], c5 = p->control[5][i];
         if (c1 == 0.0 && c2 == 0.0 && c3 == 0.0 && c4 == 0.0 && c5 == 0.0) {
             continue;
         }
-        double(*d)[PIECE_POINTS - 1] = h->control[h->axes];
+        double(*d)[SEGMENT_POINTS - 1] = h->control[h->axes];
         const double d1 = c2 - c1, d2 = c3 - c2, d3 = c4 - c3, d4 = c5 - c4;
         const double e0 = d1 - c1, e1 = d2 - d1, e2 = d3 - d2, e3 = d4 - d3;
         d[0][0] = one * c1;
@@ -187,64 +187,64 @@ void piece_rest_start(struct piece_rest *r, const struct piece *p)
 }
 
 /* `before` gets the hull of the part before `to`; the rest keeps that of the part behind it. */
-static void cut(struct piece_rest *r, double to, struct piece_hull *before)
+static void cut(struct segment_rest *r, double to, struct segment_hull *before)
 {
-    const double t = (to - r->from) / (r->piece->length - r->from);
-    struct piece_hull *h = &r->hull;
+    const double t = (to - r->from) / (r->segment->length - r->from);
+    struct segment_hull *h = &r->hull;
 
     before->axes = h->axes;
     for (int i = 0; i < h->axes; i++) {
         before->axis[i] = h->axis[i];
-        for (int n = 0; n < PIECE_DERIVATIVES; n++) {
+        for (int n = 0; n < SEGMENT_DERIVATIVES; n++) {
             bernstein_cut(h->control[i][n], DEGREE - 1 - n, t, before->control[i][n]);
         }
     }
     r->from = to;
 }
 
-static void bounds(const struct piece *p, double from, double to, const struct piece_hull *h,
-                   struct piece_bounds *b)
+static void bounds(const struct segment *p, double from, double to, const struct segment_hull *h,
+                   struct segment_bounds *b)
 {
     memset(b, 0, sizeof *b);
-    if (p->kind == PIECE_CURVE) {
+    if (p->kind == SEGMENT_CURVE) {
         curve_bounds(h, b);
-    } else if (p->kind == PIECE_ARC) {
-        piece_arc_bounds(p, from, to, b);
-    } else if (p->kind == PIECE_CUBIC) {
+    } else if (p->kind == SEGMENT_ARC) {
+        segment_arc_bounds(p, from, to, b);
+    } else if (p->kind == SEGMENT_CUBIC) {
         cubic_bounds(p, from, to, b);
     } else {
         line_bounds(p, b);
     }
 }
 
-void piece_rest_bounds(const struct piece_rest *r, struct piece_bounds *b)
+void segment_rest_bounds(const struct segment_rest *r, struct segment_bounds *b)
 {
-    bounds(r->piece, r->from, r->piece->length, &r->hull, b);
+    bounds(r->segment, r->from, r->segment->length, &r->hull, b);
 }
 
-void piece_rest_cut(struct piece_rest *r, double to, struct piece_bounds *b)
+void segment_rest_cut(struct segment_rest *r, double to, struct segment_bounds *b)
 {
     const double from = r->from;
-    struct piece_hull before;
+    struct segment_hull before;
 
-    if (r->piece->kind == PIECE_CURVE && to < r->piece->length) {
+    if (r->segment->kind == SEGMENT_CURVE && to < r->segment->length) {
         cut(r, to, &before);
-        bounds(r->piece, from, to, &before, b);
+        bounds(r->segment, from, to, &before, b);
     } else {
-        bounds(r->piece, from, to, &r->hull, b);
+        bounds(r->segment, from, to, &r->hull, b);
         r->from = to;
     }
 }
 
-void piece_bounds(const struct piece *p, double from, double to, struct piece_bounds *b)
+void segment_bounds(const struct segment *p, double from, double to, struct segment_bounds *b)
 {
-    struct piece_hull before;
-    struct piece_rest r;
+    struct segment_hull before;
+    struct segment_rest r;
 
-    piece_rest_start(&r, p);
-    if (p->kind == PIECE_CURVE && from > 0.0) {
+    segment_rest_start(&r, p);
+    if (p->kind == SEGMENT_CURVE && from > 0.0) {
         cut(&r, from, &before);
     }
     r.from = from;
-    piece_rest_cut(&r, to, b);
+    segment_rest_cut(&r, to, b);
 }

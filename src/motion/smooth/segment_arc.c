@@ -1,4 +1,4 @@
-#include "piece_arc.h"
+#include "segment_arc.h"
 
 #include <math.h>
 #include <string.h>
@@ -8,7 +8,7 @@
 
 static const double TURN = 6.283185307179586;
 
-void piece_arc_at(const struct piece *p, double u, struct piece_state *s)
+void segment_arc_at(const struct segment *p, double u, struct segment_state *s)
 {
     const struct path *a = &p->path;
     const double part = (p->from + u) / a->length, per = a->sweep / a->length;
@@ -80,7 +80,8 @@ static struct range swing(const struct part *t, double a, double b, double from,
 
 /* Derivatives of (radius + growth u) (x cos + y sin); a quarter turn adds to the angle with each.
  */
-static void turn_bounds(struct piece_bounds *b, int axis, const struct part *t, double x, double y)
+static void turn_bounds(struct segment_bounds *b, int axis, const struct part *t, double x,
+                        double y)
 {
     const double most = x == 0.0 || y == 0.0 ? fabs(x + y) : sqrt(x * x + y * y);
     const double sign = t->per < 0.0 ? -1.0 : 1.0;
@@ -95,7 +96,7 @@ static void turn_bounds(struct piece_bounds *b, int axis, const struct part *t, 
     const struct range c = swing(t, e[0], e[1], sign * f[0], sign * f[1], most);
     const struct range d = swing(t, f[0], f[1], -sign * e[0], -sign * e[1], most);
     const struct range cycle[4] = { c, d, minus(c), minus(d) };
-    for (int n = 1; n <= PIECE_DERIVATIVES; n++) {
+    for (int n = 1; n <= SEGMENT_DERIVATIVES; n++) {
         const double scale = power * t->per, side = n * power * t->growth;
         const struct range turned = times(cycle[n], scale * t->radius[0], scale * t->radius[1]);
         const struct range grown = times(cycle[n - 1], side, side);
@@ -106,7 +107,7 @@ static void turn_bounds(struct piece_bounds *b, int axis, const struct part *t, 
 }
 
 /* Bounds of axes that follow evenly: their slope is constant. */
-static void even_bounds(const struct path *a, struct piece_bounds *b)
+static void even_bounds(const struct path *a, struct segment_bounds *b)
 {
     for (int i = 0; i < AXES; i++) {
         b->low[0][i] = b->high[0][i] = b->slope[0][i] = b->slope[1][i] =
@@ -114,7 +115,7 @@ static void even_bounds(const struct path *a, struct piece_bounds *b)
     }
 }
 
-static void look_at_axes(struct piece_bounds *b)
+static void look_at_axes(struct segment_bounds *b)
 {
     for (int i = 0; i < AXES; i++) {
         b->axis[b->axes] = i;
@@ -122,7 +123,7 @@ static void look_at_axes(struct piece_bounds *b)
     }
 }
 
-void piece_arc_bounds(const struct piece *p, double from, double to, struct piece_bounds *b)
+void segment_arc_bounds(const struct segment *p, double from, double to, struct segment_bounds *b)
 {
     const struct path *a = &p->path;
     const bool tilted = a->plane == PATH_TILTED;
