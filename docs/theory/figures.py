@@ -12,9 +12,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from pace_rides import Chain, Orders, hermite, limits, place, planned, ride
 from scurve_moves import MOVE, scurve_positions, scurve_totals
 from shape_paths import Segment, lines, shaped
+from speed_rides import Chain, Orders, hermite, limits, place, planned, ride
 
 HERE = Path(__file__).parent
 BLUE, RED, GREEN, GREY, ORANGE = "#1f5fa8", "#c0392b", "#2e8b57", "#777777", "#d98200"

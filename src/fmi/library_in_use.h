@@ -20,17 +20,17 @@
 #define MEAN_IN_USE(mean, trajectory) \
     FMU_WHEN(mean, trajectory.motion, TRAJECTORY_CHAIN, TRAJECTORY_CHAIN)
 
-/* A struct curve_plan: shape and pace are made when a curve begins. */
+/* A struct curve_plan: shape and speed profile are made when a curve begins. */
 #define CURVE_IN_USE(curve, trajectory) \
     FMU_WHEN(curve.shape, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
     FMU_WHEN(curve.shape.run.vertex, curve.shape.running, 1, 1) \
     FMU_LIST(curve.shape.run.vertex, curve.shape.run.vertices) \
     FMU_BETWEEN(curve.shape.segment, curve.shape.gone, curve.shape.made, 0) \
     FMU_BETWEEN(curve.shape.mark, curve.shape.marks_gone, curve.shape.marks, 0) \
-    FMU_WHEN(curve.pace, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
-    FMU_RING(curve.pace.ring, curve.pace.at.head, curve.pace.count, PACE_KEPT) \
-    FMU_TO_END(curve.pace.plan[0].node, curve.pace.plan[0].first) \
-    FMU_TO_END(curve.pace.plan[1].node, curve.pace.plan[1].first)
+    FMU_WHEN(curve.profile, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
+    FMU_RING(curve.profile.ring, curve.profile.at.head, curve.profile.count, SPEED_PROFILE_KEPT) \
+    FMU_TO_END(curve.profile.plan[0].node, curve.profile.plan[0].first) \
+    FMU_TO_END(curve.profile.plan[1].node, curve.profile.plan[1].first)
 
 /* A struct mcc. */
 #define MCC_IN_USE(mcc) \

@@ -14,8 +14,8 @@ static struct mcc m, before; /* 1.4 MB each: not on the stack */
 static int64_t sum[AXES];    /* [pulses] of all frames since the start */
 static double slowest;       /* [s] longest deceleration time so far */
 
-/* Everything but the shape and the pace of curves, most of the bytes: nothing here turns curves on,
- * so they are zeros all the time, and a comparison of the whole would tell. */
+/* Everything but the shape and the speed profile of curves, most of the bytes: nothing here turns
+ * curves on, so they are zeros all the time, and a comparison of the whole would tell. */
 static void remember(void)
 {
     const size_t behind = offsetof(struct mcc, queue);

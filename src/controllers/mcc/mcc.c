@@ -10,7 +10,7 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     }
     memset(m, 0, sizeof *m);
     m->machine = *machine;
-    m->curve_plan.limits = machine_pace(machine);
+    m->curve_plan.limits = machine_speed_limits(machine);
     for (int i = 0; i < AXES; i++) {
         if (m->machine.axis[i].max_dda == 0) {
             m->machine.axis[i].max_dda = machine_dda_limit(machine);

@@ -138,7 +138,7 @@ int MCC_update_param(struct mcc *m)
                    w.axis[i].inverted != m->machine.axis[i].inverted, &w.axis[i]);
     }
     m->machine = w;
-    m->curve_plan.limits = machine_pace(&w);
+    m->curve_plan.limits = machine_speed_limits(&w);
     m->signals = signals_turned(&card, &w);
     return MCC_NO_ERR;
 }

@@ -49,7 +49,7 @@ static bool limit(const struct home_cycle_input *in, int i, double direction)
     return ((direction > 0.0 ? in->plus : in->minus) >> i & 1) != 0;
 }
 
-static void enter(struct home_course *c, enum home_cycle_phase phase)
+static void enter(struct home_search *c, enum home_cycle_phase phase)
 {
     c->phase = phase;
     c->begin = c->motion.commanded;
@@ -112,7 +112,7 @@ int64_t home_cycle_zero(const struct home_cycle *h, int axis)
 
 static void search(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     if (seen) {
         c->stopping = true;
@@ -128,7 +128,7 @@ static void search(struct home_cycle *h, int i, const struct home_cycle_input *i
 
 static void turn(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     c->passed = c->passed || seen;
     if (c->passed && !on(h, i, in)) {
@@ -142,7 +142,7 @@ static void turn(struct home_cycle *h, int i, const struct home_cycle_input *in,
 static void back(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
     const struct home_axis *a = &h->config.axis[i];
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     c->passed = c->passed || seen;
     if (limit(in, i, -way(a))) {
@@ -158,7 +158,7 @@ static void back(struct home_cycle *h, int i, const struct home_cycle_input *in,
 static void edge(struct home_cycle *h, int i, const struct home_cycle_input *in)
 {
     const struct home_axis *a = &h->config.axis[i];
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
     const bool latched = (in->latched >> i & 1) != 0;
 
     c->off = c->off || !on(h, i, in);
@@ -175,7 +175,7 @@ static void edge(struct home_cycle *h, int i, const struct home_cycle_input *in)
 /* The axis rests behind what a phase has found. */
 static void next_phase(struct home_cycle *h, int i)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     switch (c->phase) {
     case HOME_CYCLE_TURN:   enter(c, HOME_CYCLE_SEARCH); break;
@@ -191,7 +191,7 @@ static void next_phase(struct home_cycle *h, int i)
 
 static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
     const bool seen = on(h, i, in) || (in->latched >> i & 1) != 0;
 
     if (c->stopping) {
@@ -236,7 +236,7 @@ static int32_t go(struct home_cycle *h, int i)
     const struct home_axis *a = &h->config.axis[i];
     const double period = h->config.period;
     const struct home_limits limits = { a->acc * period * period, a->start * period };
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     if (c->stopping || h->state != HOME_CYCLE_RUNNING) {
         return home_motion_run(&c->motion, &limits, 0.0);

@@ -78,7 +78,7 @@ struct home_cycle_input {
     int64_t latch[CARD_AXES];    /* [pulses] the position at its clock, the latest */
 };
 
-struct home_course {
+struct home_search {
     enum home_cycle_phase phase;
     bool stopping;       /* found; it comes to rest */
     bool turned, passed; /* met a limit in the search; was on the switch in this phase */
@@ -95,7 +95,7 @@ struct home_cycle {
     int32_t fault_axis; /* -1 none */
     uint32_t mask;      /* axes to be homed */
     int32_t order;      /* of those that go now */
-    struct home_course axis[CARD_AXES];
+    struct home_search axis[CARD_AXES];
 };
 
 /* Whether every value lies in its range and is finite. */

@@ -5,7 +5,7 @@
 
 #include "bow.h"
 #include "el_extremes.h"
-#include "pace_smooth.h"
+#include "speed_smooth.h"
 
 /* A motion that will not get this much further [s] before it has to brake waits no longer for
  * commands to come. */
@@ -24,11 +24,11 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
     memset(c, 0, sizeof *c);
     memcpy(c->point, first->path.start, sizeof c->point);
     shape_start(&m->shape, first->merge);
-    pace_start(&m->pace, &m->limits);
+    speed_profile_start(&m->profile, &m->limits);
     m->joined = 0;
     m->joined_way = m->part = m->start = 0.0;
     c->goal = INFINITY;
-    c->place = m->pace.at;
+    c->place = m->profile.at;
 }
 
 /* Places that are nearer to each other are one: a goal at the end of a segment is that end, though
@@ -36,7 +36,8 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
  * them would have no acceleration that could be told. [mm] */
 static const double NEAR = 1e-9;
 
-/* Give the pace the next finished segment, or what is left of it, or what lies before the goal. */
+/* Give the speed profile the next finished segment, or what is left of it, or what lies before the
+ * goal. */
 static bool join_one(const struct curve *c, struct curve_plan *m)
 {
     const struct segment *whole = shape_segment(&m->shape, m->joined);
@@ -45,18 +46,18 @@ static bool join_one(const struct curve *c, struct curve_plan *m)
     struct segment part;
 
     if (m->part <= 0.0 && to >= whole->length) {
-        if (!pace_join(&m->pace, whole)) {
+        if (!speed_profile_join(&m->profile, whole)) {
             return false;
         }
     } else if (to > m->part + NEAR) {
         part = *whole;
         shape_cut(&part, m->part, to);
-        if (!pace_join(&m->pace, &part)) {
+        if (!speed_profile_join(&m->profile, &part)) {
             return false;
         }
     }
     m->part = to;
-    m->pace.closed = to < whole->length || whole->rest;
+    m->profile.closed = to < whole->length || whole->rest;
     if (to >= whole->length) {
         m->joined_way += whole->length;
         m->part = 0.0;
@@ -65,14 +66,14 @@ static bool join_one(const struct curve *c, struct curve_plan *m)
     return true;
 }
 
-/* Give the pace finished segments up to the goal, to one that ends at rest, or to the last of
- * all. */
+/* Give the speed profile finished segments up to the goal, to one that ends at rest, or to the last
+ * of all. */
 static void join(struct curve *c, struct curve_plan *m)
 {
-    while (!m->pace.closed && m->joined < shape_count(&m->shape) && join_one(c, m)) {
+    while (!m->profile.closed && m->joined < shape_count(&m->shape) && join_one(c, m)) {
     }
-    m->pace.closed = m->pace.closed || (c->closed && m->joined == shape_count(&m->shape));
-    c->place = m->pace.at;
+    m->profile.closed = m->profile.closed || (c->closed && m->joined == shape_count(&m->shape));
+    c->place = m->profile.at;
 }
 
 /* Nothing more joins: the chain ends at rest at the end of what has been taken. */
@@ -109,24 +110,25 @@ static bool take(struct curve *c, struct curve_plan *m, struct ring *r)
 /* Whether the motion is about to brake for want of commands. */
 static bool starves(const struct curve *c, const struct curve_plan *m)
 {
-    return c->idle > 0 && pace_nears_end(&m->pace, WAIT * c->place.rate);
+    return c->idle > 0 && speed_profile_nears_end(&m->profile, WAIT * c->place.rate);
 }
 
 /* The motion has come to a rest behind which segments go on, but not to its goal. */
 static bool rests_between(const struct curve *c, const struct curve_plan *m)
 {
-    return m->pace.closed && pace_at_end(&m->pace) && m->joined < shape_count(&m->shape)
-           && !curve_waits(c);
+    return m->profile.closed && speed_profile_at_end(&m->profile)
+           && m->joined < shape_count(&m->shape) && !curve_waits(c);
 }
 
-/* Put the pace where the motion is; if its latest rest has been taken back, where that was. */
+/* Put the speed profile where the motion is; if its latest rest has been taken back, where that
+ * was. */
 static void resume(struct curve *c, struct curve_plan *m)
 {
     if (c->start == m->start) {
-        pace_put(&m->pace, &c->place);
+        speed_profile_put(&m->profile, &c->place);
     } else {
         c->start = m->start;
-        c->place = m->pace.at;
+        c->place = m->profile.at;
     }
 }
 
@@ -136,7 +138,7 @@ static double way_of(const struct curve *c)
     return c->start + c->place.way;
 }
 
-/* Segments that the pace has, the last one perhaps in part. */
+/* Segments that the speed profile has, the last one perhaps in part. */
 static int32_t segments_known(const struct curve_plan *m)
 {
     return m->joined + (m->part > 0.0);
@@ -154,11 +156,11 @@ static const struct segment *find(struct curve *c, const struct curve_plan *m, d
     return p;
 }
 
-/* Begin a pace at a way of the chain, at rest; the caller may give it a speed then. */
+/* Begin a speed profile at a way of the chain, at rest; the caller may give it a speed then. */
 static void set_out(struct curve *c, struct curve_plan *m, double way)
 {
     m->start = c->start = way;
-    pace_start(&m->pace, &m->limits);
+    speed_profile_start(&m->profile, &m->limits);
     join(c, m);
 }
 
@@ -191,8 +193,8 @@ static double halt_smooth(struct curve *c, struct curve_plan *m)
     double goal = next_block(c, m, way_of(c));
     bool ends = false;
 
-    while (!ends && goal < m->start + m->pace.end) {
-        ends = pace_smooth_end(&m->pace, goal - m->start);
+    while (!ends && goal < m->start + m->profile.end) {
+        ends = speed_smooth_end(&m->profile, goal - m->start);
         goal = ends ? goal : next_block(c, m, goal + NEAR);
     }
     if (ends) {
@@ -202,7 +204,7 @@ static double halt_smooth(struct curve *c, struct curve_plan *m)
             m->joined_way += shape_segment(&m->shape, m->joined++)->length;
         }
         m->part = goal - m->joined_way;
-        c->place = m->pace.at;
+        c->place = m->profile.at;
     }
     return goal;
 }
@@ -212,7 +214,7 @@ static double halt_smooth(struct curve *c, struct curve_plan *m)
 static double halt_quick(struct curve *c, struct curve_plan *m)
 {
     const double way = way_of(c), rate = c->place.rate;
-    double stop = pace_stop_way(&m->pace) - c->place.way, goal = 0.0;
+    double stop = speed_profile_stop_way(&m->profile) - c->place.way, goal = 0.0;
 
     while (goal < INFINITY) {
         goal = next_block(c, m, way + stop * (1.0 + MARGIN));
@@ -224,9 +226,9 @@ static double halt_quick(struct curve *c, struct curve_plan *m)
         m->joined_way = c->base;
         m->part = way - c->base;
         set_out(c, m, way);
-        m->pace.at.rate = rate;
-        c->place = m->pace.at;
-        stop = pace_stop_way(&m->pace);
+        m->profile.at.rate = rate;
+        c->place = m->profile.at;
+        stop = speed_profile_stop_way(&m->profile);
         if (way + stop <= goal) {
             break;
         }
@@ -241,7 +243,7 @@ static void halt(struct curve *c, struct curve_plan *m)
 {
     if (c->halts) {
         find(c, m, way_of(c));
-        c->goal = m->pace.smooth ? halt_smooth(c, m) : halt_quick(c, m);
+        c->goal = m->profile.smooth ? halt_smooth(c, m) : halt_quick(c, m);
         c->halts = c->goal == INFINITY && m->shape.marks_set < m->shape.marks;
     }
 }
@@ -259,12 +261,12 @@ double curve_advance(struct curve *c, struct curve_plan *m, struct ring *r, doub
     }
     halt(c, m);
     join(c, m);
-    dt = pace_advance(&m->pace, override, dt);
-    c->place = m->pace.at;
+    dt = speed_profile_advance(&m->profile, override, dt);
+    c->place = m->profile.at;
     while (rests_between(c, m) && dt > 0.0 && override > 0.0) {
-        set_out(c, m, m->start + m->pace.end);
-        dt = pace_advance(&m->pace, override, dt);
-        c->place = m->pace.at;
+        set_out(c, m, m->start + m->profile.end);
+        dt = speed_profile_advance(&m->profile, override, dt);
+        c->place = m->profile.at;
     }
     return curve_done(c, m) ? dt : 0.0;
 }
@@ -277,7 +279,7 @@ void curve_single(struct curve *c, struct curve_plan *m, bool on)
     c->halts = on && !curve_waits(c);
     if (!on && !curve_waits(c)) {
         c->goal = INFINITY;
-        m->pace.closed =
+        m->profile.closed =
             m->part <= 0.0 && m->joined > 0 && shape_segment(&m->shape, m->joined - 1)->rest;
     }
 }
@@ -340,7 +342,7 @@ bool curve_rests(const struct curve *c)
 
 bool curve_done(const struct curve *c, const struct curve_plan *m)
 {
-    return c->closed && m->pace.closed && pace_at_end(&m->pace)
+    return c->closed && m->profile.closed && speed_profile_at_end(&m->profile)
            && m->joined == shape_count(&m->shape);
 }
 
@@ -360,7 +362,7 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
     memcpy(low, c->point, sizeof c->point);
     memcpy(high, c->point, sizeof c->point);
     resume(&at, m);
-    const double stop = at.start + pace_stop_way(&m->pace);
+    const double stop = at.start + speed_profile_stop_way(&m->profile);
     for (double from = way_of(&at); segments_known(m) > 0 && from < stop;) {
         const struct segment *p = find(&at, m, from);
         const double end = el_min(stop, at.base + p->length);

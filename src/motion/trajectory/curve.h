@@ -1,42 +1,42 @@
 /* curve - commands in a row as one smooth curve, driven as fast as the limits of the axes allow.
  *
- *     ring ──> shape ──segments──> pace ──way──> point
+ *     ring ──> shape ──segments──> speed profile ──way──> point
  *              smooth path       speed along it
  *
- * Shape and pace are large and stand beside the trajectory, which keeps the place of the motion in
- * them: an earlier place can be put back until what lies behind the tool is dropped.
+ * Shape and speed profile are large and stand beside the trajectory, which keeps the place of the
+ * motion in them: an earlier place can be put back until what lies behind the tool is dropped.
  */
 #ifndef CURVE_H
 #define CURVE_H
 
-#include "pace.h"
+#include "speed_profile.h"
 #include "ring.h"
 #include "shape.h"
 
 /* What stands beside the trajectory. */
 struct curve_plan {
-    struct pace_limits limits; /* limits of chains from now on */
-    bool last;                 /* no more commands come for now: none is waited for */
-    double end[AXES];          /* [mm] end of the latest command taken */
-    int32_t joined;            /* number of finished segments of the shape that the pace has */
-    double joined_way;         /* [mm] their end on the chain */
-    double part;               /* [mm] length of the next one that the pace has, too */
-    double start;              /* [mm] where the pace begins, from the start of the chain */
+    struct speed_limits limits; /* limits of chains from now on */
+    bool last;                  /* no more commands come for now: none is waited for */
+    double end[AXES];           /* [mm] end of the latest command taken */
+    int32_t joined;    /* number of finished segments of the shape that the speed profile has */
+    double joined_way; /* [mm] their end on the chain */
+    double part;       /* [mm] length of the next one that the speed profile has, too */
+    double start;      /* [mm] where the speed profile begins, from the start of the chain */
     struct shape shape;
-    struct pace pace;
+    struct speed_profile profile;
 };
 
 struct curve {
-    struct pace_place place; /* the motion since it rested last */
-    double start;            /* [mm] where it rested, from the start of the chain */
-    bool closed;             /* no further command joins */
-    bool halts;              /* single block: a goal is to be chosen */
-    double goal;             /* [mm] where a block begins, before which it rests; or INFINITY */
-    int32_t line;            /* line of the latest mark */
-    int32_t idle;            /* points since the ring has been empty */
-    int32_t begun;           /* number of marks of the shape that the tool has passed */
-    int32_t at;              /* segment of the tool, from the first that the shape keeps */
-    double base;             /* [mm] start of that segment on the chain */
+    struct speed_profile_place place; /* the motion since it rested last */
+    double start;                     /* [mm] where it rested, from the start of the chain */
+    bool closed;                      /* no further command joins */
+    bool halts;                       /* single block: a goal is to be chosen */
+    double goal;   /* [mm] where a block begins, before which it rests; or INFINITY */
+    int32_t line;  /* line of the latest mark */
+    int32_t idle;  /* points since the ring has been empty */
+    int32_t begun; /* number of marks of the shape that the tool has passed */
+    int32_t at;    /* segment of the tool, from the first that the shape keeps */
+    double base;   /* [mm] start of that segment on the chain */
     double point[AXES], velocity[AXES]; /* [mm], [mm/s] of the tool */
 };
 
@@ -72,7 +72,7 @@ const struct shape_mark *curve_begun(struct curve *c, const struct curve_plan *m
 void curve_drop(struct curve *c, struct curve_plan *m);
 
 /* Smallest and largest coordinates of the way from the tool to where an override of 0 brings it to
- * rest by pace_stop_way, or up to 1 nm more. [mm] */
+ * rest by speed_profile_stop_way, or up to 1 nm more. [mm] */
 void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[AXES],
                        double high[AXES]);
 

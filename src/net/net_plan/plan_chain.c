@@ -9,7 +9,7 @@
 static const double ANY = 1.0;
 
 void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
-                      const struct pace_limits *l)
+                      const struct speed_limits *l)
 {
     c->open = true;
     c->full = false;
@@ -21,7 +21,7 @@ void plan_chain_start(struct plan_chain *c, const double place[AXES], double tol
     memcpy(c->end, place, sizeof c->end);
     memcpy(c->place, place, sizeof c->place);
     shape_start(&c->shape, tolerance);
-    pace_start(&c->pace, l);
+    speed_profile_start(&c->profile, l);
 }
 
 bool plan_chain_line(struct plan_chain *c, const double place[AXES], double feed)
@@ -55,15 +55,15 @@ bool plan_chain_ready(const struct plan_chain *c)
     return c->full || !c->open;
 }
 
-/* Finished segments to the pace, up to one with a rest at its end. */
+/* Finished segments to the speed profile, up to one with a rest at its end. */
 static void join(struct plan_chain *c)
 {
-    while (!c->pace.closed && c->joined < shape_count(&c->shape)) {
+    while (!c->profile.closed && c->joined < shape_count(&c->shape)) {
         const struct segment *p = shape_segment(&c->shape, c->joined);
-        if (!pace_join(&c->pace, p)) {
+        if (!speed_profile_join(&c->profile, p)) {
             return;
         }
-        c->pace.closed = p->rest;
+        c->profile.closed = p->rest;
         c->joined++;
     }
 }
@@ -71,7 +71,7 @@ static void join(struct plan_chain *c)
 /* The place of the motion; what it has passed is forgotten. */
 static void look(struct plan_chain *c)
 {
-    const double way = c->pace.at.way;
+    const double way = c->profile.at.way;
     struct segment_state s;
     int32_t passed = 0;
 
@@ -93,13 +93,13 @@ static void look(struct plan_chain *c)
 /* It rests where a segment says so, or at the end. */
 static bool rests(const struct plan_chain *c)
 {
-    return c->pace.closed && pace_at_end(&c->pace);
+    return c->profile.closed && speed_profile_at_end(&c->profile);
 }
 
 double plan_chain_advance(struct plan_chain *c, double dt)
 {
     join(c);
-    dt = pace_advance(&c->pace, 1.0, dt);
+    dt = speed_profile_advance(&c->profile, 1.0, dt);
     look(c);
     while (rests(c)) { /* the next segments begin at rest */
         shape_drop(&c->shape, c->joined);
@@ -109,10 +109,10 @@ double plan_chain_advance(struct plan_chain *c, double dt)
             return dt;
         }
         c->stops++;
-        pace_start(&c->pace, &c->limits);
+        speed_profile_start(&c->profile, &c->limits);
         join(c);
         if (dt > 0.0) {
-            dt = pace_advance(&c->pace, 1.0, dt);
+            dt = speed_profile_advance(&c->profile, 1.0, dt);
             look(c);
         }
     }

@@ -1,6 +1,6 @@
 /* plan_chain - a line of vertices as one smooth curve, driven as fast as the axes allow.
  *
- *     vertices ──> shape ──segments──> pace ──way──> place
+ *     vertices ──> shape ──segments──> speed profile ──way──> place
  *
  * The curve keeps within a tolerance of the line, both ways. Vertices come as there is room; what
  * is behind the tool is forgotten, so the size does not depend on how many there are.
@@ -8,26 +8,26 @@
 #ifndef PLAN_CHAIN_H
 #define PLAN_CHAIN_H
 
-#include "pace.h"
+#include "speed_profile.h"
 #include "shape.h"
 
 struct plan_chain {
-    bool open;          /* vertices may come */
-    bool full;          /* none has room before the motion goes on */
-    int32_t stops;      /* rests before its end so far */
-    double tolerance;   /* [mm] */
-    double end[AXES];   /* [mm] the latest vertex */
-    int32_t joined;     /* segments that the pace has, from the first that the shape keeps */
-    double base;        /* [mm] of the pace: start of the first segment that the shape keeps */
+    bool open;        /* vertices may come */
+    bool full;        /* none has room before the motion goes on */
+    int32_t stops;    /* rests before its end so far */
+    double tolerance; /* [mm] */
+    double end[AXES]; /* [mm] the latest vertex */
+    int32_t joined;   /* segments that the speed profile has, from the first that the shape keeps */
+    double base; /* [mm] of the speed profile: start of the first segment that the shape keeps */
     double place[AXES]; /* [mm] where the motion is */
-    struct pace_limits limits;
+    struct speed_limits limits;
     struct shape shape;
-    struct pace pace;
+    struct speed_profile profile;
 };
 
 /* A line begins there. */
 void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
-                      const struct pace_limits *l);
+                      const struct speed_limits *l);
 
 /* On to a vertex at a speed of at most feed [mm/s]. False: no room, drive on first. */
 bool plan_chain_line(struct plan_chain *c, const double place[AXES], double feed);

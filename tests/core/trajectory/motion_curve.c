@@ -299,7 +299,7 @@ static void late(void)
     CHECK(!curve.closed);
     stairs(20, 3.0);
     for (; !curve.closed && n < 20000; n++) {
-        room = plan.pace.end - pace_stop_way(&plan.pace);
+        room = plan.profile.end - speed_profile_stop_way(&plan.profile);
         const bool starves = ring.count == 0 && room <= 0.05 * curve.place.rate;
         tick(1.0);
         CHECK(curve.closed == starves);
@@ -412,7 +412,7 @@ static void extent(void)
             tick(1.0);
         }
         double low[AXES], high[AXES], min[2], max[2];
-        const double stop = plan.start + pace_stop_way(&plan.pace);
+        const double stop = plan.start + speed_profile_stop_way(&plan.profile);
         curve_stop_extent(&curve, &plan, low, high);
         look_to(stop, min, max);
         for (int k = 0; k < 2; k++) {

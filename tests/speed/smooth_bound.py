@@ -1,9 +1,9 @@
 """Least time with limited jerk along a chain: linear programs, each near the answer before it."""
 
 import numpy as np
-from pace_rides import LIBRARY, look
 from scipy import sparse
 from scipy.optimize import linprog
+from speed_rides import LIBRARY, look
 
 AXES = 2
 LEAST = 1e-2  # [mm^2/s^2] x in the denominators
@@ -15,7 +15,7 @@ def bound(told: np.ndarray, acc: float, jerk: float, feed: float, step: float = 
     With x = (du/dt)^2 an axis has the jerk (r' x'' / 2 + 3/2 r'' x' + r''' x) sqrt(x); the tangent
     of 1 / sqrt(x) lies below it, so that each program stays within the limit.
     """
-    length = LIBRARY.pace_batch_segments(len(told), told)
+    length = LIBRARY.speed_batch_segments(len(told), told)
     n = int(np.ceil(length / step))
     h = length / n
     ways = h * (np.arange(n) + 0.5)

@@ -1,8 +1,8 @@
-/* Rides along chains of segments in one call, for tests/helpers/pace_rides.py. */
+/* Rides along chains of segments in one call, for tests/helpers/speed_rides.py. */
 #include <math.h>
 #include <string.h>
 
-#include "pace.h"
+#include "speed_profile.h"
 
 struct told {
     double kind;                          /* enum segment_kind */
@@ -17,12 +17,12 @@ struct sample {
     double point[AXES], velocity[AXES], acc[AXES], jerk[AXES];
 };
 
-static struct pace pace;
+static struct speed_profile profile;
 static struct segment segments[100000];
 static double starts[100001];
 
 /* Make the segments; returns the length of the chain. [mm] */
-double pace_batch_segments(int64_t n, const struct told *told)
+double speed_batch_segments(int64_t n, const struct told *told)
 {
     for (int64_t i = 0; i < n; i++) {
         const struct told *t = &told[i];
@@ -60,25 +60,26 @@ static void look(int64_t *segment, int64_t n, struct sample *s)
     struct segment_state state;
     struct segment_bounds b;
 
-    while (*segment + 1 < n && pace.at.way >= starts[*segment + 1]) {
+    while (*segment + 1 < n && profile.at.way >= starts[*segment + 1]) {
         ++*segment;
     }
-    double u = pace.at.way - starts[*segment];
+    double u = profile.at.way - starts[*segment];
     u = u < 0.0 ? 0.0 : u > segments[*segment].length ? segments[*segment].length : u;
     segment_at(&segments[*segment], u, &state);
-    s->way = pace.at.way;
-    s->rate = pace.at.rate;
-    s->gain = pace.at.gain;
-    s->twitch = pace.at.twitch;
+    s->way = profile.at.way;
+    s->rate = profile.at.rate;
+    s->gain = profile.at.gain;
+    s->twitch = profile.at.twitch;
     const double from = fmin(u, (1.0 - 1e-9) * segments[*segment].length);
     segment_bounds(&segments[*segment], from, from + 1e-9 * segments[*segment].length, &b);
     for (int k = 0; k < AXES; k++) {
         s->point[k] = state.point[k];
-        s->velocity[k] = state.slope[k] * pace.at.rate;
-        s->jerk[k] = b.low[2][k] * pace.at.rate * pace.at.rate * pace.at.rate
-                     + 3.0 * state.bend[k] * pace.at.rate * pace.at.gain
-                     + state.slope[k] * pace.at.twitch;
-        s->acc[k] = state.bend[k] * pace.at.rate * pace.at.rate + state.slope[k] * pace.at.gain;
+        s->velocity[k] = state.slope[k] * profile.at.rate;
+        s->jerk[k] = b.low[2][k] * profile.at.rate * profile.at.rate * profile.at.rate
+                     + 3.0 * state.bend[k] * profile.at.rate * profile.at.gain
+                     + state.slope[k] * profile.at.twitch;
+        s->acc[k] =
+            state.bend[k] * profile.at.rate * profile.at.rate + state.slope[k] * profile.at.gain;
     }
 }
 
@@ -86,27 +87,29 @@ static void look(int64_t *segment, int64_t n, struct sample *s)
  * of the motion), with an override for each of `count` steps of dt; the last one goes on. Returns
  * the time to the end [s], or -1 if there is none or a step spends all it may without its time;
  * samples (or NULL) are taken after each step. */
-double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, double dt,
-                       int64_t count, const double *override, int64_t most, struct sample *s)
+double speed_batch_ride(int64_t n, const struct speed_limits *l, int64_t ahead, double dt,
+                        int64_t count, const double *override, int64_t most, struct sample *s)
 {
     int64_t joined = 0, at = 0;
 
-    pace_start(&pace, l);
+    speed_profile_start(&profile, l);
     for (int64_t i = 0; i < most; i++) {
-        while (at + 1 < n && pace.at.way >= starts[at + 1]) {
+        while (at + 1 < n && profile.at.way >= starts[at + 1]) {
             at++;
         }
-        while (joined < n && joined <= at + ahead && pace_join(&pace, &segments[joined])) {
-            starts[++joined] = pace.end;
+        while (joined < n && joined <= at + ahead
+               && speed_profile_join(&profile, &segments[joined])) {
+            starts[++joined] = profile.end;
         }
-        const double left = pace_advance(&pace, override[i < count ? i : count - 1], dt);
+        const double left =
+            speed_profile_advance(&profile, override[i < count ? i : count - 1], dt);
         if (s) {
             look(&at, n, &s[i]);
         }
-        if (joined == n && pace_at_end(&pace)) {
+        if (joined == n && speed_profile_at_end(&profile)) {
             return dt * (double)(i + 1) - left;
         }
-        if (left > 0.0 && pace.at.left > 0.0) {
+        if (left > 0.0 && profile.at.left > 0.0) {
             return -1.0;
         }
     }
@@ -114,37 +117,39 @@ double pace_batch_ride(int64_t n, const struct pace_limits *l, int64_t ahead, do
 }
 
 /* Where the ride would come to rest now. [mm] */
-double pace_batch_stop_way(void)
+double speed_batch_stop_way(void)
 {
-    return pace_stop_way(&pace);
+    return speed_profile_stop_way(&profile);
 }
 
 /* Widest gap between the parts that the ride knows with limited jerk, or behind them. [mm] */
-double pace_batch_gap(void)
+double speed_batch_gap(void)
 {
     double widest = 0.0;
 
-    for (int32_t i = 0; i < pace.count; i++) {
-        const struct pace_box *g = &pace.ring[(pace.at.head + i) % PACE_CELLS].box;
+    for (int32_t i = 0; i < profile.count; i++) {
+        const struct speed_box *g = &profile.ring[(profile.at.head + i) % SPEED_PROFILE_CELLS].box;
         const double next =
-            i + 1 < pace.count ? pace.ring[(pace.at.head + i + 1) % PACE_CELLS].box.from : pace.end;
+            i + 1 < profile.count
+                ? profile.ring[(profile.at.head + i + 1) % SPEED_PROFILE_CELLS].box.from
+                : profile.end;
         widest = fmax(widest, fabs(next - (g->from + g->length)));
     }
     return widest;
 }
 
 /* Go on with the ride as it is; returns the time left at its end, and the sample. [s] */
-double pace_batch_go(int64_t n, double override, double dt, struct sample *s)
+double speed_batch_go(int64_t n, double override, double dt, struct sample *s)
 {
     int64_t at = 0;
-    const double left = pace_advance(&pace, override, dt);
+    const double left = speed_profile_advance(&profile, override, dt);
 
     look(&at, n, s);
     return left;
 }
 
 /* The path at n ways. */
-void pace_batch_path(int64_t segments_made, int64_t n, const double *way, struct segment_state *s)
+void speed_batch_path(int64_t segments_made, int64_t n, const double *way, struct segment_state *s)
 {
     int64_t at = 0;
 
@@ -157,30 +162,31 @@ void pace_batch_path(int64_t segments_made, int64_t n, const double *way, struct
 }
 
 /* What a plan knows of a cell: its length [mm], the most x of the feed, of a = 0 within the limits,
- * at its start and its end [mm^2/s^2] (pace_cell.h), and its planes [s^2/mm^2]. */
+ * at its start and its end [mm^2/s^2] (speed_cell.h), and its planes [s^2/mm^2]. */
 struct known {
     double length, feed, flat, most, top, planes;
-    double plane[PACE_PLANES][2];
+    double plane[SPEED_PLANES][2];
 };
 
 /* Plan the n segments, which must fit, from rest. */
-static void plan_all(int64_t n, const struct pace_limits *l, double override)
+static void plan_all(int64_t n, const struct speed_limits *l, double override)
 {
-    pace_start(&pace, l);
+    speed_profile_start(&profile, l);
     for (int64_t i = 0; i < n; i++) {
-        pace_join(&pace, &segments[i]);
+        speed_profile_join(&profile, &segments[i]);
     }
-    pace_advance(&pace, override, 0.0);
+    speed_profile_advance(&profile, override, 0.0);
 }
 
 /* The cells of that plan without limited jerk, at most so many; returns their number. */
-int64_t pace_batch_cells(int64_t n, const struct pace_limits *l, double override, int64_t most,
-                         struct known *known)
+int64_t speed_batch_cells(int64_t n, const struct speed_limits *l, double override, int64_t most,
+                          struct known *known)
 {
     plan_all(n, l, override);
-    const int64_t count = pace.count < most ? pace.count : most;
+    const int64_t count = profile.count < most ? profile.count : most;
     for (int64_t i = 0; i < count; i++) {
-        const struct pace_cell *c = &pace.ring[(pace.at.head + i) % PACE_CELLS].cell;
+        const struct speed_cell *c =
+            &profile.ring[(profile.at.head + i) % SPEED_PROFILE_CELLS].cell;
         const double feed = fmin(c->feed * override, c->cap);
         known[i] = (struct known){ c->length, feed * feed, c->flat,    c->most,
                                    c->top,    c->planes,   { { 0.0 } } };
@@ -190,23 +196,23 @@ int64_t pace_batch_cells(int64_t n, const struct pace_limits *l, double override
 }
 
 /* The nodes of that plan with limited jerk, at most so many; returns their number. */
-int64_t pace_batch_nodes(int64_t n, const struct pace_limits *l, double override, int64_t most,
-                         struct pace_node *node)
+int64_t speed_batch_nodes(int64_t n, const struct speed_limits *l, double override, int64_t most,
+                          struct speed_node *node)
 {
     plan_all(n, l, override);
-    const struct pace_plan *plan = &pace.plan[pace.held];
-    const int64_t count = PACE_NODES - plan->first < most ? PACE_NODES - plan->first : most;
+    const struct speed_plan *plan = &profile.plan[profile.held];
+    const int64_t count = SPEED_NODES - plan->first < most ? SPEED_NODES - plan->first : most;
     memcpy(node, plan->node + plan->first, (size_t)count * sizeof *node);
     return count;
 }
 
 /* The boxes of that plan: start and length [mm], the most x of the feed and of the limits
  * [mm^2/s^2]; returns their number. */
-int64_t pace_batch_boxes(int64_t most, double (*box)[4])
+int64_t speed_batch_boxes(int64_t most, double (*box)[4])
 {
-    const int64_t count = pace.count < most ? pace.count : most;
+    const int64_t count = profile.count < most ? profile.count : most;
     for (int64_t i = 0; i < count; i++) {
-        const struct pace_box *g = &pace.ring[(pace.at.head + i) % PACE_CELLS].box;
+        const struct speed_box *g = &profile.ring[(profile.at.head + i) % SPEED_PROFILE_CELLS].box;
         const double row[4] = { g->from, g->length, g->feed * g->feed, g->cap * g->cap };
         memcpy(box[i], row, sizeof row);
     }

@@ -1,4 +1,4 @@
-"""Rides along chains of smooth segments, planned by src/motion/smooth/pace."""
+"""Rides along chains of smooth segments, planned by src/motion/smooth/speed_profile."""
 
 import ctypes
 import os
@@ -11,7 +11,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 AXES, POINTS = 6, 6
 LINE, ARC, CURVE = range(3)
-# struct told, struct sample and struct pace_limits of tests/pace/pace_batch.c.
+# struct told, struct sample and struct speed_limits of tests/speed/speed_batch.c.
 TOLD = np.dtype(
     [(name, float) for name in ("kind", "feed", "cap", "acc", "dec", "jerk", "length")]
     + [("control", float, (POINTS, AXES))]
@@ -22,7 +22,7 @@ SAMPLE = np.dtype(
 )
 STATE = np.dtype([(name, float, AXES) for name in ("point", "slope", "bend")])
 LIMITS = np.dtype([(name, float, AXES) for name in ("speed", "acc", "jerk")])
-# struct known and struct pace_node, and a row of pace_batch_boxes.
+# struct known and struct speed_node, and a row of speed_batch_boxes.
 CELL = np.dtype(
     [(name, float) for name in ("length", "feed", "flat", "most", "top", "planes")]
     + [("plane", float, (11, 2))]
@@ -30,12 +30,12 @@ CELL = np.dtype(
 NODE = np.dtype([(name, float) for name in ("at", "x", "b")])
 BOX = np.dtype([(name, float) for name in ("start", "length", "feed", "most")])
 
-LIBRARY = ctypes.CDLL(os.environ.get("PACE_BATCH", str(ROOT / "build/lib/pace_batch.so")))
+LIBRARY = ctypes.CDLL(os.environ.get("SPEED_BATCH", str(ROOT / "build/lib/speed_batch.so")))
 _TOLD, _SAMPLE, _LIMITS, _DOUBLES = (
     np.ctypeslib.ndpointer(t, flags="C_CONTIGUOUS") for t in (TOLD, SAMPLE, LIMITS, float)
 )
-LIBRARY.pace_batch_segments.argtypes = [ctypes.c_int64, _TOLD]
-LIBRARY.pace_batch_ride.argtypes = [
+LIBRARY.speed_batch_segments.argtypes = [ctypes.c_int64, _TOLD]
+LIBRARY.speed_batch_ride.argtypes = [
     ctypes.c_int64,
     _LIMITS,
     ctypes.c_int64,
@@ -45,18 +45,18 @@ LIBRARY.pace_batch_ride.argtypes = [
     ctypes.c_int64,
     _SAMPLE,
 ]
-LIBRARY.pace_batch_path.argtypes = [
+LIBRARY.speed_batch_path.argtypes = [
     ctypes.c_int64,
     ctypes.c_int64,
     _DOUBLES,
     np.ctypeslib.ndpointer(STATE, flags="C_CONTIGUOUS"),
 ]
-LIBRARY.pace_batch_path.restype = None
-LIBRARY.pace_batch_go.argtypes = [ctypes.c_int64, ctypes.c_double, ctypes.c_double, _SAMPLE]
+LIBRARY.speed_batch_path.restype = None
+LIBRARY.speed_batch_go.argtypes = [ctypes.c_int64, ctypes.c_double, ctypes.c_double, _SAMPLE]
 for each in ("cells", "nodes", "boxes"):
-    getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_int64
+    getattr(LIBRARY, f"speed_batch_{each}").restype = ctypes.c_int64
 for each in ("segments", "ride", "stop_way", "gap", "go"):
-    getattr(LIBRARY, f"pace_batch_{each}").restype = ctypes.c_double
+    getattr(LIBRARY, f"speed_batch_{each}").restype = ctypes.c_double
 
 
 @dataclass
@@ -145,9 +145,9 @@ def random_chain(dice: np.random.Generator, count: int, size: float, feed: float
 
 def look(told: np.ndarray, ways: np.ndarray) -> np.ndarray:
     """Points, r' and r'' of the path at rising ways."""
-    LIBRARY.pace_batch_segments(len(told), told)
+    LIBRARY.speed_batch_segments(len(told), told)
     states = np.zeros(len(ways), STATE)
-    LIBRARY.pace_batch_path(len(told), len(ways), np.ascontiguousarray(ways), states)
+    LIBRARY.speed_batch_path(len(told), len(ways), np.ascontiguousarray(ways), states)
     return states
 
 
@@ -160,14 +160,14 @@ def limits(acc: float | np.ndarray = 0.0, speed: float = 0.0, jerk: float = 0.0)
 
 def planned(told: np.ndarray, bounds: np.ndarray, what: str) -> np.ndarray:
     """Rows of CELL, NODE or BOX ("cells", "nodes", "boxes") of a plan of all segments from rest."""
-    LIBRARY.pace_batch_segments(len(told), told)
+    LIBRARY.speed_batch_segments(len(told), told)
     rows = np.zeros(2048, {"cells": CELL, "nodes": NODE, "boxes": BOX}[what])
     known = (ctypes.c_int64(len(told)), bounds.ctypes.data_as(ctypes.c_void_p))
     room = (ctypes.c_int64(len(rows)), rows.ctypes.data_as(ctypes.c_void_p))
     if what == "boxes":
         planned(told, bounds, "nodes")
-        return rows[: LIBRARY.pace_batch_boxes(*room)]
-    plan = LIBRARY.pace_batch_cells if what == "cells" else LIBRARY.pace_batch_nodes
+        return rows[: LIBRARY.speed_batch_boxes(*room)]
+    plan = LIBRARY.speed_batch_cells if what == "cells" else LIBRARY.speed_batch_nodes
     return rows[: plan(*known, ctypes.c_double(1.0), *room)]
 
 
@@ -193,10 +193,10 @@ class Orders:
 def ride(told: np.ndarray, bounds: np.ndarray, orders: Orders | None = None) -> Ride:
     """Ride along the segments, so many known ahead, for so many steps at most."""
     o = orders or Orders()
-    length = LIBRARY.pace_batch_segments(len(told), told)
+    length = LIBRARY.speed_batch_segments(len(told), told)
     steps = np.zeros(o.most, SAMPLE)
     overrides = np.array(o.overrides, float)
-    time = LIBRARY.pace_batch_ride(
+    time = LIBRARY.speed_batch_ride(
         len(told), bounds, o.ahead, o.dt, len(overrides), overrides, o.most, steps
     )
     count = o.most if time < 0 else int(np.ceil(time / o.dt - 1e-9))

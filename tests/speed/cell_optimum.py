@@ -2,7 +2,7 @@
 
 import casadi
 import numpy as np
-from pace_rides import planned
+from speed_rides import planned
 
 PARTS = 60  # of a cell without planes, which may be long
 

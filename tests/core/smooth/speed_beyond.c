@@ -2,17 +2,17 @@
 #include <string.h>
 
 #include "check.h"
-#include "pace.h"
+#include "speed_profile.h"
 
 static const double LENGTH = 100.0; /* [mm] */
 
-static struct pace pace;
+static struct speed_profile profile;
 
 /* Under way along a line in X, 50 mm/s, 1000 mm/s^2, 20000 mm/s^3. */
 static void begin(void)
 {
     const double start[AXES] = { 0.0 }, end[AXES] = { LENGTH };
-    struct pace_limits l = { .speed = { 0.0 } };
+    struct speed_limits l = { .speed = { 0.0 } };
     struct segment p;
     struct path path;
 
@@ -27,20 +27,20 @@ static void begin(void)
     path_line(&path, start, end);
     p.length = path.length;
     path_at(&path, 0.0, p.start, p.slope);
-    memset(&pace, 0, sizeof pace);
-    pace_start(&pace, &l);
-    CHECK(pace_join(&pace, &p));
-    pace_advance(&pace, 1.0, 0.2);
-    CHECK(pace.at.here > 5.0 && pace.at.here < 10.0);
+    memset(&profile, 0, sizeof profile);
+    speed_profile_start(&profile, &l);
+    CHECK(speed_profile_join(&profile, &p));
+    speed_profile_advance(&profile, 1.0, 0.2);
+    CHECK(profile.at.here > 5.0 && profile.at.here < 10.0);
 }
 
 /* A speed and an acceleration in the place of those of the ride. [mm/s], [mm/s^2] */
 static void put(double v, double a)
 {
-    pace.at.step.kind = PACE_NO_STEP;
-    pace.at.state = (struct pace_state){ v * v, 2.0 * a };
-    pace.at.rate = v;
-    pace.at.gain = a;
+    profile.at.step.kind = SPEED_NO_STEP;
+    profile.at.state = (struct speed_state){ v * v, 2.0 * a };
+    profile.at.rate = v;
+    profile.at.gain = a;
 }
 
 /* No bend of the acceleration keeps the limits, so that it stays as it is for a step: over a way s
@@ -49,11 +49,12 @@ static void keeps_its_acceleration(double v, double a)
 {
     begin();
     put(v, a);
-    const double from = pace.at.here;
-    pace_advance(&pace, 0.0, 1e-7);
-    CHECK_EQ(pace.at.step.kind, PACE_BENT);
-    CHECK(pace.at.step.c == 0.0 && pace.at.twitch == 0.0 && pace.at.gain == a);
-    CHECK_NEAR(pace.at.rate * pace.at.rate, v * v + 2.0 * a * (pace.at.here - from), 1e-9 * v * v);
+    const double from = profile.at.here;
+    speed_profile_advance(&profile, 0.0, 1e-7);
+    CHECK_EQ(profile.at.step.kind, SPEED_BENT);
+    CHECK(profile.at.step.c == 0.0 && profile.at.twitch == 0.0 && profile.at.gain == a);
+    CHECK_NEAR(profile.at.rate * profile.at.rate, v * v + 2.0 * a * (profile.at.here - from),
+               1e-9 * v * v);
 }
 
 /* Braking, it comes to rest by one jerk: after 2 v / |a|, over 2 v^2 / (3 |a|). */
@@ -61,10 +62,10 @@ static void lands(double v, double a)
 {
     begin();
     put(v, a);
-    const double from = pace.at.here;
-    pace_advance(&pace, 0.0, -2.0 * v / a * (1.0 + 1e-9));
-    CHECK(pace.at.rate == 0.0);
-    CHECK_NEAR(pace.at.here - from, -2.0 * v * v / (3.0 * a), 1e-9 * v * v / -a);
+    const double from = profile.at.here;
+    speed_profile_advance(&profile, 0.0, -2.0 * v / a * (1.0 + 1e-9));
+    CHECK(profile.at.rate == 0.0);
+    CHECK_NEAR(profile.at.here - from, -2.0 * v * v / (3.0 * a), 1e-9 * v * v / -a);
 }
 
 /* Held, it rests before the end or at it, without a step back; let go, it arrives. */
@@ -72,17 +73,17 @@ static void ends(double v, double a)
 {
     begin();
     put(v, a);
-    double before = pace.at.way;
-    const double stop = pace_stop_way(&pace);
+    double before = profile.at.way;
+    const double stop = speed_profile_stop_way(&profile);
     CHECK(stop >= before && stop <= LENGTH);
-    for (int n = 0; n < 100000 && (pace.at.rate > 0.0 || n == 0); n++) {
-        pace_advance(&pace, 0.0, 1e-4);
-        CHECK(pace.at.way >= before && pace.at.way <= LENGTH && isfinite(pace.at.rate));
-        before = pace.at.way;
+    for (int n = 0; n < 100000 && (profile.at.rate > 0.0 || n == 0); n++) {
+        speed_profile_advance(&profile, 0.0, 1e-4);
+        CHECK(profile.at.way >= before && profile.at.way <= LENGTH && isfinite(profile.at.rate));
+        before = profile.at.way;
     }
-    CHECK(pace.at.rate == 0.0);
-    pace_advance(&pace, 1.0, 60.0);
-    CHECK(pace_at_end(&pace) && pace.at.way == LENGTH);
+    CHECK(profile.at.rate == 0.0);
+    speed_profile_advance(&profile, 1.0, 60.0);
+    CHECK(speed_profile_at_end(&profile) && profile.at.way == LENGTH);
 }
 
 int main(void)

@@ -1,11 +1,11 @@
-#include "pace_box.h"
+#include "speed_box.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "el_extremes.h"
 #include "elementary.h"
-#include "pace_pull.h"
+#include "speed_pull.h"
 
 /* Shares of an axis' acceleration and jerk that turning may take; the rest is to change speed. */
 static const double TURN_ACC = 0.97, TURN_JERK = 0.99;
@@ -34,7 +34,7 @@ static const double SOON = 1e-4;
 /* If c = 0 does not keep the limits, a c is looked for at SCAN places; HALVES make it better. */
 enum { SCAN = 16, HALVES = 5 };
 
-bool pace_by_axes(const struct pace_limits *l)
+bool speed_by_axes(const struct speed_limits *l)
 {
     double sum = 0.0;
 
@@ -54,20 +54,20 @@ struct range {
     double low, high;
 };
 
-static struct range wide(struct pace_bound b)
+static struct range wide(struct speed_bound b)
 {
     return (struct range){ b.low, b.high };
 }
 
-static struct pace_bound narrow(struct range r)
+static struct speed_bound narrow(struct range r)
 {
     const double stray = OUTWARDS * el_max(fabs(r.low), fabs(r.high));
-    return (struct pace_bound){ (float)(r.low - stray), (float)(r.high + stray) };
+    return (struct speed_bound){ (float)(r.low - stray), (float)(r.high + stray) };
 }
 
-static struct pace_bound cover(struct pace_bound a, struct pace_bound b)
+static struct speed_bound cover(struct speed_bound a, struct speed_bound b)
 {
-    return (struct pace_bound){ a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high };
+    return (struct speed_bound){ a.low < b.low ? a.low : b.low, a.high > b.high ? a.high : b.high };
 }
 
 static double size(struct range r)
@@ -86,18 +86,18 @@ static struct range plus(struct range a, struct range b)
     return (struct range){ a.low + b.low, a.high + b.high };
 }
 
-static double extent(struct pace_bound b)
+static double extent(struct speed_bound b)
 {
     return size(wide(b));
 }
 
-static struct range scaled(struct pace_bound b, double x)
+static struct range scaled(struct speed_bound b, double x)
 {
     return times(wide(b), x);
 }
 
 /* Speed at which turning alone takes shares `acc` and `jerk` of the limits. */
-static double turn_speed(const struct pace_box *g, double acc, double jerk)
+static double turn_speed(const struct speed_box *g, double acc, double jerk)
 {
     double v = g->cap;
 
@@ -109,16 +109,16 @@ static double turn_speed(const struct pace_box *g, double acc, double jerk)
     return v;
 }
 
-static void finish(struct pace_box *g)
+static void finish(struct speed_box *g)
 {
     g->cap = turn_speed(g, 1.0, 1.0);
     g->brisk = turn_speed(g, TURN_ACC, TURN_JERK);
 }
 
 /* Adds a limit: bounds r of r', r'' and r''' times 1 / acceleration and 1 / jerk. */
-static void add_row(struct pace_box *g, const struct range r[3], double acc, double jerk)
+static void add_row(struct speed_box *g, const struct range r[3], double acc, double jerk)
 {
-    struct pace_row *row = &g->row[g->rows++];
+    struct speed_row *row = &g->row[g->rows++];
 
     for (int n = 0; n < 3; n++) {
         row->jerk[n] = narrow(times(r[n], jerk));
@@ -128,13 +128,13 @@ static void add_row(struct pace_box *g, const struct range r[3], double acc, dou
 }
 
 /* The limits along the path and across it; all jerk by r'' and r''' counts as one across. */
-static void path_rule(struct pace_box *g, const struct segment *p, const struct segment_bounds *b)
+static void path_rule(struct speed_box *g, const struct segment *p, const struct segment_bounds *b)
 {
     const double acc = 1.0 / el_min(p->ramp.acc, p->ramp.dec);
     const double jerk =
         el_max(inverse(p->ramp.acc_jerk, p->ramp.acc), inverse(p->ramp.dec_jerk, p->ramp.dec));
-    struct pace_pull way;
-    const double across = pace_pull_path(&way, p, g->length, b);
+    struct speed_pull way;
+    const double across = speed_pull_path(&way, p, g->length, b);
     struct range along[3], all[3] = { { 0.0, 0.0 } };
 
     for (int n = 0; n < 3; n++) {
@@ -146,8 +146,8 @@ static void path_rule(struct pace_box *g, const struct segment *p, const struct 
     g->row[1].acc[1] = narrow((struct range){ -across * acc, across * acc });
 }
 
-void pace_box_make(struct pace_box *g, const struct segment *p, const struct pace_limits *l,
-                   double from, double length, const struct segment_bounds *b)
+void speed_box_make(struct speed_box *g, const struct segment *p, const struct speed_limits *l,
+                    double from, double length, const struct segment_bounds *b)
 {
     memset(g, 0, sizeof *g);
     g->from = from;
@@ -165,34 +165,34 @@ void pace_box_make(struct pace_box *g, const struct segment *p, const struct pac
             add_row(g, r, 1.0 / l->acc[k], inverse(l->jerk[k], l->acc[k]));
         }
     }
-    if (!pace_by_axes(l)) {
+    if (!speed_by_axes(l)) {
         path_rule(g, p, b);
     }
     finish(g);
     g->ideal = g->length / el_min(g->brisk, g->feed);
 }
 
-double pace_box_rise(const struct pace_box *g)
+double speed_box_rise(const struct speed_box *g)
 {
     double time = INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct pace_row *r = &g->row[i];
+        const struct speed_row *r = &g->row[i];
         const double acc = extent(r->acc[0]);
         time = acc > 0.0 ? el_min(time, extent(r->jerk[0]) / acc) : time;
     }
     return time < INFINITY ? time : 0.0;
 }
 
-bool pace_box_join(struct pace_box *g, const struct pace_box *next)
+bool speed_box_join(struct speed_box *g, const struct speed_box *next)
 {
-    struct pace_box one = *g;
+    struct speed_box one = *g;
 
     if (g->rows != next->rows) {
         return false;
     }
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct pace_row *r = &next->row[i];
+        const struct speed_row *r = &next->row[i];
         for (int n = 0; n < 2; n++) {
             one.row[i].acc[n] = cover(one.row[i].acc[n], r->acc[n]);
         }
@@ -206,14 +206,14 @@ bool pace_box_join(struct pace_box *g, const struct pace_box *next)
     one.ideal += next->ideal;
     finish(&one);
     const double slower = one.length / el_min(one.brisk, one.feed) - one.ideal;
-    if (slower > JOIN * pace_box_rise(&one) && el_min(g->length, next->length) > SPECK) {
+    if (slower > JOIN * speed_box_rise(&one) && el_min(g->length, next->length) > SPECK) {
         return false;
     }
     *g = one;
     return true;
 }
 
-double pace_box_steepest(const struct pace_box *g, double x, double sign)
+double speed_box_steepest(const struct speed_box *g, double x, double sign)
 {
     double b = INFINITY;
 
@@ -225,18 +225,18 @@ double pace_box_steepest(const struct pace_box *g, double x, double sign)
     return el_max(0.0, b);
 }
 
-static struct range acc_of(const struct pace_row *r, struct pace_state s)
+static struct range acc_of(const struct speed_row *r, struct speed_state s)
 {
     return plus(scaled(r->acc[0], 0.5 * s.b), scaled(r->acc[1], s.x));
 }
 
-static struct range twist_of(const struct pace_row *r, struct pace_state s)
+static struct range twist_of(const struct speed_row *r, struct speed_state s)
 {
     return plus(scaled(r->jerk[1], 1.5 * s.b), scaled(r->jerk[2], s.x));
 }
 
 /* The most c of a state (sign 1) or the least (-1); it may be on the other side of 0. */
-static double bend(const struct pace_box *g, struct pace_state s, double sign)
+static double bend(const struct speed_box *g, struct speed_state s, double sign)
 {
     const double all = 1.0 / sqrt(s.x);
     double c = INFINITY;
@@ -249,7 +249,7 @@ static double bend(const struct pace_box *g, struct pace_state s, double sign)
     return sign * c;
 }
 
-double pace_box_acc(const struct pace_box *g, struct pace_state s)
+double speed_box_acc(const struct speed_box *g, struct speed_state s)
 {
     double most = 0.0;
 
@@ -259,7 +259,7 @@ double pace_box_acc(const struct pace_box *g, struct pace_state s)
     return most;
 }
 
-double pace_box_twist(const struct pace_box *g, struct pace_state s)
+double speed_box_twist(const struct speed_box *g, struct speed_state s)
 {
     double most = 0.0;
 
@@ -274,9 +274,9 @@ static double larger(double a, double b)
     return a > b ? a : b;
 }
 
-double pace_step_top(struct pace_state from, double c, double s)
+double speed_step_top(struct speed_state from, double c, double s)
 {
-    const struct pace_state to = pace_step_to(from, c, s);
+    const struct speed_state to = speed_step_to(from, c, s);
 
     return from.b > 0.0 && to.b < 0.0 ? from.x - from.b * from.b / (2.0 * c) : larger(from.x, to.x);
 }
@@ -291,7 +291,7 @@ static double peak(double f, double slope, double curve, double s)
 }
 
 /* Most of p b + q x + r over a step with bounds of p and q, where x > 0, and of its negative. */
-static double most_of(struct range p, struct range q, struct range r, struct pace_state from,
+static double most_of(struct range p, struct range q, struct range r, struct speed_state from,
                       double c, double s)
 {
     const double part[2] = { p.low, p.high };
@@ -306,18 +306,18 @@ static double most_of(struct range p, struct range q, struct range r, struct pac
     return most;
 }
 
-bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, double s)
+bool speed_box_keeps(const struct speed_box *g, struct speed_state from, double c, double s)
 {
-    const struct pace_state to = pace_step_to(from, c, s);
+    const struct speed_state to = speed_step_to(from, c, s);
     const struct range none = { 0.0, 0.0 };
 
     if (!(to.x > 0.0) || !(from.x > 0.0)) {
         return false;
     }
-    const double x = pace_step_top(from, c, s), v = sqrt(x);
+    const double x = speed_step_top(from, c, s), v = sqrt(x);
     const double b = larger(fabs(from.b), fabs(to.b));
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct pace_row *r = &g->row[i];
+        const struct speed_row *r = &g->row[i];
         const struct range of_c = scaled(r->jerk[0], 0.5 * c), of_b = scaled(r->jerk[1], 1.5);
         const double acc = 0.5 * extent(r->acc[0]) * b + extent(r->acc[1]) * x;
         const double jerk = size(of_c) + size(of_b) * b + extent(r->jerk[2]) * x;
@@ -334,12 +334,12 @@ bool pace_box_keeps(const struct pace_box *g, struct pace_state from, double c, 
     return true;
 }
 
-static bool fits(const struct pace_box *g, struct pace_state known, double c, double s, bool back)
+static bool fits(const struct speed_box *g, struct speed_state known, double c, double s, bool back)
 {
-    return pace_box_keeps(g, back ? pace_step_from(known, c, s) : known, c, s);
+    return speed_box_keeps(g, back ? speed_step_from(known, c, s) : known, c, s);
 }
 
-static bool turn(const struct pace_box *g, struct pace_state known, double s, double sign,
+static bool turn(const struct speed_box *g, struct speed_state known, double s, double sign,
                  bool back, double *c)
 {
     const double most = bend(g, known, sign), least = bend(g, known, -sign);
@@ -368,21 +368,22 @@ static bool turn(const struct pace_box *g, struct pace_state known, double s, do
     return true;
 }
 
-bool pace_box_turn(const struct pace_box *g, struct pace_state from, double s, double sign,
-                   double *c)
+bool speed_box_turn(const struct speed_box *g, struct speed_state from, double s, double sign,
+                    double *c)
 {
     return turn(g, from, s, sign, false, c);
 }
 
-bool pace_box_turn_to(const struct pace_box *g, struct pace_state to, double s, double sign,
-                      double *c)
+bool speed_box_turn_to(const struct speed_box *g, struct speed_state to, double s, double sign,
+                       double *c)
 {
     return turn(g, to, s, sign, true, c);
 }
 
-double pace_box_stride(const struct pace_box *g, struct pace_state from, double rest)
+double speed_box_stride(const struct speed_box *g, struct speed_state from, double rest)
 {
-    const double up = pace_box_steepest(g, from.x, 1.0), down = pace_box_steepest(g, from.x, -1.0);
+    const double up = speed_box_steepest(g, from.x, 1.0),
+                 down = speed_box_steepest(g, from.x, -1.0);
     const double steep = el_max(el_max(up, down), 1e-9);
     const double c = el_max(1e-9, el_max(bend(g, from, 1.0), -bend(g, from, -1.0)));
     double s = el_max(STEEPER * steep / c, FINEST * from.x / steep);
@@ -392,12 +393,12 @@ double pace_box_stride(const struct pace_box *g, struct pace_state from, double 
     return rest <= s ? rest : rest / ceil(rest / s);
 }
 
-double pace_box_jerk(const struct pace_box *g, double v, double a)
+double speed_box_jerk(const struct speed_box *g, double v, double a)
 {
     double j = INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
-        const struct pace_row *r = &g->row[i];
+        const struct speed_row *r = &g->row[i];
         const double p = extent(r->jerk[0]);
         if (extent(r->acc[0]) * a + extent(r->acc[1]) * v * v > 1.0) {
             return 0.0;

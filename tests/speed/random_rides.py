@@ -1,6 +1,6 @@
 """Random rides along smooth segments: what they take of their axes' limits, and which too much.
 
-    PYTHONPATH=tests/helpers python tests/pace/random_rides.py --first 0 --count 1000 [-j 2]
+    PYTHONPATH=tests/helpers python tests/speed/random_rides.py --first 0 --count 1000 [-j 2]
 
 Each seed is ridden without and with limited jerk. Exit status 1 if a ride takes more than 1e-6
 above a limit, turns back, or does not rest at the end of its path.
@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 
-from pace_rides import at_rest_at_its_end, random_ride, shares
+from speed_rides import at_rest_at_its_end, random_ride, shares
 
 MOST = 1 + 1e-6
 PART = 100  # seeds that a process gets at a time

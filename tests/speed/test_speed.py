@@ -8,7 +8,7 @@ import pytest
 import smooth_bound
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from pace_rides import (
+from speed_rides import (
     LIBRARY,
     SAMPLE,
     Chain,
@@ -187,11 +187,11 @@ def test_stop(seed: int, smooth: bool) -> None:
     full = ride(told, bounds, Orders(dt))
     orders = Orders(dt, most=int(dice.integers(1, len(full.steps))))
     way = ride(told, bounds, orders).steps["way"][-1]
-    goal = LIBRARY.pace_batch_stop_way()
+    goal = LIBRARY.speed_batch_stop_way()
     steps = []
     for _ in range(10_000):
         steps.append(np.zeros(1, SAMPLE))
-        left = LIBRARY.pace_batch_go(len(told), 0.0, dt, steps[-1])
+        left = LIBRARY.speed_batch_go(len(told), 0.0, dt, steps[-1])
         if left > 0 or steps[-1]["rate"][0] == 0:
             break
     within(np.concatenate(steps), bounds, dt)
@@ -228,7 +228,7 @@ def test_smooth_parts_meet(seed: int) -> None:
     """Parts of segments end where the next ones begin, to the bit: no rest between them."""
     told = random_chain(np.random.default_rng(seed), 10, 3.0).told()
     ride(told, limits(1000.0, jerk=50_000.0), Orders(most=1))
-    assert LIBRARY.pace_batch_gap() == 0.0
+    assert LIBRARY.speed_batch_gap() == 0.0
 
 
 @pytest.mark.parametrize(
@@ -269,7 +269,7 @@ def test_smooth_bound(name: str, told: np.ndarray) -> None:
 
 def lengths(told: np.ndarray) -> list[float]:
     """Length of each segment."""
-    return [LIBRARY.pace_batch_segments(1, told[i : i + 1]) for i in range(len(told))]
+    return [LIBRARY.speed_batch_segments(1, told[i : i + 1]) for i in range(len(told))]
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -1,4 +1,4 @@
-#include "pace_pull.h"
+#include "speed_pull.h"
 
 #include <math.h>
 
@@ -49,7 +49,7 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-void pace_pull_axis(struct pace_pull *l, int axis, double length, const struct segment_bounds *b)
+void speed_pull_axis(struct speed_pull *l, int axis, double length, const struct segment_bounds *b)
 {
     for (int e = 0; e < 2; e++) {
         l->p[e] = b->slope[e][axis];
@@ -81,7 +81,7 @@ static struct range twist(const struct segment_bounds *b, int first)
 }
 
 /* The pull along the path, whose axes are `first` and two more. */
-static void look_along(struct pace_pull *l, const struct segment *p, double length,
+static void look_along(struct speed_pull *l, const struct segment *p, double length,
                        const struct segment_bounds *b, int first)
 {
     struct range s = { 0.0, 0.0 };
@@ -107,7 +107,7 @@ static void look_along(struct pace_pull *l, const struct segment *p, double leng
 
 /* The most n: it is at most |r'' - k r'| for any k. With a k that is right at both ends and
  * straight in between, that vector leaves its chord as the spread of its derivative allows. */
-static double most_across(const struct pace_pull *along, double length,
+static double most_across(const struct speed_pull *along, double length,
                           const struct segment_bounds *b, int first)
 {
     const double k[2] = { along->q[0] / along->p[0], along->q[1] / along->p[1] };
@@ -127,8 +127,8 @@ static double most_across(const struct pace_pull *along, double length,
                                   + sqrt(dot(strays, strays)));
 }
 
-double pace_pull_path(struct pace_pull *along, const struct segment *p, double length,
-                      const struct segment_bounds *b)
+double speed_pull_path(struct speed_pull *along, const struct segment *p, double length,
+                       const struct segment_bounds *b)
 {
     const int first = b->axes > 0 && b->axis[0] >= 3 ? 3 : 0;
 

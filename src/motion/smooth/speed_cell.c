@@ -1,11 +1,11 @@
-#include "pace_cell.h"
+#include "speed_cell.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "el_extremes.h"
-#include "pace_box.h"
-#include "pace_pull.h"
+#include "speed_box.h"
+#include "speed_pull.h"
 
 /* A cell turns by at most TURN [rad], and r' leaves its chord over it by at most SAG. Found by
  * measuring: half as much gains less than 1 % of time. */
@@ -36,7 +36,7 @@ static bool between(const double a[2], const double b[2], const double c[2])
 
 /* Add g0 x0 + g1 x1 <= 1. Planes are by rising g0, falling g1, and each says something that all
  * others together do not, for x0, x1 >= 0. */
-static void add_plane(struct pace_cell *c, double g0, double g1)
+static void add_plane(struct speed_cell *c, double g0, double g1)
 {
     const double g[2] = { g0, g1 };
     int32_t i = 0, from, to;
@@ -58,7 +58,7 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
                      || (to + 1 < c->planes && between(g, c->plane[to], c->plane[to + 1])));
          to++) {
     }
-    if (from == to && c->planes == PACE_PLANES) { /* joined with a neighbour */
+    if (from == to && c->planes == SPEED_PLANES) { /* joined with a neighbour */
         i = from < c->planes ? from : from - 1;
         add_plane(c, most(g0, c->plane[i][0]), most(g1, c->plane[i][1]));
         return;
@@ -70,14 +70,14 @@ static void add_plane(struct pace_cell *c, double g0, double g1)
 
 /* A limit of an acceleration: at least -acc[0], at most acc[1]. */
 struct row {
-    struct pace_pull pull;
+    struct speed_pull pull;
     double acc[2]; /* [mm/s^2] */
     double rest;   /* share of acc that is left where q x is left out */
     bool bends;    /* q x counts */
 };
 
 /* Adds the planes of a row (docs/theory/speed.md); |a| <= (x0 + x1) / (2 h). */
-static void add_row(struct pace_cell *c, const struct row *r)
+static void add_row(struct speed_cell *c, const struct row *r)
 {
     const double per = 0.5 / c->length;
 
@@ -97,7 +97,7 @@ static void add_row(struct pace_cell *c, const struct row *r)
     }
 }
 
-static void limit_rows(struct pace_cell *c, struct row row[AXES], int count)
+static void limit_rows(struct speed_cell *c, struct row row[AXES], int count)
 {
     double sum = 0.0;
     bool any = false;
@@ -123,7 +123,7 @@ static void limit_rows(struct pace_cell *c, struct row row[AXES], int count)
 }
 
 /* Limits of the cell, a part of a segment. */
-static void limit(struct pace_cell *c, const struct segment *p, const struct pace_limits *l,
+static void limit(struct speed_cell *c, const struct segment *p, const struct speed_limits *l,
                   const struct segment_bounds *b)
 {
     struct row row[AXES];
@@ -140,11 +140,11 @@ static void limit(struct pace_cell *c, const struct segment *p, const struct pac
         }
         if (l->acc[k] > 0.0) {
             row[count].acc[0] = row[count].acc[1] = l->acc[k];
-            pace_pull_axis(&row[count++].pull, k, c->length, b);
+            speed_pull_axis(&row[count++].pull, k, c->length, b);
         }
     }
-    if (!pace_by_axes(l)) {
-        const double across = pace_pull_path(&row[0].pull, p, c->length, b);
+    if (!speed_by_axes(l)) {
+        const double across = speed_pull_path(&row[0].pull, p, c->length, b);
         c->cap = el_min(c->cap, sqrt(el_min(p->ramp.acc, p->ramp.dec) / across));
         row[0].acc[0] = p->ramp.dec;
         row[0].acc[1] = p->ramp.acc;
@@ -153,7 +153,7 @@ static void limit(struct pace_cell *c, const struct segment *p, const struct pac
     limit_rows(c, row, count);
 }
 
-void pace_part_first(struct pace_part *part, const struct segment *p)
+void speed_part_first(struct speed_part *part, const struct segment *p)
 {
     const struct segment_bounds *b = &part->bounds;
 
@@ -165,10 +165,12 @@ void pace_part_first(struct pace_part *part, const struct segment *p)
     const double turn = b->most[1] * p->length / TURN;
     const double sag = p->length * sqrt(b->most[2] / 8.0 / SAG);
     const double n = ceil(most(turn, sag));
-    part->count = p->kind == SEGMENT_LINE || n < 1.0 ? 1 : n < PACE_SPLIT ? (int32_t)n : PACE_SPLIT;
+    part->count = p->kind == SEGMENT_LINE || n < 1.0 ? 1
+                  : n < SPEED_SPLIT                  ? (int32_t)n
+                                                     : SPEED_SPLIT;
 }
 
-bool pace_part_next(struct pace_part *part)
+bool speed_part_next(struct speed_part *part)
 {
     const double length = part->segment->length;
 
@@ -184,13 +186,13 @@ bool pace_part_next(struct pace_part *part)
     return true;
 }
 
-int32_t pace_cut(const struct segment *p, const struct pace_limits *l,
-                 struct pace_cell cell[PACE_SPLIT])
+int32_t speed_cut(const struct segment *p, const struct speed_limits *l,
+                  struct speed_cell cell[SPEED_SPLIT])
 {
-    struct pace_part part;
+    struct speed_part part;
     int32_t n = 0;
 
-    for (pace_part_first(&part, p); pace_part_next(&part); n++) {
+    for (speed_part_first(&part, p); speed_part_next(&part); n++) {
         cell[n].length = part.to - part.from;
         limit(&cell[n], p, l, &part.bounds);
     }
@@ -204,7 +206,7 @@ struct ends {
 
 /* The point of the plane with the most x0 that keeps the first n others, 0 <= x0 <= most and
  * 0 <= x1 <= x1_most. */
-static struct ends along(const struct pace_cell *c, int32_t n, const double most[2])
+static struct ends along(const struct speed_cell *c, int32_t n, const double most[2])
 {
     const double *g = c->plane[n], size = g[0] * g[0] + g[1] * g[1];
     const double foot[2] = { g[0] / size, g[1] / size };
@@ -234,7 +236,7 @@ static struct ends along(const struct pace_cell *c, int32_t n, const double most
     return (struct ends){ { foot[0] + to[0] * high, foot[1] + to[1] * high } };
 }
 
-double pace_back(const struct pace_cell *c, double x1, double most, double *end)
+double speed_back(const struct speed_cell *c, double x1, double most, double *end)
 {
     const double bound[2] = { most, x1 };
     struct ends best = { { most, x1 } };
@@ -248,7 +250,7 @@ double pace_back(const struct pace_cell *c, double x1, double most, double *end)
     return el_min(most, el_max(0.0, best.x[0]));
 }
 
-double pace_top(const struct pace_cell *c, double x1, double most)
+double speed_top(const struct speed_cell *c, double x1, double most)
 {
     double top = INFINITY;
 
@@ -261,13 +263,13 @@ double pace_top(const struct pace_cell *c, double x1, double most)
     return c->planes > 0 ? el_max(box, top) : box;
 }
 
-struct pace_span pace_span(const struct pace_cell *c, double left, double x)
+struct speed_span speed_span(const struct speed_cell *c, double left, double x)
 {
     const double gone = c->length - left;
-    struct pace_span s = { -x / (2.0 * left), gone > 0.0 ? x / (2.0 * gone) : INFINITY };
+    struct speed_span s = { -x / (2.0 * left), gone > 0.0 ? x / (2.0 * gone) : INFINITY };
 
     if (c->planes == 0) { /* straight, or the path's ramp */
-        return (struct pace_span){ -1.0 / c->down, 1.0 / c->up };
+        return (struct speed_span){ -1.0 / c->down, 1.0 / c->up };
     }
     for (int32_t i = 0; i < c->planes; i++) {
         const double *g = c->plane[i], lever = 2.0 * (g[1] * left - g[0] * gone);
@@ -281,7 +283,7 @@ struct pace_span pace_span(const struct pace_cell *c, double left, double x)
     return s;
 }
 
-double pace_rise(const struct pace_cell *c, double x, double *until)
+double speed_rise(const struct speed_cell *c, double x, double *until)
 {
     const double all = 1.0 - c->bend * *until, half = 0.5 * (1.0 - c->bend * x);
 
@@ -295,7 +297,7 @@ double pace_rise(const struct pace_cell *c, double x, double *until)
     return half / c->up;
 }
 
-double pace_fall(const struct pace_cell *c, double x)
+double speed_fall(const struct speed_cell *c, double x)
 {
     return el_max(0.0, 1.0 - c->bend * x) / c->down;
 }

@@ -1,4 +1,4 @@
-#include "pace_smooth.h"
+#include "speed_smooth.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -15,55 +15,55 @@ enum { HALVES = 4, STEPS = 4096 };
 static const double HOPS = 0.9;
 
 /* From nearly rest without an acceleration the jerk stops the motion within a stride, which lets it
- * gain a thousandfold of x (pace_box): over such a share of it no more than half of x is lost. */
+ * gain a thousandfold of x (speed_box): over such a share of it no more than half of x is lost. */
 static const double NEAR_REST = 1.0 / 64.0;
 
 /* Ways and states count as the same if they differ by such a share. */
 static const double SAME = 1e-9;
 
-/* A motion along a pace that stays as it is. */
+/* A motion along a speed profile that stays as it is. */
 struct ride {
-    const struct pace *p;
-    struct pace_place at;
+    const struct speed_profile *p;
+    struct speed_profile_place at;
     int32_t count;
 };
 
-static struct pace_box *box_at(struct pace *p, int32_t i)
+static struct speed_box *box_at(struct speed_profile *p, int32_t i)
 {
-    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].box;
+    return &p->ring[(uint32_t)(p->at.head + i) % SPEED_PROFILE_CELLS].box;
 }
 
-static struct pace_road road(const struct ride *r, double override)
+static struct speed_road road(const struct ride *r, double override)
 {
-    return (struct pace_road){ r->p->ring, PACE_CELLS, r->at.head, r->count, override };
+    return (struct speed_road){ r->p->ring, SPEED_PROFILE_CELLS, r->at.head, r->count, override };
 }
 
-static const struct pace_plan *held(const struct ride *r)
+static const struct speed_plan *held(const struct ride *r)
 {
     return &r->p->plan[r->p->held];
 }
 
 /* Append a box. It begins where the last one ends, to the bit: in a gap a motion that rests would
  * be at the end of one box, and no plan would lead on. */
-static void append(struct pace *p, const struct pace_box *g)
+static void append(struct speed_profile *p, const struct speed_box *g)
 {
-    if (p->count == 0 || p->at.planned == p->count || !pace_box_join(box_at(p, p->count - 1), g)) {
+    if (p->count == 0 || p->at.planned == p->count || !speed_box_join(box_at(p, p->count - 1), g)) {
         *box_at(p, p->count++) = *g;
     }
-    const struct pace_box *last = box_at(p, p->count - 1);
+    const struct speed_box *last = box_at(p, p->count - 1);
     p->end = last->from + last->length;
 }
 
-bool pace_smooth_join(struct pace *p, const struct segment *segment)
+bool speed_smooth_join(struct speed_profile *p, const struct segment *segment)
 {
-    struct pace_part part;
-    struct pace_box g;
+    struct speed_part part;
+    struct speed_box g;
 
-    if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
+    if (p->closed || p->count + SPEED_SPLIT + SPEED_PROFILE_KEPT > SPEED_PROFILE_CELLS) {
         return false;
     }
-    for (pace_part_first(&part, segment); pace_part_next(&part);) {
-        pace_box_make(&g, segment, &p->limits, p->end, part.to - part.from, &part.bounds);
+    for (speed_part_first(&part, segment); speed_part_next(&part);) {
+        speed_box_make(&g, segment, &p->limits, p->end, part.to - part.from, &part.bounds);
         append(p, &g);
     }
     p->at.left = box_at(p, 0)->from + box_at(p, 0)->length - p->at.here;
@@ -71,7 +71,7 @@ bool pace_smooth_join(struct pace *p, const struct segment *segment)
 }
 
 /* Begin a step from here to a place. */
-static void set_out(struct ride *r, struct pace_step step, double goal)
+static void set_out(struct ride *r, struct speed_step step, double goal)
 {
     r->at.step = step;
     r->at.spent = 0.0;
@@ -82,19 +82,19 @@ static void set_out(struct ride *r, struct pace_step step, double goal)
 /* From rest into the way of a plan, or, where that is short, to its end. */
 static void start(struct ride *r, double override)
 {
-    const struct pace_plan *plan = held(r);
-    const struct pace_road soft = road(r, override);
+    const struct speed_plan *plan = held(r);
+    const struct speed_road soft = road(r, override);
     const double way = plan->end - r->at.here;
-    const struct pace_step hop = pace_road_hop(&soft, r->at.here, 0, way);
-    struct pace_step step;
+    const struct speed_step hop = speed_road_hop(&soft, r->at.here, 0, way);
+    struct speed_step step;
 
-    if (hop.c >= HOPS * pace_box_jerk(pace_road_box(&soft, 0), 0.0, 0.0)) {
+    if (hop.c >= HOPS * speed_box_jerk(speed_road_box(&soft, 0), 0.0, 0.0)) {
         set_out(r, hop, plan->end);
         return;
     }
-    for (int n = 0; pace_road_start(&soft, r->at.here, 0, 1.0, way, n, &step); n++) {
+    for (int n = 0; speed_road_start(&soft, r->at.here, 0, 1.0, way, n, &step); n++) {
         const double to = r->at.here + step.way;
-        if (pace_plan_safe(plan, &soft, pace_plan_spot(plan, &soft, to, step.to))) {
+        if (speed_plan_safe(plan, &soft, speed_plan_spot(plan, &soft, to, step.to))) {
             set_out(r, step, to);
             return;
         }
@@ -103,41 +103,42 @@ static void start(struct ride *r, double override)
 }
 
 /* Whether the motion can go on from the end of a step. */
-static bool good(const struct ride *r, const struct pace_road *to, struct pace_spot spot, double c,
-                 double s, bool may_land)
+static bool good(const struct ride *r, const struct speed_road *to, struct speed_spot spot,
+                 double c, double s, bool may_land)
 {
-    const struct pace_state end = pace_step_to(spot.state, c, s);
+    const struct speed_state end = speed_step_to(spot.state, c, s);
 
-    if (pace_step_top(spot.state, c, s)
-            > pace_road_top(to, pace_road_box(to, spot.box)) * (1.0 + SAME)
-        || !pace_box_keeps(pace_road_box(to, spot.box), spot.state, c, s)) {
+    if (speed_step_top(spot.state, c, s)
+            > speed_road_top(to, speed_road_box(to, spot.box)) * (1.0 + SAME)
+        || !speed_box_keeps(speed_road_box(to, spot.box), spot.state, c, s)) {
         return false;
     }
-    pace_plan_pass(held(r), to, &spot, s, end);
-    return (may_land && pace_road_lands(to, spot.at, spot.box, end))
-           || pace_plan_safe(held(r), to, spot);
+    speed_plan_pass(held(r), to, &spot, s, end);
+    return (may_land && speed_road_lands(to, spot.at, spot.box, end))
+           || speed_plan_safe(held(r), to, spot);
 }
 
-static void go(struct ride *r, const struct pace_road *to, struct pace_spot spot, double c,
+static void go(struct ride *r, const struct speed_road *to, struct speed_spot spot, double c,
                double s)
 {
-    const struct pace_step step = pace_step_bent(spot.state, c, s);
+    const struct speed_step step = speed_step_bent(spot.state, c, s);
 
-    pace_plan_pass(held(r), to, &spot, s, step.to);
+    speed_plan_pass(held(r), to, &spot, s, step.to);
     set_out(r, step, spot.at);
 }
 
 static void land(struct ride *r)
 {
-    const struct pace_step step = pace_step_land(r->at.state);
+    const struct speed_step step = speed_step_land(r->at.state);
     const double goal = r->at.here + step.way, end = held(r)->end;
 
     set_out(r, step, fabs(goal - end) <= SAME * step.way || goal > r->p->end ? end : goal);
 }
 
 /* Between a c that is good and one that is not, nearly the last good one. */
-static double halve(const struct ride *r, const struct pace_road *to, const struct pace_spot *spot,
-                    double kept, double fails, double s, bool may_land)
+static double halve(const struct ride *r, const struct speed_road *to,
+                    const struct speed_spot *spot, double kept, double fails, double s,
+                    bool may_land)
 {
     for (int i = 0; i < HALVES; i++) {
         const double middle = 0.5 * (kept + fails);
@@ -149,26 +150,26 @@ static double halve(const struct ride *r, const struct pace_road *to, const stru
 /* The slowest step within the limits from which the motion can go on by the plan or rest. */
 static void brake(struct ride *r)
 {
-    const struct pace_road hard = road(r, -1.0);
-    const struct pace_spot spot = pace_plan_spot(held(r), &hard, r->at.here, r->at.state);
-    const struct pace_box *g = pace_road_box(&hard, spot.box);
-    const bool lands = pace_road_lands(&hard, spot.at, spot.box, spot.state);
-    double stride = pace_box_stride(g, spot.state, pace_plan_rest(held(r), &hard, &spot));
+    const struct speed_road hard = road(r, -1.0);
+    const struct speed_spot spot = speed_plan_spot(held(r), &hard, r->at.here, r->at.state);
+    const struct speed_box *g = speed_road_box(&hard, spot.box);
+    const bool lands = speed_road_lands(&hard, spot.at, spot.box, spot.state);
+    double stride = speed_box_stride(g, spot.state, speed_plan_rest(held(r), &hard, &spot));
     double s, steer, c;
 
-    bool turns = pace_box_turn(g, spot.state, stride, -1.0, &c);
+    bool turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
     if (turns && c == 0.0 && fabs(spot.state.b) * stride <= SAME * spot.state.x) {
         stride *= NEAR_REST;
-        turns = pace_box_turn(g, spot.state, stride, -1.0, &c);
+        turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
     }
     if (turns && good(r, &hard, spot, c, stride, true)) {
-        const struct pace_state to = pace_step_to(spot.state, c, stride);
-        if (to.b >= 0.0 || !lands || pace_road_lands(&hard, spot.at + stride, spot.box, to)) {
+        const struct speed_state to = speed_step_to(spot.state, c, stride);
+        if (to.b >= 0.0 || !lands || speed_road_lands(&hard, spot.at + stride, spot.box, to)) {
             go(r, &hard, spot, c, stride);
             return;
         }
     }
-    const bool steers = pace_plan_steer(held(r), &hard, &spot, &s, &steer);
+    const bool steers = speed_plan_steer(held(r), &hard, &spot, &s, &steer);
     if (lands || (!steers && spot.state.b < 0.0)) {
         land(r);
         return;
@@ -184,19 +185,19 @@ static void brake(struct ride *r)
 /* The fastest step from which the motion can still turn into the way of the plan. */
 static void hurry(struct ride *r, double override)
 {
-    const struct pace_plan *plan = held(r);
-    const struct pace_road soft = road(r, override);
-    const struct pace_spot spot = pace_plan_spot(plan, &soft, r->at.here, r->at.state);
-    const struct pace_box *g = pace_road_box(&soft, spot.box);
+    const struct speed_plan *plan = held(r);
+    const struct speed_road soft = road(r, override);
+    const struct speed_spot spot = speed_plan_spot(plan, &soft, r->at.here, r->at.state);
+    const struct speed_box *g = speed_road_box(&soft, spot.box);
     double s, steer, c;
 
-    if (spot.node >= PACE_NODES && r->at.state.b < 0.0) {
+    if (spot.node >= SPEED_NODES && r->at.state.b < 0.0) {
         land(r);
         return;
     }
-    const double stride = pace_box_stride(g, spot.state, pace_plan_rest(plan, &soft, &spot));
-    const bool turns = pace_box_turn(g, spot.state, stride, 1.0, &c);
-    const bool steers = pace_plan_steer(plan, &soft, &spot, &s, &steer);
+    const double stride = speed_box_stride(g, spot.state, speed_plan_rest(plan, &soft, &spot));
+    const bool turns = speed_box_turn(g, spot.state, stride, 1.0, &c);
+    const bool steers = speed_plan_steer(plan, &soft, &spot, &s, &steer);
     if (turns && (!steers || c > steer) && good(r, &soft, spot, c, stride, false)) {
         go(r, &soft, spot, c, stride);
         return;
@@ -205,8 +206,8 @@ static void hurry(struct ride *r, double override)
         brake(r);
         return;
     }
-    const struct pace_node *node = spot.node < PACE_NODES ? &plan->node[spot.node] : NULL;
-    const struct pace_state to = pace_step_to(spot.state, steer, s);
+    const struct speed_node *node = spot.node < SPEED_NODES ? &plan->node[spot.node] : NULL;
+    const struct speed_state to = speed_step_to(spot.state, steer, s);
     if (node && (s <= stride || spot.state.b == 0.0) && spot.at + s >= node->at - SAME * s
         && to.x >= node->state.x * (1.0 - SAME)) {
         go(r, &soft, spot, steer, s);
@@ -232,9 +233,9 @@ static void choose(struct ride *r, double override)
 }
 
 /* Where the motion is in its step. */
-static void place(struct pace_place *at)
+static void place(struct speed_profile_place *at)
 {
-    const struct pace_motion m = pace_step_at(&at->step, at->spent);
+    const struct speed_motion m = speed_step_at(&at->step, at->spent);
 
     at->here = el_min(at->goal, at->origin + m.way);
     at->rate = m.rate;
@@ -243,27 +244,27 @@ static void place(struct pace_place *at)
 }
 
 /* The step is done. */
-static void arrive(struct pace_place *at)
+static void arrive(struct speed_profile_place *at)
 {
     at->here = at->goal;
     at->state = at->step.to;
     at->rate = sqrt(at->state.x);
     at->gain = 0.5 * at->state.b;
     at->twitch = 0.0;
-    at->step.kind = PACE_NO_STEP;
+    at->step.kind = SPEED_NO_STEP;
 }
 
 static double end_of(const struct ride *r, int32_t box)
 {
-    const struct pace_road any = road(r, 1.0);
-    return pace_road_end(&any, box);
+    const struct speed_road any = road(r, 1.0);
+    return speed_road_end(&any, box);
 }
 
 static void cross(struct ride *r)
 {
     while (r->count > 1 && r->at.here >= end_of(r, 0)) {
         r->at.base = end_of(r, 0);
-        r->at.head = (r->at.head + 1) % PACE_CELLS;
+        r->at.head = (r->at.head + 1) % SPEED_PROFILE_CELLS;
         r->count--;
         r->at.planned -= r->at.planned > 0;
     }
@@ -271,35 +272,35 @@ static void cross(struct ride *r)
 }
 
 /* Go on from where the motion is in its step, if that is safe under what holds now. */
-static bool cut(struct ride *r, const struct pace_plan *plan, double override)
+static bool cut(struct ride *r, const struct speed_plan *plan, double override)
 {
-    const struct pace_road to = road(r, override);
-    const struct pace_state now = { r->at.rate * r->at.rate, 2.0 * r->at.gain };
-    const struct pace_spot spot = pace_plan_spot(plan, &to, r->at.here, now);
+    const struct speed_road to = road(r, override);
+    const struct speed_state now = { r->at.rate * r->at.rate, 2.0 * r->at.gain };
+    const struct speed_spot spot = speed_plan_spot(plan, &to, r->at.here, now);
 
-    if (r->at.step.kind != PACE_NO_STEP) {
-        if (now.x <= 0.0 || !pace_plan_safe(plan, &to, spot)) {
+    if (r->at.step.kind != SPEED_NO_STEP) {
+        if (now.x <= 0.0 || !speed_plan_safe(plan, &to, spot)) {
             return false;
         }
         r->at.state = now;
-        r->at.step.kind = PACE_NO_STEP;
+        r->at.step.kind = SPEED_NO_STEP;
         return true;
     }
-    return now.x <= 0.0 || pace_plan_safe(plan, &to, spot);
+    return now.x <= 0.0 || speed_plan_safe(plan, &to, spot);
 }
 
-static struct ride ride_of(const struct pace *p)
+static struct ride ride_of(const struct speed_profile *p)
 {
     return (struct ride){ p, p->at, p->count };
 }
 
 /* Plan anew, beside the plan that holds. */
-static void plan(struct pace *p, double override)
+static void plan(struct speed_profile *p, double override)
 {
     const struct ride r = ride_of(p);
-    struct pace_road to = road(&r, override);
+    struct speed_road to = road(&r, override);
 
-    while (!pace_plan_make(&p->plan[1 - p->held], &to, p->at.here) && to.count > 1) {
+    while (!speed_plan_make(&p->plan[1 - p->held], &to, p->at.here) && to.count > 1) {
         to.count = (to.count + 1) / 2; /* so far ahead is enough */
     }
     p->at.planned = to.count;
@@ -309,7 +310,7 @@ static void plan(struct pace *p, double override)
 }
 
 /* The new plan holds once the motion can turn into it. */
-static void adopt(struct pace *p, struct ride *r)
+static void adopt(struct speed_profile *p, struct ride *r)
 {
     if (p->pending && cut(r, &p->plan[1 - p->held], p->override)) {
         p->held = 1 - p->held;
@@ -317,10 +318,10 @@ static void adopt(struct pace *p, struct ride *r)
     }
 }
 
-static bool wants_plan(const struct pace *p, double override)
+static bool wants_plan(const struct speed_profile *p, double override)
 {
     const int32_t new = p->count - p->at.planned;
-    const bool rests = p->at.step.kind == PACE_NO_STEP && p->at.state.x <= 0.0;
+    const bool rests = p->at.step.kind == SPEED_NO_STEP && p->at.state.x <= 0.0;
 
     return override > 0.0 && p->count > 0
            && (override != p->override || (rests && new > 0)
@@ -328,7 +329,7 @@ static bool wants_plan(const struct pace *p, double override)
                    && (p->reach == 0 || PLAN_SHARE * p->at.planned < (PLAN_SHARE - 1) * p->reach)));
 }
 
-double pace_smooth_advance(struct pace *p, double override, double dt)
+double speed_smooth_advance(struct speed_profile *p, double override, double dt)
 {
     struct ride r = ride_of(p);
 
@@ -341,12 +342,12 @@ double pace_smooth_advance(struct pace *p, double override, double dt)
     }
     if (override > 0.0) {
         adopt(p, &r);
-    } else if (p->at.asked > 0.0 && r.at.step.kind != PACE_NO_STEP) {
+    } else if (p->at.asked > 0.0 && r.at.step.kind != SPEED_NO_STEP) {
         cut(&r, &p->plan[p->held], -1.0);
     }
     r.at.asked = override;
     for (int n = 0; n < STEPS && dt > 0.0; n++) {
-        if (r.at.step.kind == PACE_NO_STEP) {
+        if (r.at.step.kind == SPEED_NO_STEP) {
             if (r.count == 1 && r.at.left <= 0.0) {
                 break;
             }
@@ -376,11 +377,11 @@ double pace_smooth_advance(struct pace *p, double override, double dt)
     return dt;
 }
 
-double pace_smooth_stop_way(const struct pace *p)
+double speed_smooth_stop_way(const struct speed_profile *p)
 {
     struct ride r = ride_of(p);
 
-    if (r.at.step.kind != PACE_NO_STEP && !cut(&r, held(&r), -1.0)) {
+    if (r.at.step.kind != SPEED_NO_STEP && !cut(&r, held(&r), -1.0)) {
         arrive(&r.at);
     }
     for (int n = 0; n < STEPS && r.at.state.x > 0.0; n++) {
@@ -391,18 +392,18 @@ double pace_smooth_stop_way(const struct pace *p)
     return r.at.here;
 }
 
-bool pace_smooth_nears_end(const struct pace *p, double further)
+bool speed_smooth_nears_end(const struct speed_profile *p, double further)
 {
-    const struct pace_plan *plan = &p->plan[p->held];
-    int32_t i = PACE_NODES - 1;
+    const struct speed_plan *plan = &p->plan[p->held];
+    int32_t i = SPEED_NODES - 1;
 
     while (i > plan->first && plan->node[i].state.b < 0.0) {
         i--;
     }
-    return p->at.here + further >= (plan->first < PACE_NODES ? plan->node[i].at : p->end);
+    return p->at.here + further >= (plan->first < SPEED_NODES ? plan->node[i].at : p->end);
 }
 
-bool pace_smooth_end(struct pace *p, double way)
+bool speed_smooth_end(struct speed_profile *p, double way)
 {
     const double end = p->end;
     const int32_t count = p->count;
@@ -415,7 +416,7 @@ bool pace_smooth_end(struct pace *p, double way)
     while (i + 1 < count && end_of(&r, i) < way) {
         i++;
     }
-    struct pace_box *g = box_at(p, i);
+    struct speed_box *g = box_at(p, i);
     const double length = g->length;
     g->length = way - g->from;
     p->count = i + 1;

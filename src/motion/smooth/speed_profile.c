@@ -1,4 +1,4 @@
-#include "pace_smooth.h"
+#include "speed_smooth.h"
 
 #include <math.h>
 
@@ -17,17 +17,17 @@ static const double SLIGHT = 0.05;
 /* Part by which the way to rest that is told is longer than the one that is counted. */
 static const double SLOWER = 1e-3;
 
-static struct pace_cell *cell_at(struct pace *p, int32_t i)
+static struct speed_cell *cell_at(struct speed_profile *p, int32_t i)
 {
-    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].cell;
+    return &p->ring[(uint32_t)(p->at.head + i) % SPEED_PROFILE_CELLS].cell;
 }
 
-static const struct pace_cell *cell_peek(const struct pace *p, int32_t i)
+static const struct speed_cell *cell_peek(const struct speed_profile *p, int32_t i)
 {
-    return &p->ring[(uint32_t)(p->at.head + i) % PACE_CELLS].cell;
+    return &p->ring[(uint32_t)(p->at.head + i) % SPEED_PROFILE_CELLS].cell;
 }
 
-void pace_start(struct pace *p, const struct pace_limits *l)
+void speed_profile_start(struct speed_profile *p, const struct speed_limits *l)
 {
     p->limits = *l;
     p->at.head = p->count = p->at.planned = 0;
@@ -38,28 +38,28 @@ void pace_start(struct pace *p, const struct pace_limits *l)
         p->smooth = p->smooth || l->jerk[k] > 0.0;
     }
     p->held = p->reach = 0;
-    p->plan[0].first = p->plan[1].first = PACE_NODES;
+    p->plan[0].first = p->plan[1].first = SPEED_NODES;
     p->plan[0].end = p->plan[1].end = 0.0;
-    p->at.state = (struct pace_state){ 0.0, 0.0 };
-    p->at.step = (struct pace_step){ .kind = PACE_NO_STEP };
+    p->at.state = (struct speed_state){ 0.0, 0.0 };
+    p->at.step = (struct speed_step){ .kind = SPEED_NO_STEP };
     p->at.twitch = p->at.spent = p->at.origin = p->at.goal = p->at.here = p->at.asked = 0.0;
     p->end = p->at.base = p->at.left = p->at.way = p->at.rate = p->at.gain = 0.0;
 }
 
-bool pace_join(struct pace *p, const struct segment *segment)
+bool speed_profile_join(struct speed_profile *p, const struct segment *segment)
 {
-    struct pace_cell cell[PACE_SPLIT];
+    struct speed_cell cell[SPEED_SPLIT];
 
-    if (p->end <= 0.0 && !pace_by_axes(&p->limits)) {
+    if (p->end <= 0.0 && !speed_by_axes(&p->limits)) {
         p->smooth = segment->ramp.acc_jerk > 0.0 || segment->ramp.dec_jerk > 0.0;
     }
     if (p->smooth) {
-        return pace_smooth_join(p, segment);
+        return speed_smooth_join(p, segment);
     }
-    if (p->closed || p->count + PACE_SPLIT + PACE_KEPT > PACE_CELLS) {
+    if (p->closed || p->count + SPEED_SPLIT + SPEED_PROFILE_KEPT > SPEED_PROFILE_CELLS) {
         return false;
     }
-    const int32_t n = pace_cut(segment, &p->limits, cell);
+    const int32_t n = speed_cut(segment, &p->limits, cell);
     for (int32_t i = 0; i < n; i++) {
         if (p->count == 0) {
             p->at.left = cell[i].length;
@@ -71,14 +71,14 @@ bool pace_join(struct pace *p, const struct segment *segment)
 }
 
 /* x of a cell at the feed under an override. */
-static double feed_limit(const struct pace_cell *c, double override)
+static double feed_limit(const struct speed_cell *c, double override)
 {
     const double v = el_min(c->feed * override, c->cap);
     return v * v;
 }
 
 /* Most x at the end of cell i, if so many cells are known. */
-static double end_limit(const struct pace *p, int32_t i, int32_t known, double override)
+static double end_limit(const struct speed_profile *p, int32_t i, int32_t known, double override)
 {
     return i + 1 < known ? el_min(feed_limit(cell_peek(p, i), override), cell_peek(p, i + 1)->most)
                          : 0.0;
@@ -86,19 +86,19 @@ static double end_limit(const struct pace *p, int32_t i, int32_t known, double o
 
 /* Plan from the end backwards. Once a cell that is not new comes out as it was, those before it
  * would, too. */
-static void plan(struct pace *p, double override)
+static void plan(struct speed_profile *p, double override)
 {
     const bool all = override != p->override;
 
     for (int32_t i = p->count - 1; i >= 0; i--) {
-        struct pace_cell *c = cell_at(p, i);
+        struct speed_cell *c = cell_at(p, i);
         const double x1 = end_limit(p, i, p->count, override), feed = feed_limit(c, override);
         double top, most;
         if (feed <= c->flat) {
-            top = pace_top(c, x1, feed);
+            top = speed_top(c, x1, feed);
             most = el_min(top, feed);
         } else {
-            most = pace_back(c, x1, feed, &top);
+            most = speed_back(c, x1, feed, &top);
         }
         if (!all && i < p->at.planned && top == c->top && most == c->most) {
             break;
@@ -124,10 +124,10 @@ static struct phase across(double acc, double left, double x, double x1)
 }
 
 /* The slowest phase within the limits: to rest, to the cell's end, or until they allow more. */
-static struct phase halt(const struct pace_cell *c, double left, double x)
+static struct phase halt(const struct speed_cell *c, double left, double x)
 {
-    const struct pace_span span = pace_span(c, left, x);
-    const double fall = pace_fall(c, x);
+    const struct speed_span span = speed_span(c, left, x);
+    const double fall = speed_fall(c, x);
     const double acc = fall > 0.0 ? el_min(span.low, -fall) : span.low;
 
     const double to = c->bend * x > SLIGHT ? 0.5 * x : 0.0;
@@ -145,15 +145,15 @@ struct line {
 /* The fastest phase within the limits: with an acceleration of at most `want`, up to x = `until`
  * or to x1 at the end of the cell. Below the line `safe`, from which the rest can be driven, also
  * with what is within the limits anywhere in the cell. */
-static struct phase hurry(const struct pace_cell *c, double left, double x, double want,
+static struct phase hurry(const struct speed_cell *c, double left, double x, double want,
                           double until, struct line safe, double x1)
 {
-    const struct pace_span span = pace_span(c, left, x);
+    const struct speed_span span = speed_span(c, left, x);
     double acc = el_min(span.high, want);
 
     if (x < safe.x * (1.0 - SAME)) {
         double stop = el_max(safe.x, safe.x - safe.fall * left);
-        const double rise = pace_rise(c, x, &stop);
+        const double rise = speed_rise(c, x, &stop);
         if (rise > acc) {
             acc = rise;
             until = stop;
@@ -169,7 +169,7 @@ static struct phase hurry(const struct pace_cell *c, double left, double x, doub
 
 /* What comes next where the limits allow more than the feed: up or down to it, along it, and down
  * the line of steepest braking to x1. */
-static struct phase next_feed(const struct pace_cell *c, double left, double x, double most,
+static struct phase next_feed(const struct speed_cell *c, double left, double x, double most,
                               double x1)
 {
     const double slope = (c->top - x1) / c->length, line = x1 + slope * left;
@@ -198,7 +198,7 @@ static struct phase next_feed(const struct pace_cell *c, double left, double x, 
 
 /* What comes next where the limits allow less than the feed: to x1 at the end of the cell, or as
  * near to it as they allow. */
-static struct phase next_bend(const struct pace_cell *c, double left, double x, double most,
+static struct phase next_bend(const struct speed_cell *c, double left, double x, double most,
                               double x1)
 {
     const double acc = 0.5 * (x1 - x) / left, fall = (c->most - c->top) / c->length;
@@ -213,23 +213,23 @@ static struct phase next_bend(const struct pace_cell *c, double left, double x, 
 }
 
 /* What comes next under an override. */
-static struct phase next(const struct pace *p, double x, double override)
+static struct phase next(const struct speed_profile *p, double x, double override)
 {
-    const struct pace_cell *c = cell_peek(p, 0);
+    const struct speed_cell *c = cell_peek(p, 0);
     const double most = feed_limit(c, override), x1 = end_limit(p, 0, p->at.planned, override);
 
     return most <= c->flat ? next_feed(c, p->at.left, x, most, x1)
                            : next_bend(c, p->at.left, x, most, x1);
 }
 
-bool pace_at_end(const struct pace *p)
+bool speed_profile_at_end(const struct speed_profile *p)
 {
-    const bool steps = p->smooth && p->at.step.kind != PACE_NO_STEP;
+    const bool steps = p->smooth && p->at.step.kind != SPEED_NO_STEP;
     return p->count == 0 || (p->count == 1 && p->at.left <= 0.0 && !steps);
 }
 
 /* Drive a phase for up to dt; returns the time used. */
-static double drive(struct pace *p, const struct phase *s, double dt)
+static double drive(struct speed_profile *p, const struct phase *s, double dt)
 {
     const double v = p->at.rate, to = sqrt(s->x);
     const double time = v + to > 0.0 ? 2.0 * s->way / (v + to) : s->way > 0.0 ? INFINITY : 0.0;
@@ -246,32 +246,32 @@ static double drive(struct pace *p, const struct phase *s, double dt)
 }
 
 /* Into the next cell, if there is one. */
-static void cross(struct pace *p)
+static void cross(struct speed_profile *p)
 {
     while (p->at.left <= 0.0 && p->count > 1) {
         p->at.base += cell_peek(p, 0)->length;
-        p->at.head = (p->at.head + 1) % PACE_CELLS;
+        p->at.head = (p->at.head + 1) % SPEED_PROFILE_CELLS;
         p->count--;
         p->at.planned -= p->at.planned > 0;
         p->at.left = cell_peek(p, 0)->length;
     }
 }
 
-static double length_at(const struct pace *p, int32_t i)
+static double length_at(const struct speed_profile *p, int32_t i)
 {
-    const uint32_t at = (uint32_t)(p->at.head + i) % PACE_CELLS;
+    const uint32_t at = (uint32_t)(p->at.head + i) % SPEED_PROFILE_CELLS;
     return p->smooth ? p->ring[at].box.length : p->ring[at].cell.length;
 }
 
-/* pace_advance without a limit of jerk. */
-static double advance(struct pace *p, double override, double dt)
+/* speed_profile_advance without a limit of jerk. */
+static double advance(struct speed_profile *p, double override, double dt)
 {
     cross(p);
     if (override > 0.0
         && (override != p->override || PLAN_SHARE * (p->count - p->at.planned) > p->at.planned)) {
         plan(p, override);
     }
-    while (dt > 0.0 && !pace_at_end(p)) {
+    while (dt > 0.0 && !speed_profile_at_end(p)) {
         const double x = p->at.rate * p->at.rate;
         if (override <= 0.0 && x <= 0.0) {
             p->at.gain = 0.0;
@@ -285,15 +285,16 @@ static double advance(struct pace *p, double override, double dt)
     return dt;
 }
 
-double pace_advance(struct pace *p, double override, double dt)
+double speed_profile_advance(struct speed_profile *p, double override, double dt)
 {
-    const double left = p->smooth ? pace_smooth_advance(p, override, dt) : advance(p, override, dt);
+    const double left =
+        p->smooth ? speed_smooth_advance(p, override, dt) : advance(p, override, dt);
 
     if (p->count > 0) {
         const double way = p->at.base + (length_at(p, 0) - p->at.left);
         p->at.way = el_min(p->end, el_max(p->at.way, way));
     }
-    if (pace_at_end(p)) {
+    if (speed_profile_at_end(p)) {
         p->at.way = p->end;
         p->at.rate = p->at.gain = p->at.twitch = 0.0;
     }
@@ -301,12 +302,12 @@ double pace_advance(struct pace *p, double override, double dt)
 }
 
 /* Where the most braking leads if it is looked for only where a phase ends. [mm] */
-static double rest_way(const struct pace *p)
+static double rest_way(const struct speed_profile *p)
 {
     double x = p->at.rate * p->at.rate, base = p->at.base;
 
     for (int32_t i = 0; i < p->count; i++) {
-        const struct pace_cell *c = cell_peek(p, i);
+        const struct speed_cell *c = cell_peek(p, i);
         double left = i == 0 ? p->at.left : c->length;
         while (left > 0.0 && x > 0.0) {
             const struct phase s = halt(c, left, x);
@@ -321,23 +322,24 @@ static double rest_way(const struct pace *p)
     return p->end;
 }
 
-double pace_stop_way(const struct pace *p)
+double speed_profile_stop_way(const struct speed_profile *p)
 {
     if (p->smooth) {
-        return pace_smooth_stop_way(p);
+        return speed_smooth_stop_way(p);
     }
     const double way = rest_way(p);
     return el_min(p->end, way + SLOWER * (way - p->at.way));
 }
 
-bool pace_nears_end(const struct pace *p, double further)
+bool speed_profile_nears_end(const struct speed_profile *p, double further)
 {
-    return p->smooth ? pace_smooth_nears_end(p, further) : pace_stop_way(p) + further >= p->end;
+    return p->smooth ? speed_smooth_nears_end(p, further)
+                     : speed_profile_stop_way(p) + further >= p->end;
 }
 
-void pace_put(struct pace *p, const struct pace_place *place)
+void speed_profile_put(struct speed_profile *p, const struct speed_profile_place *place)
 {
-    const int32_t crossed = (p->at.head - place->head + PACE_CELLS) % PACE_CELLS;
+    const int32_t crossed = (p->at.head - place->head + SPEED_PROFILE_CELLS) % SPEED_PROFILE_CELLS;
     const int32_t planned = p->at.planned > 0 ? p->at.planned + crossed : place->planned;
 
     p->at = *place;

@@ -1,4 +1,4 @@
-#include "pace_step.h"
+#include "speed_step.h"
 
 #include <math.h>
 
@@ -25,57 +25,60 @@ static double time_of(double v0, double a0, double v1, double a1, double c, doub
                           : el_log(1.0 + (dv - da) / (a1 - w * v1)) / w;
 }
 
-struct pace_step pace_step_bent(struct pace_state from, double c, double s)
+struct speed_step speed_step_bent(struct speed_state from, double c, double s)
 {
-    const struct pace_state to = pace_step_to(from, c, s);
-    struct pace_step step = {
-        .kind = PACE_BENT, .way = s, .speed = sqrt(from.x), .acc = 0.5 * from.b, .c = c, .to = to
+    const struct speed_state to = speed_step_to(from, c, s);
+    struct speed_step step = {
+        .kind = SPEED_BENT, .way = s, .speed = sqrt(from.x), .acc = 0.5 * from.b, .c = c, .to = to
     };
 
     step.time = time_of(step.speed, step.acc, sqrt(el_max(0.0, to.x)), 0.5 * to.b, c, s);
     return step;
 }
 
-struct pace_step pace_step_start(double jerk, double time)
+struct speed_step speed_step_start(double jerk, double time)
 {
     const double v = 0.5 * jerk * time * time;
 
-    return (struct pace_step){ .kind = PACE_JERK,
-                               .way = v * time / 3.0,
-                               .time = time,
-                               .c = jerk,
-                               .to = { v * v, 2.0 * jerk * time } };
+    return (struct speed_step){ .kind = SPEED_JERK,
+                                .way = v * time / 3.0,
+                                .time = time,
+                                .c = jerk,
+                                .to = { v * v, 2.0 * jerk * time } };
 }
 
-struct pace_step pace_step_land(struct pace_state from)
+struct speed_step speed_step_land(struct speed_state from)
 {
     const double v = sqrt(from.x), a = 0.5 * from.b, time = -2.0 * v / a;
 
-    return (struct pace_step){
-        .kind = PACE_JERK, .way = v * time / 3.0, .time = time, .speed = v, .acc = a, .c = -a / time
+    return (struct speed_step){ .kind = SPEED_JERK,
+                                .way = v * time / 3.0,
+                                .time = time,
+                                .speed = v,
+                                .acc = a,
+                                .c = -a / time };
+}
+
+struct speed_step speed_step_hop(double jerk, double way)
+{
+    return (struct speed_step){
+        .kind = SPEED_HOP, .way = way, .time = 4.0 * el_cbrt(0.5 * way / jerk), .c = jerk
     };
 }
 
-struct pace_step pace_step_hop(double jerk, double way)
+static struct speed_motion steady(double v, double a, double j, double t)
 {
-    return (struct pace_step){
-        .kind = PACE_HOP, .way = way, .time = 4.0 * el_cbrt(0.5 * way / jerk), .c = jerk
-    };
-}
-
-static struct pace_motion steady(double v, double a, double j, double t)
-{
-    return (struct pace_motion){ t * (v + t * (0.5 * a + t * j / 6.0)),
-                                 el_max(0.0, v + t * (a + 0.5 * t * j)), a + t * j, j };
+    return (struct speed_motion){ t * (v + t * (0.5 * a + t * j / 6.0)),
+                                  el_max(0.0, v + t * (a + 0.5 * t * j)), a + t * j, j };
 }
 
 /* In a fourth of the time to half of the most speed, in the next to all of it; then backwards. */
-static struct pace_motion hop_at(const struct pace_step *s, double t)
+static struct speed_motion hop_at(const struct speed_step *s, double t)
 {
     const double part = 0.25 * s->time, v = 0.5 * s->c * part * part;
 
     if (t > 2.0 * part) {
-        struct pace_motion m = hop_at(s, s->time - t);
+        struct speed_motion m = hop_at(s, s->time - t);
         m.way = s->way - m.way;
         m.gain = -m.gain;
         return m;
@@ -83,26 +86,26 @@ static struct pace_motion hop_at(const struct pace_step *s, double t)
     if (t <= part) {
         return steady(0.0, 0.0, s->c, t);
     }
-    struct pace_motion m = steady(v, s->c * part, -s->c, t - part);
+    struct speed_motion m = steady(v, s->c * part, -s->c, t - part);
     m.way += v * part / 3.0;
     return m;
 }
 
-struct pace_motion pace_step_at(const struct pace_step *s, double t)
+struct speed_motion speed_step_at(const struct speed_step *s, double t)
 {
     const double w = sqrt(0.5 * fabs(s->c)), sign = s->c < 0.0 ? -1.0 : 1.0;
 
-    if (s->kind == PACE_HOP) {
+    if (s->kind == SPEED_HOP) {
         return hop_at(s, t);
     }
-    if (s->kind != PACE_BENT || w * t < STRAIGHT) {
-        return steady(s->speed, s->acc, s->kind == PACE_BENT ? 0.5 * s->c * s->speed : s->c, t);
+    if (s->kind != SPEED_BENT || w * t < STRAIGHT) {
+        return steady(s->speed, s->acc, s->kind == SPEED_BENT ? 0.5 * s->c * s->speed : s->c, t);
     }
     const double x = 0.5 * w * t, half = s->c < 0.0 ? el_sin(x) : 0.5 * (el_exp(x) - el_exp(-x));
     const double cosine = 1.0 + sign * 2.0 * half * half, turn = 2.0 * half * half / (w * w);
     const double sine = (s->c < 0.0 ? el_sin(w * t) : 2.0 * half * sqrt(1.0 + half * half)) / w;
     const double v = el_max(0.0, s->speed * cosine + s->acc * sine);
-    return (struct pace_motion){ s->speed * sine + s->acc * turn, v,
-                                 s->acc + 0.5 * s->c * (s->speed * sine + s->acc * turn),
-                                 0.5 * s->c * v };
+    return (struct speed_motion){ s->speed * sine + s->acc * turn, v,
+                                  s->acc + 0.5 * s->c * (s->speed * sine + s->acc * turn),
+                                  0.5 * s->c * v };
 }
