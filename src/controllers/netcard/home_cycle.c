@@ -65,7 +65,7 @@ static void fail(struct home_cycle *h, int axis, enum home_cycle_fault fault)
     h->state = HOME_CYCLE_STOPPING;
 }
 
-/* Those of the lowest order above the last one that are to be homed begin. */
+/* Begin with the axes of the lowest order above the one before. */
 static void next_order(struct home_cycle *h, const struct home_cycle_input *in)
 {
     int32_t next = INT32_MAX;
@@ -230,7 +230,7 @@ static double speed_of(const struct home_axis *a, enum home_cycle_phase phase)
     }
 }
 
-/* Pulses of the next period. */
+/* Pulses of an axis in the next period. */
 static int32_t go(struct home_cycle *h, int i)
 {
     const struct home_axis *a = &h->config.axis[i];

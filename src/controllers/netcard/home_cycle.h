@@ -69,7 +69,7 @@ enum home_cycle_state {
     HOME_CYCLE_FAILED
 };
 
-/* What is seen, once each period. */
+/* What the search sees of the axes, once each period. */
 struct home_cycle_input {
     int64_t position[CARD_AXES]; /* [pulses] put out so far, any zero */
     uint32_t origin;             /* levels of the switches, a bit each axis */
@@ -114,7 +114,7 @@ void home_cycle_stop(struct home_cycle *h);
 /* ENDED: count of an axis that is position 0 from now on [pulses]. */
 int64_t home_cycle_zero(const struct home_cycle *h, int axis);
 
-/* Level of a switch that is on. An edge to it is what `latched` tells. */
+/* Level of a switch that is on; an edge to that level sets `latched`. */
 bool home_cycle_on_level(enum card_trigger trigger);
 
 #endif

@@ -37,7 +37,7 @@ int arm_moves_axis(const struct arm_moves *c)
     return 3 + (c->count - 1) % 3;
 }
 
-/* How much of a move is over at a place, 0 .. 1. */
+/* Part of a move, 0 .. 1, that is over at a place. */
 static double part_of(const struct arm_moves *c, int32_t n, const double place[AXES])
 {
     const struct arm_move *m = move_of(c, n);
@@ -61,7 +61,7 @@ static int32_t active(const struct arm_moves *c, const double place[AXES])
     return n;
 }
 
-/* Attitude after part of a move, from the one before it. */
+/* Turn an attitude by part of a move. */
 static void turned(const struct arm_move *m, double part, double turn[4])
 {
     const double by[3] = { part * m->by[0], part * m->by[1], part * m->by[2] };

@@ -6,7 +6,7 @@
  *
  * Each move turns the tool about its own axis, and two moves that follow one another have different
  * coordinates. So a corner between them fades the one turn out and the other in, as it does with
- * the ways, and no turn jumps. A coordinate counts LEVER times the angle: a tolerance of 1 mm is
+ * the paths, and no turn jumps. A coordinate counts LEVER times the angle: a tolerance of 1 mm is
  * one of 1/LEVER rad. A move of the joints has its share in its coordinate.
  */
 #ifndef ARM_MOVES_H
@@ -15,23 +15,24 @@
 #include "manipulator.h"
 #include "mechanism.h"
 
-/* The moves whose commands are in the ring (256), their neighbours and what is planned. */
+/* Moves that are known: those whose commands are in the ring (256), their neighbours, those
+ * planned. */
 enum { ARM_MOVES_SIZE = 320 };
 
-/* Length that an angle is measured at. [mm/rad] */
+/* A radian counts as so many mm. [mm/rad] */
 #define ARM_MOVES_LEVER 100.0
 
 enum arm_move_kind {
     ARM_MOVE_POSE,  /* tip and attitude */
-    ARM_MOVE_WRIST, /* tip, joints 4 to 6 linear in the way */
-    ARM_MOVE_JOINTS /* all joints linear in the way */
+    ARM_MOVE_WRIST, /* tip; joints 4 to 6 are linear over the path */
+    ARM_MOVE_JOINTS /* all joints are linear over the path */
 };
 
 struct arm_move {
     enum arm_move_kind kind;
-    double from, to;          /* of its coordinate; equal: the tool does not turn */
-    double turn[4];           /* attitude at its start; of joints: at its end */
-    double by[3];             /* [rad] rotation vector, base frame */
+    double from, to; /* [mm] its coordinate at its start and end; equal: the tool does not turn */
+    double turn[4];  /* attitude at its start; of a move of the joints: at its end */
+    double by[3];    /* [rad] rotation vector of its turn, base frame */
     double joint[OPW_JOINTS]; /* [rad] at its start */
     double step[OPW_JOINTS];  /* [rad] to its end */
 };
@@ -39,35 +40,35 @@ struct arm_move {
 struct arm_moves {
     struct arm_move move[ARM_MOVES_SIZE];
     int32_t count; /* moves in all; the latest ARM_MOVES_SIZE are known */
-    double at[3];  /* U V W at the end of the last */
+    double at[3];  /* [mm] U V W at the end of the last move */
 };
 
-/* What the kinematics of the motion core get. */
+/* What the kinematics of the trajectory are given. */
 struct arm_geometry {
     const struct manipulator *arm;
     const struct arm_moves *moves;
 };
 
-/* No moves yet; the tool has an attitude. */
+/* Begin without moves, the tool having this attitude. */
 void arm_moves_start(struct arm_moves *c, const double turn[4]);
 
-/* Add a move, whose coordinate goes on by `way` [mm]; its from and to are set here. */
+/* Append a move whose coordinate goes on by `way` [mm]; its from and to are set here. */
 void arm_moves_add(struct arm_moves *c, const struct arm_move *move, double way);
 
-/* The same as the latest one had not been added. */
+/* Take the latest move back, as if it had not been added. */
 void arm_moves_drop(struct arm_moves *c);
 
-/* Coordinate of the latest move: 3 .. 5. */
+/* Index of the coordinate that the latest move turns the tool by: 3 .. 5. */
 int arm_moves_axis(const struct arm_moves *c);
 
-/* Tip and attitude of a place; of a move by joints those of the joints. */
+/* Pose of the tip at a place; on a move of the joints it follows from joint[]. */
 void arm_moves_pose(const struct arm_geometry *g, const double place[AXES],
                     const double joint[AXES], struct pose *pose);
 
-/* Whether a place belongs to a move by joints, which takes no inverse kinematics. */
+/* Whether a place belongs to a move of the joints, which takes no inverse kinematics. */
 bool arm_moves_by_joints(const struct arm_moves *c, const double place[AXES]);
 
-/* Tells the motion core the joints [rad] of a place. */
+/* The functions by which the trajectory gets the joints [rad] of a place. */
 struct kinematics arm_moves_kinematics(void);
 
 #endif

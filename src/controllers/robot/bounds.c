@@ -28,7 +28,7 @@ struct limbs {
     double shoulder, elbow; /* side: +1 or -1 */
 };
 
-/* Where it stands. */
+/* Joints 1 to 3 of that arm: directions and rates. */
 struct stand {
     struct jet base[2], fore[2]; /* cosine, sine of joint 1, of the forearm from upright */
     struct jet rate[3];          /* of the joints */

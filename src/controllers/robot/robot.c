@@ -112,7 +112,7 @@ static double apart(const double a[3], const double b[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/* What is shown after a cycle. */
+/* Set what the robot shows after a cycle. */
 static void show(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS],
                  const struct pose *pose)
 {

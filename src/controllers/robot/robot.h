@@ -13,7 +13,7 @@
 #include "trajectory.h"
 #include "tool_path.h"
 
-/* Beside opw_flag: a target says nothing of its branch; of a joint's whole turns. */
+/* A target that says nothing of its branch; of the whole turns of a joint. */
 enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
 
 /* No place, angle or direction of a move is larger, in its unit: squares stay numbers and a path is
@@ -32,14 +32,14 @@ struct robot_config {
     double slot_pulses;       /* highest number of pulses in a slot */
 };
 
-/* Where a move leads. */
+/* Where a move leads to. */
 struct robot_target {
-    bool by_joints;           /* joint[] holds, else pose */
+    bool by_joints;           /* joint[] is the target, else pose is */
     double joint[OPW_JOINTS]; /* [rad] */
     struct pose pose;
     int branch;           /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
-    int open;             /* flags that branch says nothing of */
-    bool turned;          /* of a pose: turn[] holds, but for ROBOT_ANY_TURN */
+    int open;             /* sum of the opw_flags that branch leaves open */
+    bool turned;          /* of a pose: turn[] is asked for, but for ROBOT_ANY_TURN */
     int turn[OPW_JOINTS]; /* whole turns: joint n is within half a turn of so many */
 };
 
@@ -128,7 +128,7 @@ struct robot {
 /* At rest at joints [rad]. Any joints: out of its limits the arm moves back only. */
 void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS]);
 
-/* Whether the next move may be given. */
+/* Whether the next move may be given: all of the one before is in the ring. */
 bool robot_ready(const struct robot *r);
 
 /* Plan a move behind those given before. */
@@ -141,11 +141,11 @@ void robot_cycle(struct robot *r, const struct robot_config *c);
 /* Nothing moves and nothing is left to do but what hold or override 0 keeps. */
 bool robot_rests(const struct robot *r);
 
-/* All moves are done. */
+/* Whether all moves are done. */
 bool robot_idle(const struct robot *r);
 
-/* Pause on the path, go on; ramp to rest and drop all moves; the same without a ramp; speeds by a
- * share 0 .. */
+/* Pause on the path or go on; ramp to rest and drop all moves; drop them without a ramp; drive at a
+ * share of all speeds, 0 or more. */
 void robot_hold(struct robot *r, bool on);
 void robot_abort(struct robot *r);
 void robot_stop(struct robot *r);
@@ -154,7 +154,7 @@ void robot_override(struct robot *r, double share);
 /* Joints at the end of the moves given so far, for the target of a next one. [rad] */
 void robot_end(const struct robot *r, double joint[OPW_JOINTS]);
 
-/* Another tool; ROBOT_BUSY while moves are not done. */
+/* Take another tool; ROBOT_BUSY while moves are not done. */
 enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
                              const struct pose *tool);
 

@@ -1,4 +1,5 @@
-/* robot_move - a move becomes a way: where it leads, what it may, why it is refused. */
+/* robot_move - a move becomes a path of the tool: where it leads, how fast it may be, why it is
+ * refused. */
 #include "robot.h"
 
 #include "robot_plan.h"
@@ -17,10 +18,10 @@ static const double WIDE = 1e9;
 /* Two attitudes that are the same; joints on a branch that is not certain. [rad] */
 static const double SAME = 1e-12, DOUBTFUL = 1e-9;
 
-/* A way of the tip shorter than this share of its turning is none. */
+/* A path of the tip shorter than this share of its turning counts as none. */
 static const double STILL = 1e-3;
 
-/* A way this short is rounding. [mm] */
+/* A path this short is rounding. [mm] */
 static const double NOWHERE = 1e-9;
 
 /* Sine of joint 5 from which on its direction is certain; how far joint 4 may jump. [rad] */
@@ -39,7 +40,7 @@ static bool all_sound(const double *x, int n)
     return good;
 }
 
-/* The axis of the base that a unit vector is, -1 none. */
+/* Index of the axis of the base that a unit vector is; -1: it is none. */
 static int axis_of(const double v[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -107,7 +108,7 @@ static enum robot_status draw(struct robot *r, const struct robot_move *move,
     return ROBOT_OK;
 }
 
-/* Attitude at the rear. */
+/* Attitude at the end of the latest move. */
 static void rear_turn(const struct robot *r, const struct manipulator *arm, double turn[4])
 {
     const struct arm_geometry g = { arm, &r->moves };
@@ -341,7 +342,7 @@ static enum robot_status round_arc(const struct robot *r, const struct robot_mov
     return fabs(height) <= PLANE ? ROBOT_OK : ROBOT_OFF_PLANE;
 }
 
-/* Pose at the end of a path. */
+/* Pose of the tip at the end of a move's path. */
 static enum robot_status aim(const struct robot *r, const struct manipulator *arm,
                              const struct robot_move *move, struct pose *pose,
                              struct robot_refusal *why)

@@ -20,20 +20,20 @@ struct tool_path_limits {
     double speed[OPW_JOINTS]; /* [rad/s] */
     double turn[OPW_JOINTS];  /* [rad/s^2] */
     double smooth;            /* [s] time of the mean of the look-ahead; 0 none */
-    bool corner[2];           /* a corner may follow its start, precede its end */
-    bool refuse;              /* where the joints do not allow the feed */
+    bool corner[2];           /* its start, its end may lie in a corner */
+    bool refuse;              /* refuse the path where the joints do not allow the feed */
 };
 
 struct tool_path_segment {
-    double until; /* part of the path at its end, 0 .. 1 */
-    double cap;   /* [mm/s] */
+    double until; /* 0..1 part of the path at its end */
+    double cap;   /* [mm/s] most speed on it */
     double acc;   /* [mm/s^2] */
 };
 
 struct tool_path {
     struct path path;
-    int32_t count, next; /* segments; the first that is not yet a command */
-    double smooth;       /* [s] of its commands: 0 if its joints make it slow */
+    int32_t count, next; /* number of segments; the first that is not yet a command */
+    double smooth;       /* [s] mean for its commands; 0 if its joints make it slow */
     struct tool_path_segment segment[TOOL_PATH_SEGMENTS];
 };
 
@@ -46,7 +46,7 @@ enum tool_path_status {
 
 struct tool_path_fault {
     double part;              /* of the path, 0 .. 1 */
-    double joint[OPW_JOINTS]; /* [rad] there, or the last known */
+    double joint[OPW_JOINTS]; /* [rad] the joints there, or the last ones known */
     int which;                /* OUTSIDE: joint */
 };
 

@@ -18,7 +18,7 @@ void controller_start(struct controller *s, const struct controller_config *c)
     }
 }
 
-/* Moves whose points the arm has passed. */
+/* Count the moves whose points the arm has passed. */
 static void look_at_moves(struct controller *s)
 {
     const int64_t reached = robot_idle(&s->robot) ? s->given : (int64_t)s->robot.line - 1;
@@ -26,7 +26,7 @@ static void look_at_moves(struct controller *s)
     s->reached = reached > s->reached ? reached : s->reached;
 }
 
-/* A cycle of the arm as slots of pulses. */
+/* Write a cycle of the arm into the slots of a memory, as pulses. */
 static void make_slots(struct controller *s, const struct controller_config *c)
 {
     int32_t of[OPW_JOINTS][FPGA_SLOTS];
@@ -47,7 +47,7 @@ static void make_slots(struct controller *s, const struct controller_config *c)
     memcpy(s->joint, s->robot.joint, sizeof s->joint);
 }
 
-/* The memory of the lines of an earlier run has begun to play. */
+/* Measure the latency of lines whose memory has begun to play. */
 static void see_lines(struct controller *s, const struct fpga_shown *card, int64_t clock)
 {
     if (s->asked < 0 || card->memory != s->memory) {
@@ -73,7 +73,7 @@ static struct robot_job_inputs inputs_of(const struct controller *s, const struc
     return in;
 }
 
-/* Clocks of the run, and what there is to tell of them. */
+/* Note the clocks of a run, and report its times. */
 static void time_run(struct controller *s, const struct controller_config *c,
                      const struct fpga_shown *card, int64_t clock, int64_t begin, int32_t lines,
                      int32_t points)
@@ -94,7 +94,7 @@ static void time_run(struct controller *s, const struct controller_config *c,
     r->points += points;
 }
 
-/* Polls of the user program up to a clock. */
+/* Make the polls of the user program up to a clock. */
 static void poll(struct controller *s, const struct controller_config *c,
                  const struct orders_text *t, const struct fpga_shown *card, int64_t until)
 {
@@ -110,7 +110,7 @@ static void poll(struct controller *s, const struct controller_config *c,
     s->report.polls = s->layers.polls;
 }
 
-/* Keys and what the program wants; lines that are done. */
+/* Act on keys and on the program's orders; returns how many lines are done. */
 static int32_t decide(struct controller *s, const struct controller_config *c,
                       const struct orders_text *t, const struct fpga_shown *card,
                       const struct controller_panel *panel, int64_t clock)
@@ -127,7 +127,8 @@ static int32_t decide(struct controller *s, const struct controller_config *c,
     return lines;
 }
 
-/* A cycle of the arm and its pulses; points whose kinematics it takes. */
+/* Move the arm by a cycle and write its pulses; returns how many points had their kinematics
+ * computed. */
 static int32_t move_arm(struct controller *s, const struct controller_config *c)
 {
     const double way = s->robot.solved;
@@ -163,7 +164,7 @@ static void run(struct controller *s, const struct controller_config *c,
     s->posts = !s->stopped;
 }
 
-/* The card has stopped: its counters say where the arm is once it is let go. */
+/* The card has stopped. Once it is let go its counters say where the arm is. */
 static void look_at_stop(struct controller *s, const struct controller_config *c,
                          const struct fpga_shown *card)
 {
@@ -201,7 +202,7 @@ void controller_instant(struct controller *s, const struct controller_config *c,
     s->posts = false;
     look_at_keys(s, panel);
     look_at_stop(s, c, card);
-    /* The card's timer interrupts a driver that is late: nothing to do but what is being done. */
+    /* The card's timer has interrupted a driver that is late: what it asks for is being done. */
     if (link_new(&s->irq_seq, card->irq_seq) && (int64_t)card->irq_clock > s->free) {
         run(s, c, t, card, panel);
     }
@@ -237,7 +238,7 @@ bool controller_running(const struct controller *s)
     return s->program >= PROGRAM_RUNS;
 }
 
-/* What a program, or a replay, does while nothing holds it. */
+/* Status of a program, or of a replay, that nothing holds. */
 static enum controller_status program_status(const struct controller *s,
                                              const struct controller_panel *panel)
 {

@@ -28,12 +28,12 @@ struct controller_config {
     int32_t slots; /* of a memory, 1 .. FPGA_SLOTS */
     enum fpga_format format;
     struct layers_config layers;
-    int64_t copy_in, copy_out; /* [clocks] of a run */
-    int64_t line, point;       /* [clocks] of a line of the program, of a point's kinematics */
+    int64_t copy_in, copy_out; /* [clocks] of a run of the driver */
+    int64_t line, point;       /* [clocks] that a line of the program, a point's kinematics take */
     double pitch;              /* [mm] between two points whose kinematics are computed */
-    int32_t lines;             /* most of a run */
-    bool user;                 /* the user program reads the lines at its polls, into a queue */
-    int32_t depth;             /* lines of that queue, up to CONTROLLER_QUEUE */
+    int32_t lines;             /* most lines of the program that a run carries out */
+    bool user;                 /* the user program reads lines into a queue at its polls */
+    int32_t depth;             /* room of that queue in lines, up to CONTROLLER_QUEUE */
     int64_t start;             /* [clock] the program starts at the first run from here on */
     double zero[OPW_JOINTS];   /* [rad] joints at clock 0 */
     uint32_t servo;            /* axes whose servo is on */
@@ -42,14 +42,15 @@ struct controller_config {
     struct orders_config orders;
 };
 
-/* The teach pendant, read on the bus grid; keys count when they go down, in the run that follows:
- * one that has no meaning then is forgotten. */
+/* The teach pendant, read on the bus grid. A key counts when it goes down, in the driver's next
+ * run; one that has no meaning then is forgotten. */
 struct controller_panel {
     bool hold, abort, start, single, reset, teach, replay;
     double override; /* 0 .. 1 */
-    double jog[6];   /* -1 .. 1 of each direction; all 0: none */
+    double jog[6];   /* -1 .. 1 for each direction; all 0: no jog */
     enum robot_frame frame;
-    double jog_speed, jog_way; /* share of the highest; [mm], [deg], 0 no end */
+    double jog_speed; /* 0..1 share of the highest speed */
+    double jog_way;   /* [mm] or [deg] length of an increment; 0: no end */
 };
 
 enum controller_status {
@@ -64,7 +65,7 @@ enum controller_status {
     CONTROLLER_STOPPED
 };
 
-/* The program; from PROGRAM_RUNS on it is not over. */
+/* Where the program is; from PROGRAM_RUNS on it is not over. */
 enum controller_program {
     PROGRAM_NEW,     /* not started yet */
     PROGRAM_ENDED,   /* its last order is done */
@@ -91,18 +92,18 @@ struct controller_trouble {
     enum robot_job_fault fault;
 };
 
-/* What the layers have taken so far; the driver's times in clocks. */
+/* Times that the layers have needed so far. Those of the driver are in clocks. */
 struct controller_report {
-    int32_t runs, late;      /* of the driver; not done when their pulses were due */
-    int64_t wait, wait_most; /* from interrupt to begin */
-    int64_t run, run_most;   /* from interrupt to mark */
-    int64_t spare;           /* from the mark to where its pulses are due */
-    int64_t busy;            /* all runs */
+    int32_t runs, late;      /* runs of the driver; of these, not done when their pulses were due */
+    int64_t wait, wait_most; /* from the interrupt to the begin of a run: latest, longest */
+    int64_t run, run_most;   /* from the interrupt to the mark: latest, longest */
+    int64_t spare;           /* from the latest mark to where its pulses are due */
+    int64_t busy;            /* sum over all runs */
     int32_t polls;
-    int32_t lines, points;   /* in all */
+    int32_t lines, points;   /* carried out, computed */
     int32_t starved;         /* runs in which the queue was empty and the arm at rest */
     int64_t line, line_most; /* from the interrupt that executes moves to their first slot */
-    int64_t told_most;       /* and from where the driver could have known the first */
+    int64_t told_most;       /* longest from where the driver could have known the first move */
 };
 
 struct controller_key {
@@ -126,16 +127,16 @@ struct controller {
     struct controller_report report;
 
     /* the card */
-    int32_t irq_seq, write_seq, memory; /* seen, written last */
-    int64_t free;                       /* [clock] the driver has done its latest run */
-    int64_t asked;             /* [clock] interrupt of the moves whose memory waits; -1 none */
-    int64_t known;             /* [clock] the first of those; -1 none in the latest run */
-    int32_t words[FPGA_WORDS]; /* of the latest write, */
-    int64_t mark;              /* [clock] and when it is complete */
+    int32_t irq_seq, write_seq, memory; /* seen last; number and memory written last */
+    int64_t free;                       /* [clock] end of the driver's latest run */
+    int64_t asked; /* [clock] interrupt that executed moves not played yet; -1: none */
+    int64_t known; /* [clock] when the first of them could be known; -1: none in that run */
+    int32_t words[FPGA_WORDS]; /* latest write to the card */
+    int64_t mark;              /* [clock] at which that write is complete */
     double volt[FPGA_ANALOG];
     int32_t ao_seq;
     int32_t reset_seq;
-    bool posts, posts_ao;      /* a new write, new analog outputs */
+    bool posts, posts_ao;      /* there is a new write, there are new analog outputs */
     bool stopped;              /* as the card was seen last */
     double joint[OPW_JOINTS];  /* [rad] at the end of all slots written */
     double origin[OPW_JOINTS]; /* [pulses] of the joints where the card's counters are 0 */
@@ -144,10 +145,10 @@ struct controller {
     enum controller_program program;
     int32_t heads, count; /* queue of the user program */
     struct order queue[CONTROLLER_QUEUE];
-    struct order next;                   /* taken, not yet done; ORDER_NONE: none */
-    int64_t delay;                       /* [clocks] left */
-    int64_t given, reached;              /* moves of the arm */
-    int64_t first;                       /* of them before the program */
+    struct order next;      /* order taken, not yet done; ORDER_NONE: none */
+    int64_t delay;          /* [clocks] left of a delay */
+    int64_t given, reached; /* moves given to the arm; moves that have reached their points */
+    int64_t first;          /* number of moves given before the program began */
     int32_t move_line[CONTROLLER_MOVES]; /* line of move n at n mod CONTROLLER_MOVES */
     int32_t output_count;
     struct controller_output output[CONTROLLER_OUTPUTS];
@@ -157,30 +158,30 @@ struct controller {
     struct controller_key start, abort, reset, teach, replay;
     bool leave; /* single step: one move may begin */
     bool jogs;
-    int32_t taught_count, replaying; /* points; the next one, -1 none */
+    int32_t taught_count, replaying; /* taught points; the next one that replay goes to, -1: none */
     struct robot_target taught[CONTROLLER_TAUGHT];
 };
 
 /* At rest at clock 0. */
 void controller_start(struct controller *s, const struct controller_config *c);
 
-/* One instant of the bus grid, at clock now = k T_b, for k = 0, 1, 2, ... What it leads to is for
- * controller_post at the next one. */
+/* One instant of the bus grid, at clock now = k T_b, for k = 0, 1, 2, ... What it leads to is
+ * posted by controller_post at the next instant. */
 void controller_instant(struct controller *s, const struct controller_config *c,
                         const struct orders_text *t, const struct fpga_shown *card,
                         const struct controller_panel *panel, int64_t now);
 
-/* What the card is given. The mailboxes of *host keep what they had if there is nothing new. */
+/* Post to the card what is new; mailboxes of *host without news keep what they had. */
 void controller_post(struct controller *s, const struct controller_config *c,
                      struct fpga_host *host);
 
 enum controller_status controller_status(const struct controller *s,
                                          const struct controller_panel *panel);
 
-/* A program has been started and is not over. */
+/* Whether a program has been started and is not over. */
 bool controller_running(const struct controller *s);
 
-/* The program is over and the arm at rest. */
+/* Whether the program is over and the arm at rest. */
 bool controller_done(const struct controller *s);
 
 /* Behind controller_start: try the moves of a part program one by one without time, each at rest at

@@ -9,7 +9,7 @@ static bool taken(const struct controller *s)
     return controller_running(s) || s->stopped || s->replaying >= 0;
 }
 
-/* What a call starts leaves nothing of an earlier program's end. */
+/* A call that starts a motion clears what ended an earlier program. */
 static enum robot_status begin(struct controller *s, enum robot_status status)
 {
     if (status == ROBOT_OK) {

@@ -52,7 +52,7 @@ static void teach(struct controller *s, const struct controller_config *c)
     }
 }
 
-/* The taught points one after another, by the joints. */
+/* Replay: give the arm the taught points one after another, as moves of the joints. */
 static void replay(struct controller *s, const struct controller_config *c,
                    const struct controller_panel *panel)
 {
@@ -73,7 +73,7 @@ static void replay(struct controller *s, const struct controller_config *c,
     }
 }
 
-/* Nothing moves the arm, or is about to. */
+/* Whether nothing moves the arm and nothing is about to. */
 static bool free_to_start(const struct controller *s)
 {
     return !controller_running(s) && !s->stopped && s->replaying < 0;

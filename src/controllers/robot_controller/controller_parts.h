@@ -19,7 +19,8 @@ static inline bool controller_key_take(struct controller_key *k)
     return pressed;
 }
 
-/* Program: start, drop all of it, one run's orders. Returns how many were done. */
+/* Start the program; drop it with all its moves; carry out its orders of one run of the driver, and
+ * return their number. */
 void controller_program_start(struct controller *s, const struct controller_config *c,
                               const struct orders_text *t);
 void controller_program_drop(struct controller *s);
@@ -27,36 +28,37 @@ int32_t controller_program_run(struct controller *s, const struct controller_con
                                const struct orders_text *t, const struct controller_panel *panel,
                                const struct robot_job_inputs *in);
 
-/* The user program reads lines at a poll. */
+/* The user program reads lines into the queue at a poll. */
 void controller_program_poll(struct controller *s, const struct controller_config *c,
                              const struct orders_text *t, const struct robot_job_inputs *in,
                              int64_t clock);
 
-/* Outputs of the program whose moves are reached, into the copy that is complete at a clock. */
+/* Put out the program's outputs whose moves have reached their points, with the copy that is
+ * complete at clock `done`. */
 void controller_program_outputs(struct controller *s, int64_t done);
 
-/* Whether a move with a tool may be given now; the tool is in force then. */
+/* Whether a move with this tool may be given now; if so, the tool is in force. */
 bool controller_program_ready(struct controller *s, const struct controller_config *c,
                               const struct pose *tool);
 
-/* Give the arm a move of a line. */
+/* Give the arm a move that stands in a line of the program. */
 enum robot_status controller_program_give(struct controller *s, const struct controller_config *c,
                                           struct robot_move *move, int32_t line,
                                           struct robot_refusal *why);
 
-/* An output behind a move; false: no room now. */
+/* Keep an output until its move has reached its point. False: there is no room now. */
 bool controller_program_put(struct controller *s, const struct order *o);
 
-/* Give the arm an order's move: true if it is done with, also if it is refused. */
+/* Give the arm the move of an order. True: the order is done with, which it is, too, if refused. */
 bool controller_program_move(struct controller *s, const struct controller_config *c,
                              struct order *order);
 
-/* Keys and jogging, as a run finds them. */
+/* Act on the keys and the jogging that a run of the driver finds. */
 void controller_panel_run(struct controller *s, const struct controller_config *c,
                           const struct orders_text *t, const struct controller_panel *panel,
                           int64_t clock);
 
-/* Jog by the pendant's directions; an increment is in mm, or in deg where it only turns. */
+/* Jog by the pendant's directions. An increment is in mm, or in deg if the tool only turns. */
 enum robot_status controller_panel_jog(struct controller *s, const struct controller_config *c,
                                        const struct controller_panel *panel,
                                        struct robot_refusal *why);

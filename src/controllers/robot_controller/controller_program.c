@@ -23,7 +23,7 @@ void controller_program_drop(struct controller *s)
     s->delay = 0;
 }
 
-/* End with what has gone wrong; moves that were given before run to their end. */
+/* End the program with what has gone wrong; moves that were given before run to their end. */
 static bool fail(struct controller *s, enum controller_error error, const struct order *order)
 {
     s->trouble.error = error;
@@ -98,7 +98,7 @@ bool controller_program_put(struct controller *s, const struct order *o)
     return true;
 }
 
-/* A move of the program; of single steps each is let go by the start key. */
+/* Give the arm a move of the program; in single steps the start key lets each one go. */
 static bool carry_out_move(struct controller *s, const struct controller_config *c,
                            const struct controller_panel *panel, struct order *o)
 {
@@ -111,7 +111,7 @@ static bool carry_out_move(struct controller *s, const struct controller_config 
     return true;
 }
 
-/* The end, once the arm rests and all outputs are put out. */
+/* End the program, once the arm rests and all outputs are put out. False: not yet. */
 static bool end(struct controller *s)
 {
     if (!robot_idle(&s->robot) || s->output_count) {
@@ -122,7 +122,7 @@ static bool end(struct controller *s)
     return true;
 }
 
-/* False: not now. */
+/* Carry out an order. False: it cannot be done yet. */
 static bool carry_out(struct controller *s, const struct controller_config *c,
                       const struct controller_panel *panel, struct order *o)
 {
@@ -141,7 +141,7 @@ static bool carry_out(struct controller *s, const struct controller_config *c,
     }
 }
 
-/* What stands behind a pause may look at inputs. */
+/* Whether a pause is the last order known; what stands behind it may look at inputs. */
 static bool pause_ahead(const struct controller *s)
 {
     const int32_t last = (s->heads + s->count + CONTROLLER_QUEUE - 1) % CONTROLLER_QUEUE;
@@ -184,7 +184,7 @@ static bool fetch(struct controller *s, const struct controller_config *c,
     return s->next.kind != ORDER_NONE;
 }
 
-/* What the program does until the next run; a delay goes on while inputs are asked behind it. */
+/* What the program does until the next run; a delay goes on while inputs behind it are asked. */
 static void look_what_is_next(struct controller *s)
 {
     if (controller_running(s) && s->program != PROGRAM_PAUSED) {

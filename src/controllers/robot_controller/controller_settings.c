@@ -7,7 +7,7 @@
 
 static const double DEGREE = 0.017453292519943295;
 
-/* A period is as near to whole clocks. [clocks] */
+/* A period may differ from whole clocks by so much. [clocks] */
 static const double ROUNDING = 1e-6;
 
 static void fill(double to[OPW_JOINTS], const double from[OPW_JOINTS])

@@ -8,7 +8,7 @@
 
 #include "controller.h"
 
-/* Cycle, card, copies, processor times. */
+/* The driver's cycle, the card's slots, copies over the bus, times of the processor. */
 #define CONTROLLER_TIMES(X) \
     X(double, bus_period, , "s", 5e-5, 25e-9, 1e-2) /* whole clocks */ \
     X(double, start_delay, , "s", 0.0, 0.0, 1e6) \
@@ -84,7 +84,7 @@ struct controller_settings {
     CONTROLLER_SETTINGS(CONTROLLER_MEMBER)
 };
 
-/* The document's times; an IRB 2600-12/1.65. Starts of joints that differ stand here. */
+/* The settings at the start: the document's times and an IRB 2600-12/1.65, whose joints differ. */
 struct controller_settings controller_defaults(void);
 
 /* What is wrong with a setting. */
@@ -94,7 +94,7 @@ struct controller_wrong {
     double value, low, high;
 };
 
-/* Whether settings can be configured; if not, the first that is wrong. */
+/* Whether a controller can have these settings; if not, *wrong is the first that is wrong. */
 bool controller_settings_good(const struct controller_settings *s, struct controller_wrong *wrong);
 
 void controller_configure(const struct controller_settings *s, struct controller_config *c);

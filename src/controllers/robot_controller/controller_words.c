@@ -25,7 +25,7 @@ static const char *name_of(enum robot_status status)
     return "";
 }
 
-/* Words, and a number with six digits. */
+/* Append words and a number with six digits. */
 static void add(struct robot_job_text *t, const char *words, double value)
 {
     const double decades = value != 0.0 ? floor(el_log(fabs(value)) / el_log(10.0)) : 5.0;

@@ -13,7 +13,7 @@ int64_t layers_wait(struct layers *l, const struct layers_config *c)
     return latency_draw(&c->interrupt, &l->random);
 }
 
-/* Outputs of a layer that have to change, and no longer have to. */
+/* Outputs of a layer whose inputs have changed; they count as put out from now on. */
 static uint32_t changes(struct layers *l, const struct layers_config *c, enum layer layer,
                         uint32_t inputs)
 {

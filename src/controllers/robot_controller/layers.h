@@ -19,16 +19,16 @@
 enum layer { LAYER_INTERRUPT, LAYER_DRIVER, LAYER_TIMER, LAYER_USER, LAYERS };
 
 struct layers_config {
-    struct latency interrupt; /* wait of the card's interrupts */
-    int64_t access;           /* [clocks] a register of the card read, another written */
+    struct latency interrupt; /* from an interrupt of the card to its routine */
+    int64_t access;           /* [clocks] to read a register of the card and write another */
     int64_t tick;             /* [clocks] of the system clock */
-    int64_t poll;             /* [clocks] between two polls of the user program, */
-    int64_t quantum;          /* [clocks] more if another thread has the processor then, */
-    double crowded;           /* with this probability */
+    int64_t poll;             /* [clocks] between two polls of the user program */
+    int64_t quantum;          /* [clocks] that a poll comes later if another thread is running */
+    double crowded;           /* probability of that, 0 .. 1 */
     uint32_t follow[LAYERS];  /* outputs that follow their inputs */
 };
 
-/* Inputs as a copy of the driver had them. */
+/* The inputs in one copy of the driver. */
 struct layers_copy {
     int64_t clock; /* at which the copy was complete */
     uint32_t inputs;
@@ -36,35 +36,35 @@ struct layers_copy {
 
 struct layers {
     uint64_t random;
-    uint32_t shown[LAYERS];     /* outputs that follow, as put out last */
-    int64_t tick, poll;         /* [clock] the next ones */
-    int32_t polls;              /* so far */
-    int32_t changes;            /* input_irq_seq served */
+    uint32_t shown[LAYERS];     /* outputs of each layer that follow, as put out last */
+    int64_t tick, poll;         /* [clock] of the next tick and poll */
+    int32_t polls;              /* number of polls so far */
+    int32_t changes;            /* latest input_irq_seq served */
     struct layers_copy copy[2]; /* the latest first */
-    uint32_t mask, value;       /* outputs the user program has asked for; mask 0: none */
+    uint32_t mask, value;       /* outputs that the user program has asked for; mask 0: none */
 };
 
 void layers_start(struct layers *l, const struct layers_config *c, int32_t seed);
 
-/* A wait for an interrupt of the card. [clocks] */
+/* Draw how long an interrupt of the card waits for its routine. [clocks] */
 int64_t layers_wait(struct layers *l, const struct layers_config *c);
 
-/* What the card shows at an instant: the interrupt of a change, and all ticks whose access is over
- * before `until`. Their image is that of the instant, so it is older than the tick by up to
- * until - instant - access. */
+/* Answer what the card shows at an instant of the bus grid: the interrupt of a change, and all
+ * ticks whose access is over before `until`. A tick sees the inputs of that instant, which are
+ * older than the tick by up to until - instant - access. */
 void layers_look(struct layers *l, const struct layers_config *c, const struct fpga_shown *card,
                  int64_t until, struct outbox *out);
 
-/* The next poll, if it is not behind a clock up to which all copies are known; false if it is. It
- * sees the latest copy that was complete. */
+/* Make the next poll, which sees the latest copy that was complete. False: the poll comes after
+ * `until`, the clock up to which all copies are known. */
 bool layers_poll(struct layers *l, const struct layers_config *c, int64_t until,
                  struct layers_copy *seen);
 
 /* The driver has copied the inputs. */
 void layers_copied(struct layers *l, int64_t clock, uint32_t inputs);
 
-/* What the driver puts out for itself and for polls up to its begin, with the copy that is complete
- * at `done`. */
+/* Put out what follows in the driver and what polls before its run have asked for, with the copy
+ * that is complete at clock `done`. */
 void layers_put(struct layers *l, const struct layers_config *c, uint32_t inputs, int64_t done,
                 struct outbox *out);
 

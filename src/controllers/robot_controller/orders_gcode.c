@@ -93,7 +93,7 @@ static void switch_outputs(struct orders *o, struct order *order, const struct c
     order->value = k->set;
 }
 
-/* M66: motion ends first. False: not answered yet. */
+/* Answer the wait of M66, once motion has ended. False: it is not answered yet. */
 static bool answered(struct orders *o, const struct robot_job_inputs *in)
 {
     const struct waiting *w = &o->gcode.wait;
@@ -119,7 +119,7 @@ static bool answered(struct orders *o, const struct robot_job_inputs *in)
     return !o->waits;
 }
 
-/* The next command, into o->kept. False: there is none, *order says why. */
+/* Read the next command into o->kept. False: there is none, and *order says why. */
 static bool next_command(struct orders *o, const struct program *p,
                          const struct robot_job_inputs *in, struct order *order)
 {
@@ -138,7 +138,7 @@ static bool next_command(struct orders *o, const struct program *p,
     }
 }
 
-/* What a command switches before it begins, an output at a time. False: nothing any more. */
+/* Order what a command switches before it begins, one output a call. False: nothing is left. */
 static bool switch_before(struct orders *o, struct order *order)
 {
     struct command *k = &o->kept;

@@ -1,8 +1,8 @@
-/* orders_job - a program in the robot language as orders. */
+/* orders_job - the requests of a job as orders. */
 #include "orders_parts.h"
 
 static const double DEGREE = 0.017453292519943295;
-/* Flags of a configuration: BACK, DOWN, FLIP. */
+/* Flags of the inverse kinematics for BACK, DOWN, FLIP of a configuration. */
 static const int FLAG[3] = { OPW_BACK, OPW_ELBOW, OPW_FLIP };
 
 static struct pose frame_pose(const struct robot_job_frame *f)
@@ -10,7 +10,8 @@ static struct pose frame_pose(const struct robot_job_frame *f)
     return pose_of(f->value, f->value + 3);
 }
 
-/* A point as a target. What it leaves open is nearest, or on a path what that leads to. */
+/* A point becomes a target. What its configuration leaves open is what is nearest, or on a path
+ * what the path leads to. */
 static void target_of(struct robot_target *t, const struct robot_job_point *p,
                       const struct robot_job_frame *user)
 {

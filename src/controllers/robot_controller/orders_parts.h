@@ -4,13 +4,13 @@
 
 #include "orders.h"
 
-/* A part program: it begins at a pose of the tip; its next order. */
+/* A part program: begin it at a pose of the tip; give its next order. */
 void orders_gcode_start(struct interpreter *in, const struct orders_config *c,
                         const struct pose *at);
 void orders_gcode_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
                        const struct robot_job_inputs *in, struct order *order);
 
-/* A program in the robot language: its next order. */
+/* A job: give its next order. */
 void orders_job_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
                      const struct robot_job_inputs *in, struct order *order);
 

@@ -5,7 +5,7 @@
 
 #include "robot_job_reading.h"
 
-/* The job that is being read has ended. */
+/* End the job that is being read. */
 static int end_job(struct robot_job_reading *in)
 {
     if (in->p->jobs == 0) {
@@ -48,7 +48,7 @@ static int32_t job_of(const struct robot_job_program *p, const char *name, int32
     return -1;
 }
 
-/* JOB NAME, or //NAME NAME: 1, 0 something else, -1. */
+/* Read JOB NAME or //NAME NAME. 1: it has been read, 0: the line is something else. */
 static int header(struct robot_job_reading *in)
 {
     struct robot_job_scan *s = &in->s;
@@ -102,7 +102,7 @@ int32_t robot_job_find(const struct robot_job_program *p, const char *name)
     return length <= ROBOT_JOB_NAME_MAX ? job_of(p, name, length) : -1;
 }
 
-/* The label of a jump in one of its own or outer loops. */
+/* Find the label of a jump, which must stand in the jump's own LOOP or in one around it. */
 static int find_label(struct robot_job_reading *in, struct robot_job_instruction *c, int32_t job)
 {
     struct robot_job_program *p = in->p;
@@ -125,7 +125,7 @@ static int find_label(struct robot_job_reading *in, struct robot_job_instruction
     return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_LABEL, name);
 }
 
-/* Names of labels and jobs become instructions. */
+/* Jumps and calls get the numbers of the instructions that their labels and jobs stand for. */
 static int find_names(struct robot_job_reading *in)
 {
     struct robot_job_program *p = in->p;

@@ -1,6 +1,7 @@
-/* robot_job - a program in the robot language: text to instructions, all faults found beforehand.
+/* robot_job - a robot's jobs in the words of INFORM: their text becomes instructions, and every
+ * fault is found before anything runs.
  *
- * The compiled program is not part of a state. It stays as it is while it runs (robot_job_run).
+ * The compiled program stays as it is while it runs (robot_job_run), so it is no part of a state.
  */
 #ifndef ROBOT_JOB_H
 #define ROBOT_JOB_H
@@ -23,7 +24,8 @@ enum {
 
 #define ROBOT_JOB_VOLT_MAX 10.0 /* [V] of analog outputs, either sign */
 
-/* B 0 .. 255, I 16 bit, D 32 bit, R a double; signals and channels count from 0 here. */
+/* Kind of an operand: a constant, a variable (B 0 .. 255, I 16 bit, D 32 bit, R a double), a signal
+ * or an analog channel. Signals and channels count from 0 here. */
 enum robot_job_operand_kind {
     ROBOT_JOB_NOTHING,
     ROBOT_JOB_CONSTANT,
@@ -39,7 +41,7 @@ enum robot_job_operand_kind {
 struct robot_job_operand {
     enum robot_job_operand_kind kind;
     int32_t index;
-    double number; /* of CONSTANT: ON is 1, OFF 0 */
+    double number; /* value of a CONSTANT: ON is 1, OFF 0 */
 };
 
 enum robot_job_relation {
@@ -54,7 +56,8 @@ enum robot_job_relation {
 
 enum robot_job_path { ROBOT_JOB_JOINT, ROBOT_JOB_LINE, ROBOT_JOB_CIRCLE };
 
-/* VJ [% of the joints' highest], V [mm/s of the tool], VR [deg/s of the tool]. */
+/* What the speed of a move counts: VJ [% of the joints' highest speeds], V [mm/s] or VR [deg/s] of
+ * the tool; DEFAULT: the speed in force. */
 enum robot_job_speed { ROBOT_JOB_DEFAULT, ROBOT_JOB_VJ, ROBOT_JOB_V, ROBOT_JOB_VR };
 
 enum robot_job_op {
@@ -82,22 +85,22 @@ enum robot_job_op {
     ROBOT_JOB_OP_NOP
 };
 
-/* One instruction. A condition decides whether it is done; of WAIT, whether it is over; of UNLESS
- * (the beginning of IF, ELSEIF, WHILE), whether it does not jump. */
+/* One instruction. Its condition decides whether it is done; for WAIT, whether the wait is over;
+ * for UNLESS (the beginning of IF, ELSEIF, WHILE), whether it does not jump. */
 struct robot_job_instruction {
     enum robot_job_op op;
     int32_t line;
     enum robot_job_relation relation;
-    struct robot_job_operand left, right; /* of the condition; of SET .. DIV what changes, and by */
+    struct robot_job_operand left, right; /* compared; in SET .. DIV what changes, and by what */
     int32_t to;  /* point; instruction; tool, user frame; level; signal, channel */
     int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth */
     enum robot_job_path path;
     enum robot_job_speed tag;
     int32_t inside; /* the LOOP it stands in, -1: none */
-    double speed;   /* by tag */
-    int32_t level;  /* PL, ROBOT_JOB_ANY: that in force */
-    double corner;  /* CR [mm], 0: by level */
-    int64_t time;   /* [ns] of TIMER, WAIT; -1: without end */
+    double speed;   /* in the unit of the tag */
+    int32_t level;  /* PL; ROBOT_JOB_ANY: the level in force */
+    double corner;  /* CR [mm]; 0: the level decides */
+    int64_t time;   /* [ns] length of a TIMER or WAIT; -1: without end */
 };
 
 struct robot_job {
@@ -107,7 +110,7 @@ struct robot_job {
 };
 
 struct robot_job_label {
-    int32_t offset, length; /* [byte] its name in the text */
+    int32_t offset, length; /* [byte] place of its name in the text */
     int32_t job, to, line;
     int32_t inside; /* the LOOP it stands in, -1: none */
 };
@@ -119,16 +122,16 @@ struct robot_job_program {
     struct robot_job_label label[ROBOT_JOB_LABELS];
 };
 
-/* Read a program; the points are those it may go to. -1: refused, the report says why, *p is
+/* Read a program that may go to these points. -1: it is refused, the report says why, and *p is
  * undefined. */
 int robot_job_read(struct robot_job_program *p, const struct robot_job_points *points,
                    const char *text, int64_t length, struct robot_job_report *r);
 
-/* What a variable of a kind can be: B, I, D; R anything finite. */
+/* Least and greatest value of a variable of a kind: B, I, D; R takes anything finite. */
 double robot_job_low(enum robot_job_operand_kind kind);
 double robot_job_high(enum robot_job_operand_kind kind);
 
-/* Number of the job of a name, or -1. */
+/* Number of the job that has this name; -1: none has. */
 int32_t robot_job_find(const struct robot_job_program *p, const char *name);
 
 #endif

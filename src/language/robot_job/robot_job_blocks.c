@@ -18,7 +18,7 @@ static int open_block(struct robot_job_reading *in, int32_t kind)
     return 0;
 }
 
-/* The innermost block if it is of one of two kinds, else NULL and a report. */
+/* The innermost block, if it is of one of two kinds; else NULL, and a report. */
 static struct robot_job_block *innermost(struct robot_job_reading *in, int32_t kind, int32_t other)
 {
     struct robot_job_block *b = in->blocks > 0 ? &in->block[in->blocks - 1] : NULL;
@@ -40,7 +40,7 @@ int32_t robot_job_block_loop_inside(const struct robot_job_reading *in)
     return -1;
 }
 
-/* An instruction that does not go on unless its condition holds. */
+/* Read a condition, and add an instruction that jumps unless it holds. */
 static int add_unless(struct robot_job_reading *in)
 {
     struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_UNLESS);

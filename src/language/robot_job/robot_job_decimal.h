@@ -1,20 +1,20 @@
-/* robot_job_decimal - a number as text, to 1e-6. */
+/* robot_job_decimal - numbers written as text, rounded to a millionth. */
 #ifndef ROBOT_JOB_DECIMAL_H
 #define ROBOT_JOB_DECIMAL_H
 
 #include <stdint.h>
 
-/* Where a text grows; `at` stays below `size`, what does not fit is left out. */
+/* A text that grows within a buffer of `size` bytes. What does not fit is left out. */
 struct robot_job_text {
     char *text;
     int32_t size, at;
 };
 
-/* Each leaves the text with its end 0. */
+/* Append text. Each of these functions leaves the text with a 0 at its end. */
 void robot_job_text_add(struct robot_job_text *t, const char *more);
 void robot_job_text_bytes(struct robot_job_text *t, const char *more, int32_t length);
 
-/* |value| < 1e9, rounded to a millionth, without zeros at the end: -0.5, 12. */
+/* Append a number, |value| < 1e9, without zeros at its end: -0.5, 12. */
 void robot_job_text_number(struct robot_job_text *t, double value);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* Each fault with its text. `low`, `high` and `other` are those of the report. */
+/* Each fault with its text. `low`, `high` and `other` are members of the report. */
 #define ROBOT_JOB_FAULT_TEXTS(X) \
     X(ROBOT_JOB_OK, "no fault") \
     /* any text */ \
@@ -72,18 +72,17 @@ struct robot_job_report {
     enum robot_job_fault fault;
     int32_t line;           /* from 1 */
     int32_t column;         /* from 1 */
-    int32_t offset, length; /* [byte] the offending text in the whole text */
-    int32_t other;          /* another line that belongs to it, or 0 */
-    double low, high;       /* of BAD_VALUE; high of BAD_TOO_MANY, too */
+    int32_t offset, length; /* [byte] where the text at fault lies in the whole text */
+    int32_t other;          /* another line that belongs to the fault, or 0 */
+    double low, high;       /* the range that BAD_VALUE left; BAD_TOO_MANY has `high` alone */
 };
 
-/* What a fault means, in words. */
 const char *robot_job_fault_text(enum robot_job_fault f);
 
 enum { ROBOT_JOB_MESSAGE_MAX = 420 };
 
-/* The whole message: line 3, column 13: value out of range "PL=9" (0 to 8). `text` is the text that
- * was read. */
+/* The whole message about the text that was read: line 3, column 13: value out of range "PL=9" (0
+ * to 8). */
 void robot_job_message(const struct robot_job_report *r, const char *text,
                        char message[ROBOT_JOB_MESSAGE_MAX]);
 

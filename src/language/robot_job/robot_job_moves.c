@@ -1,6 +1,6 @@
 #include "robot_job_reading.h"
 
-/* What may be asked for; a controller may do less. */
+/* Ranges of what a program may ask for; a controller may do less. */
 #define V_MIN      0.1     /* [mm/s] */
 #define V_MAX      10000.0 /* [mm/s] */
 #define VR_MIN     0.1     /* [deg/s] */
@@ -10,7 +10,7 @@
 #define CORNER_MIN 0.1     /* [mm] */
 #define CORNER_MAX 6553.5  /* [mm] as in the maker's language */
 
-/* VJ, V or VR with its value: 1 taken, 0 none, -1. */
+/* Take VJ, V or VR and its value. 1: taken, 0: there is none. */
 static int speed_tag(struct robot_job_scan *s, struct robot_job_span w, enum robot_job_speed *tag,
                      double *value)
 {
@@ -29,7 +29,8 @@ static int speed_tag(struct robot_job_scan *s, struct robot_job_span w, enum rob
     return robot_job_scan_number(s, low, high, value) ? -1 : 1;
 }
 
-/* P and a number, of a point that is there: 1 taken, 0 something else, -1. */
+/* Take P and the number of a point that is in the points file. 1: taken, 0: something else stands
+ * here. */
 static int take_point(struct robot_job_reading *in, int32_t *point)
 {
     struct robot_job_scan *s = &in->s;

@@ -7,7 +7,7 @@
 /* The largest number that any operand may be. */
 #define CONSTANT_MAX 1e12
 
-/* Kind of a word such as B000 with its index, NOTHING if it is none. */
+/* Kind and index of a variable such as B000; NOTHING if the word is none. */
 static enum robot_job_operand_kind variable(const struct robot_job_scan *s, struct robot_job_span w,
                                             int32_t *index)
 {
@@ -35,7 +35,7 @@ int robot_job_operand_channel(struct robot_job_reading *in, int32_t most, int32_
     return robot_job_scan_take(s, ')') ? 0 : robot_job_scan_unexpected(s);
 }
 
-/* A word: signal, analog input or variable. */
+/* Read a word that is a signal, an analog input or a variable. */
 static int named(struct robot_job_reading *in, struct robot_job_span w, struct robot_job_operand *o)
 {
     struct robot_job_scan *s = &in->s;
@@ -96,7 +96,7 @@ static enum robot_job_relation relation(struct robot_job_scan *s)
     return ROBOT_JOB_ALWAYS;
 }
 
-/* What a signal is compared with. */
+/* Read ON or OFF, which a signal is compared with. */
 static int on_or_off(struct robot_job_reading *in, struct robot_job_instruction *c)
 {
     struct robot_job_scan *s = &in->s;

@@ -14,7 +14,7 @@ enum { COORDINATES = 0x3f }; /* all six are given */
 static const char AXES[] = "XYZABC";
 static const int TURNS[3] = { 1, 4, 6 }; /* joints */
 
-/* Words of a configuration: the even ones are 0, the odd ones 1. */
+/* Words of a configuration; those with an even index mean 0, the others 1. */
 static const struct {
     char word[8];
 } FLAGS[6] = { { "FRONT" }, { "BACK" }, { "UP" }, { "DOWN" }, { "NOFLIP" }, { "FLIP" } };
@@ -30,7 +30,7 @@ static double coordinate_max(int32_t axis)
     return axis < 3 ? PLACE_MAX : ANGLE_MAX;
 }
 
-/* Index of a coordinate's letter, -1: none. */
+/* Index of a coordinate by its letter; -1: it is none. */
 static int32_t axis_of(const struct robot_job_scan *s, struct robot_job_span w)
 {
     for (int32_t i = 0; i < 6; i++) {
@@ -64,7 +64,7 @@ static int take_whole(struct robot_job_scan *s, struct robot_job_span w, int32_t
                                        : robot_job_scan_unexpected(s);
 }
 
-/* Number of a tool or user frame that is defined. */
+/* Take =number of a tool or user frame, which must be defined. */
 static int take_frame(struct robot_job_scan *s, struct robot_job_span w,
                       const struct robot_job_frame frames[ROBOT_JOB_FRAMES], int32_t *number)
 {
@@ -104,7 +104,7 @@ static int read_frame(struct robot_job_scan *s, struct robot_job_frame frames[RO
     return seen == COORDINATES ? 0 : robot_job_scan_fault_line(s, ROBOT_JOB_BAD_COORDINATES);
 }
 
-/* A word of the configuration: 1 taken, 0 none, -1. */
+/* Take a word of the configuration. 1: taken, 0: the word is none. */
 static int take_flag(struct robot_job_scan *s, struct robot_job_span w, struct robot_job_point *p)
 {
     int32_t *const value[3] = { &p->shoulder, &p->elbow, &p->wrist };
@@ -229,7 +229,7 @@ int robot_job_points_read(struct robot_job_points *p, const char *text, int64_t 
     return status;
 }
 
-/* Whether the reader would take it. */
+/* Whether the reader would take this value. */
 static bool writable(int32_t number, const struct robot_job_point *p)
 {
     bool good = number >= 0 && number < ROBOT_JOB_POINTS

@@ -24,7 +24,7 @@ enum {
 
 enum robot_job_point_kind { ROBOT_JOB_NO_POINT, ROBOT_JOB_JOINTS, ROBOT_JOB_POSE };
 
-/* What a configuration leaves open is what is nearest to where the arm stands. */
+/* A configuration may leave these open. The arm then takes what is nearest to where it stands. */
 enum { ROBOT_JOB_ANY = -1, ROBOT_JOB_ANY_TURN = -128, ROBOT_JOB_TURN_MAX = 100 };
 
 struct robot_job_point {
@@ -35,13 +35,13 @@ struct robot_job_point {
     int32_t wrist;      /* 0 NOFLIP, 1 FLIP, ROBOT_JOB_ANY */
     int32_t turn[3];    /* of joints 1 4 6: n for 360 n - 180 < joint <= 360 n + 180 [deg],
                          * -100 .. 100, or ROBOT_JOB_ANY_TURN */
-    int32_t tool, user; /* ROBOT_JOB_ANY: what is in force where the program goes there */
-    int32_t line;       /* where it is defined, 0: taught */
+    int32_t tool, user; /* ROBOT_JOB_ANY: those in force when the program goes to the point */
+    int32_t line;       /* of the points file; 0: the point was taught */
 };
 
 struct robot_job_frame {
-    bool defined;    /* 0 always is: no shift, no turn */
-    double value[6]; /* X Y Z [mm] A B C [deg]; in the flange, in the base */
+    bool defined;    /* frame 0 always is: no shift, no turn */
+    double value[6]; /* X Y Z [mm] A B C [deg]: a tool in the flange, a user frame in the base */
     int32_t line;
 };
 
@@ -50,19 +50,19 @@ struct robot_job_points {
     struct robot_job_frame tool[ROBOT_JOB_FRAMES], user[ROBOT_JOB_FRAMES];
 };
 
-/* No points; tool 0 and user frame 0. */
+/* Leave no points, and of the frames tool 0 and user frame 0 alone. */
 void robot_job_points_clear(struct robot_job_points *p);
 
-/* Read a points file; -1: refused, the report says why, *p is undefined. Ranges: joints +-3600 deg,
- * X Y Z +-100000 mm, A B C +-360 deg. */
+/* Read a points file. -1: it is refused, the report says why, and *p is undefined. Ranges: joints
+ * +-3600 deg, X Y Z +-100000 mm, A B C +-360 deg. */
 int robot_job_points_read(struct robot_job_points *p, const char *text, int64_t length,
                           struct robot_job_report *r);
 
 enum { ROBOT_JOB_POINT_TEXT = 256 };
 
-/* The line of one point without its end, as the reader takes it: to 1e-6 mm and deg, so what was
- * read from at most six decimals comes back as the same bits. -1: a value or number is out of the
- * reader's range or not finite, nothing is written. */
+/* Write the line of one point, without a line end, to 1e-6 mm and deg: a point that was read from
+ * at most six decimals is read again as the same bits. -1, and nothing written: a value or the
+ * number is out of the reader's range or not finite. */
 int robot_job_point_write(int32_t number, const struct robot_job_point *p,
                           char text[ROBOT_JOB_POINT_TEXT]);
 

@@ -5,7 +5,7 @@
 
 enum kind { NOTHING, MOTION, MODE, OUTPUT, NUMBER, TIME, FLOW, OPERATOR };
 
-/* What an instruction is about. */
+/* What the instruction being done works on. */
 static const uint8_t KIND[] = {
     [ROBOT_JOB_OP_MOVE] = MOTION, [ROBOT_JOB_OP_SPEED] = MODE,   [ROBOT_JOB_OP_LEVEL] = MODE,
     [ROBOT_JOB_OP_TOOL] = MODE,   [ROBOT_JOB_OP_USER] = MODE,    [ROBOT_JOB_OP_DOUT] = OUTPUT,
@@ -70,7 +70,7 @@ static bool is_input(const struct robot_job_operand *o)
     return o->kind == ROBOT_JOB_IN || o->kind == ROBOT_JOB_AI;
 }
 
-/* A variable takes a result, whole ones its whole part. */
+/* Set a variable to a result; variables of whole numbers take its whole part. */
 static enum robot_job_fault store(struct robot_job_run *run, const struct robot_job_operand *o,
                                   double x)
 {
@@ -102,7 +102,7 @@ static enum robot_job_fault calculate(struct robot_job_run *run, const struct ro
     }
 }
 
-/* The next point; its number is the move's. */
+/* Request a move to a point, and number it. */
 static void move(struct robot_job_run *run, const struct robot_job_points *points,
                  const struct robot_job_instruction *c, struct robot_job_request *r)
 {
@@ -155,7 +155,7 @@ static bool waited(struct robot_job_run *run, const struct robot_job_inputs *in,
     return false;
 }
 
-/* Each of these returns where the program goes on, in the frame that is the top then. */
+/* Each of these returns the instruction at which the program goes on, in the frame then on top. */
 
 static int32_t call(struct robot_job_run *run, int32_t to)
 {
@@ -207,7 +207,7 @@ static int32_t flow(struct robot_job_run *run, const struct robot_job_inputs *in
     }
 }
 
-/* SPEED, PL, TOOL, USER: what is in force from here on. */
+/* SPEED, PL, TOOL, USER: change what is in force from here on. */
 static void set_mode(struct robot_job_run *run, const struct robot_job_instruction *c)
 {
     switch (c->op) {
@@ -221,7 +221,7 @@ static void set_mode(struct robot_job_run *run, const struct robot_job_instructi
     }
 }
 
-/* Whether an instruction must see all moves before it reached. */
+/* Whether an instruction waits until all moves before it are reached. */
 static bool needs_rest(const struct robot_job_run *run, const struct robot_job_inputs *in,
                        const struct robot_job_instruction *c)
 {
@@ -234,7 +234,7 @@ static bool needs_rest(const struct robot_job_run *run, const struct robot_job_i
     }
 }
 
-/* The instruction is done, unless it has a fault: true if it makes a request. */
+/* Carry out an instruction, unless it has a fault. True: it makes a request. */
 static bool finish(struct robot_job_run *run, struct robot_job_request *r, int32_t next)
 {
     if (r->answer != ROBOT_JOB_BUSY) {
@@ -251,7 +251,7 @@ static bool finish(struct robot_job_run *run, struct robot_job_request *r, int32
     return r->answer != ROBOT_JOB_BUSY;
 }
 
-/* Do one instruction: true if it makes a request. */
+/* Do one instruction. True: it makes a request. */
 static bool step(struct robot_job_run *run, const struct robot_job_program *p,
                  const struct robot_job_points *points, const struct robot_job_inputs *in,
                  struct robot_job_request *r)

@@ -1,4 +1,4 @@
-/* robot_job_run - a program on its way: which request comes next.
+/* robot_job_run - a program that runs: what it requests of the robot next.
  *
  * The program runs ahead of the motion, so that corners can be rounded. Moves are numbered 1, 2, ..
  * as they are requested, and the caller says how many it has reached:
@@ -20,43 +20,43 @@ enum {
     ROBOT_JOB_IDLE_MAX = 1000000 /* instructions without motion, input, output or wait */
 };
 
-/* What is in force at the start. */
+/* What is in force when a program starts. */
 struct robot_job_start {
-    int32_t job;   /* number of the first job */
+    int32_t job;   /* number of the job to start with */
     double vj;     /* [%] 0.01 .. 100 */
     double v;      /* [mm/s] */
     double vr;     /* [deg/s] */
     int32_t level; /* PL */
     int32_t tool, user;
-    uint32_t out; /* digital outputs as they are: bit 0 is OT#(1) */
+    uint32_t out; /* present digital outputs; bit 0 is OT#(1) */
 };
 
 struct robot_job_call {
-    int32_t pc;                    /* the next instruction; below the top: where it goes on */
+    int32_t pc;                    /* next instruction; of a caller: where it goes on afterwards */
     int32_t loop[ROBOT_JOB_LOOPS]; /* rounds left, -1: for ever */
 };
 
-/* Plain bytes; goes into a state. */
+/* State of a program that runs: plain bytes without pointers. */
 struct robot_job_run {
     int32_t depth; /* calls inside each other */
     struct robot_job_call frame[ROBOT_JOB_CALLS + 1];
     int32_t whole[3][ROBOT_JOB_VARIABLES]; /* B I D */
     double real[ROBOT_JOB_VARIABLES];      /* R */
     int64_t moves;                         /* requested so far */
-    int64_t began;                         /* [ns] of the WAIT or TIMER that is on; -1 none */
+    int64_t began;                         /* [ns] start of the WAIT or TIMER under way; -1: none */
     int32_t idle;                          /* instructions since the latest request or input */
-    uint32_t out;    /* as the program has set them so far, ahead of the motion */
-    double speed[4]; /* by enum robot_job_speed; [0] is not used */
-    int32_t rotary;  /* MOVL and MOVC without a speed take VR: 0 or 1 */
+    uint32_t out;                          /* digital outputs as set so far, ahead of the motion */
+    double speed[4];                       /* by enum robot_job_speed; [0] is not used */
+    int32_t rotary;                        /* MOVL and MOVC without a speed take VR: 0 or 1 */
     int32_t level, tool, user;
-    int32_t ended;              /* 0, or 1 */
-    enum robot_job_fault fault; /* it stopped at */
+    int32_t ended;              /* 1: the program is over */
+    enum robot_job_fault fault; /* that stopped it */
 };
 
-/* What the program can see. */
+/* What a program sees of the world. */
 struct robot_job_inputs {
     int64_t now;                  /* [ns] from 0, never less than before */
-    int64_t reached;              /* moves */
+    int64_t reached;              /* number of moves that have reached their points */
     uint32_t di;                  /* bit 0 is IN#(1) */
     double ai[ROBOT_JOB_ANALOGS]; /* [V] */
 };
@@ -96,12 +96,12 @@ struct robot_job_request {
 void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *p,
                      const struct robot_job_start *start);
 
-/* The next request; at most `most` instructions are done in a call. */
+/* Carry the program on to its next request, by at most `most` instructions. */
 void robot_job_next(struct robot_job_run *run, const struct robot_job_program *p,
                     const struct robot_job_points *points, const struct robot_job_inputs *in,
                     int32_t most, struct robot_job_request *r);
 
-/* Job that runs, line of the next instruction: for display. */
+/* Number of the job that runs, and the line of its next instruction, for display. */
 int32_t robot_job_running(const struct robot_job_run *run, const struct robot_job_program *p,
                           int32_t *line);
 

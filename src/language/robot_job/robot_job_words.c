@@ -10,7 +10,7 @@ enum {
     SIGNAL = 1u << ROBOT_JOB_IN | 1u << ROBOT_JOB_OT
 };
 
-/* What follows a word. */
+/* What may follow a word in its line. */
 enum form {
     MOVE,
     SPEED,
@@ -99,7 +99,7 @@ struct robot_job_instruction *robot_job_reading_add(struct robot_job_reading *in
     return c;
 }
 
-/* A constant that goes into a variable of whole numbers. */
+/* Check a constant that goes into a variable of whole numbers. */
 static int check_constant(struct robot_job_reading *in, const struct robot_job_instruction *c,
                           struct robot_job_span at)
 {
@@ -120,7 +120,7 @@ static int check_constant(struct robot_job_reading *in, const struct robot_job_i
     return 0;
 }
 
-/* op variable operand */
+/* Read the operands of SET .. DIV: the variable that changes, then what changes it. */
 static int arithmetic(struct robot_job_reading *in, enum robot_job_op op, uint32_t left,
                       uint32_t right)
 {
@@ -136,7 +136,7 @@ static int arithmetic(struct robot_job_reading *in, enum robot_job_op op, uint32
                : check_constant(in, c, (struct robot_job_span){ at, s->at - at });
 }
 
-/* INC, DEC: by one. */
+/* INC, DEC: read the variable that changes by one. */
 static int step(struct robot_job_reading *in, enum robot_job_op op)
 {
     struct robot_job_instruction *c = robot_job_reading_add(in, op);
@@ -147,7 +147,7 @@ static int step(struct robot_job_reading *in, enum robot_job_op op)
     return 0;
 }
 
-/* DOUT OT#(n) ON, AOUT AO#(n) value */
+/* Read DOUT OT#(n) ON or AOUT AO#(n) value. */
 static int output(struct robot_job_reading *in, bool digital)
 {
     struct robot_job_scan *s = &in->s;
@@ -188,7 +188,7 @@ static int output(struct robot_job_reading *in, bool digital)
     return 0;
 }
 
-/* TOOL 1, TOOL TL#(1), USER 2, USER UF#(2) */
+/* Read TOOL 1, TOOL TL#(1), USER 2 or USER UF#(2). */
 static int frame(struct robot_job_reading *in, bool tool)
 {
     struct robot_job_scan *s = &in->s;
@@ -216,7 +216,7 @@ static int frame(struct robot_job_reading *in, bool tool)
                : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
 }
 
-/* PL=1 or PL 1 */
+/* Read PL=1 or PL 1. */
 static int level(struct robot_job_reading *in)
 {
     struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_LEVEL);
@@ -267,7 +267,7 @@ static int jump(struct robot_job_reading *in, enum robot_job_op op)
     return robot_job_operand_if(in, c);
 }
 
-/* *NAME, LABEL NAME, LABEL *NAME */
+/* Read *NAME, LABEL NAME or LABEL *NAME. */
 static int label(struct robot_job_reading *in)
 {
     struct robot_job_program *p = in->p;
@@ -298,7 +298,7 @@ static int label(struct robot_job_reading *in)
     return 0;
 }
 
-/* RET, PAUSE: perhaps with a condition. */
+/* Read RET or PAUSE, perhaps with a condition. */
 static int simple(struct robot_job_reading *in, enum robot_job_op op)
 {
     struct robot_job_instruction *c = robot_job_reading_add(in, op);
@@ -353,7 +353,7 @@ static int instruction(struct robot_job_reading *in, const struct word *w)
     }
 }
 
-/* Which word the line begins with; NULL: a report is written. */
+/* The word that the line begins with; NULL: it is unknown, and reported. */
 static const struct word *first_word(struct robot_job_scan *s)
 {
     if (robot_job_scan_take(s, '*')) {
