@@ -12,9 +12,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from pace_rides import Chain, Orders, hermite, limits, place, planned, ride
 from scurve_moves import MOVE, scurve_positions, scurve_totals
-from shape_paths import Piece, lines, shaped
+from shape_paths import Segment, lines, shaped
+from speed_rides import Chain, Orders, hermite, limits, place, planned, ride
 
 HERE = Path(__file__).parent
 BLUE, RED, GREEN, GREY, ORANGE = "#1f5fa8", "#c0392b", "#2e8b57", "#777777", "#d98200"
@@ -37,10 +37,10 @@ def panels(rows: int, columns: int, size: tuple[float, float], **more: object) -
     return made, axes
 
 
-def along(pieces: list[Piece], count: int = 400) -> tuple[Array, Array, Array, Array]:
-    """Parameter, places, r' and r'' along pieces, from 0."""
+def along(segments: list[Segment], count: int = 400) -> tuple[Array, Array, Array, Array]:
+    """Parameter, places, r' and r'' along segments, from 0."""
     start, rows = 0.0, []
-    for p in pieces:
+    for p in segments:
         u = np.linspace(0.0, p.length, count)
         rows.append((start + u, *p.at(u)))
         start += p.length
@@ -70,9 +70,9 @@ def corner() -> plt.Figure:
     fig, (left, right) = panels(1, 2, (9.0, 3.7))
     for side, colour, name in ((3.0, BLUE, "lines of 3 mm"), (0.24, RED, "lines of 0.24 mm")):
         points = np.array([[-side, 0.0], [0.0, 0.0], [0.0, side]])
-        pieces, _ = shaped(lines(points, tolerance, 0.0))
-        curves = [p for p in pieces if p.kind == "curve"]
-        u, at, slope, bend = along(pieces)
+        segments, _ = shaped(lines(points, tolerance, 0.0))
+        curves = [p for p in segments if p.kind == "curve"]
+        u, at, slope, bend = along(segments)
         middle = u[-1] / 2.0
         left.plot(at[:, 0], at[:, 1], color=colour, label=name, linewidth=1.6, zorder=3)
         joints = [curves[0].at(np.zeros(1))[0], *(c.at(np.array([c.length]))[0] for c in curves)]
@@ -121,14 +121,14 @@ def raster_points() -> Array:
 def raster() -> plt.Figure:
     """A run of short lines on a raster, its tube and its spline."""
     tolerance, points = 0.02, raster_points()
-    pieces, _ = shaped(lines(points, tolerance))
-    u, at, slope, bend = along(pieces, 60)
+    segments, _ = shaped(lines(points, tolerance))
+    u, at, slope, bend = along(segments, 60)
     fig, (left, right) = panels(1, 2, (9.0, 3.6))
     inside = (points[:, 0] > 0.4) & (points[:, 0] < 1.8)
     tube(left, points[inside], tolerance)
     left.plot(points[:, 0], points[:, 1], color=GREY, linewidth=0.9, label="commands")
     left.plot(at[:, 0], at[:, 1], color=BLUE, linewidth=1.6, label="spline")
-    knots = np.array([p.at(np.zeros(1))[0][0] for p in pieces])
+    knots = np.array([p.at(np.zeros(1))[0][0] for p in segments])
     left.plot(knots[:, 0], knots[:, 1], "o", color=BLUE, markersize=4, label="knots")
     left.set(xlim=(0.6, 1.5), ylim=(0.25, 0.77), aspect="equal", xlabel="X [mm]", ylabel="Y [mm]")
     left.set_title("band: tolerance 0.02 mm", fontsize=9)

@@ -8,11 +8,11 @@
 
 #include <motionfmu/robot_station.h>
 #include <motionfmu/short_names.h>
-#include <motionfmu/soft_words.h>
+#include <motionfmu/controller_words.h>
 
 static struct robot_station station; /* 600 kB: not on the stack */
-static struct inform_points points;
-static struct inform_program jobs;
+static struct robot_job_points points;
+static struct robot_job_program jobs;
 
 /* Run and print ten times a second until all rests. */
 static void run(const struct orders_text *program)
@@ -23,11 +23,11 @@ static void run(const struct orders_text *program)
         robot_station_read(&station, &r);
         printf("%6.1f s  X %9.3f  Y %9.3f  Z %9.3f mm  %6.2f mm/s  OT %d\n",
                (double)station.clock / FPGA_CLOCK_HZ, r.pose[0], r.pose[1], r.pose[2],
-               station.soft.robot.speed, (int)station.card.outputs);
+               station.controller.robot.speed, (int)station.card.outputs);
     } while (!r.rests);
     printf("pulses %lld %lld %lld, underruns %d, error %d\n", (long long)r.pulses[0],
            (long long)r.pulses[1], (long long)r.pulses[2], (int)station.card.underruns,
-           (int)station.soft.trouble.error);
+           (int)station.controller.trouble.error);
 }
 
 /* A line or a circle's end: X Y Z [mm], A B C [deg], feed [mm/s]. */
@@ -39,15 +39,15 @@ static int move(enum robot_kind kind, const double to[6], const double *via)
                             .zone = 2.0,
                             .target = { .branch = ROBOT_ANY_BRANCH, .pose = pose_of(to, to + 3) } };
     struct robot_refusal why;
-    char words[SOFT_WORDS];
+    char words[CONTROLLER_WORDS];
 
     for (int i = 0; via && i < 3; i++) {
         m.via[i] = via[i];
     }
     const enum robot_status status =
-        soft_move(&station.soft, &station.config, &m, &station.tool, &why);
+        controller_move(&station.controller, &station.config, &m, &station.tool, &why);
     if (status != ROBOT_OK) {
-        soft_refusal_words(status, &why, words);
+        controller_refusal_words(status, &why, words);
         printf("%s\n", words);
     }
     return status != ROBOT_OK;
@@ -83,28 +83,28 @@ static int64_t read_file(const char *name, char text[65536])
 static int job(const char *name, const char *points_name)
 {
     static char text[65536];
-    struct inform_report r;
-    char message[INFORM_MESSAGE_MAX];
-    const struct orders_text program = { .inform = &jobs, .points = &points };
+    struct robot_job_report r;
+    char message[ROBOT_JOB_MESSAGE_MAX];
+    const struct orders_text program = { .job = &jobs, .points = &points };
 
-    inform_points_clear(&points);
-    if (inform_points_read(&points, text, read_file(points_name, text), &r) < 0
-        || inform_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
-        inform_message(&r, text, message);
+    robot_job_points_clear(&points);
+    if (robot_job_points_read(&points, text, read_file(points_name, text), &r) < 0
+        || robot_job_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
+        robot_job_message(&r, text, message);
         printf("%s\n", message);
         return 1;
     }
-    station.soft.start.pressed = true;
+    station.controller.start.pressed = true;
     run(&program);
-    return station.soft.trouble.error != SOFT_OK;
+    return station.controller.trouble.error != CONTROLLER_OK;
 }
 
 int main(int argc, char **argv)
 {
     struct robot_station_config config = robot_station_defaults();
-    struct soft_wrong wrong;
+    struct controller_wrong wrong;
 
-    config.soft.ik_time = 30e-6;
+    config.controller.ik_time = 30e-6;
     if (!robot_station_start(&station, &config, &wrong)) {
         printf("%s = %g\n", wrong.name, wrong.value);
         return 1;

@@ -327,6 +327,7 @@ static int model_end(struct fmu *f)
     in.tools.table = mcc->tools;
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
-    const char *why = path_write(path.text, inputs.of, INPUTS, &in, &program, mcc->mover.started);
+    const char *why =
+        path_write(path.text, inputs.of, INPUTS, &in, &program, mcc->trajectory.started);
     return why ? cannot_write(f, why) : 0;
 }

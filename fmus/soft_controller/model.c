@@ -3,13 +3,13 @@
 #include <string.h>
 
 #include "library_in_use.h"
-#include "soft_calls.h"
-#include "soft_settings.h"
-#include "soft_words.h"
+#include "controller_calls.h"
+#include "controller_settings.h"
+#include "controller_words.h"
 #include "vars.h"
 
 struct model {
-    struct soft soft;
+    struct controller controller;
     int64_t instant;  /* [ns] next instant of the bus grid, at which inputs are read */
     bool unpublished; /* the outputs of the latest instant are shown at the next one */
     int32_t told;     /* error that was reported last */
@@ -18,17 +18,17 @@ struct model {
 
 #define MODEL_BLOB
 #define MODEL_IN_USE \
-    RING_IN_USE(soft.robot.ring) \
-    MEAN_IN_USE(soft.robot.mean, soft.robot.mover) \
-    FMU_LIST(soft.robot.course.move, soft.robot.course.count) \
-    FMU_LIST(soft.robot.way.piece, soft.robot.way.count) \
-    INTERPRETER_IN_USE(soft.orders.gcode) \
-    FMU_RING(soft.queue, soft.heads, soft.count, 0) \
-    FMU_LIST(soft.taught, soft.taught_count)
+    RING_IN_USE(controller.robot.ring) \
+    MEAN_IN_USE(controller.robot.mean, controller.robot.trajectory) \
+    FMU_LIST(controller.robot.moves.move, controller.robot.moves.count) \
+    FMU_LIST(controller.robot.tool_path.segment, controller.robot.tool_path.count) \
+    INTERPRETER_IN_USE(controller.orders.gcode) \
+    FMU_RING(controller.queue, controller.heads, controller.count, 0) \
+    FMU_LIST(controller.taught, controller.taught_count)
 #include "fmi_model.h"
 #include "fmu_period.h"
-#include "soft_parameters.h"
-#include "soft_text.h"
+#include "controller_parameters.h"
+#include "controller_text.h"
 
 static int cannot_write(struct fmu *f, const char *why)
 {
@@ -38,14 +38,14 @@ static int cannot_write(struct fmu *f, const char *why)
 static int model_open(struct fmu *f)
 {
     if (f->s.v.teach_file[0]) {
-        const struct soft_inputs in = inputs_of(f);
+        const struct controller_inputs in = inputs_of(f);
         const struct fmu_path path = fmu_path(f, f->s.v.teach_file, FMU_WRITTEN);
-        const char *why = path.good ? output_try(path.text, in.of, SOFT_INPUTS) : path.text;
+        const char *why = path.good ? output_try(path.text, in.of, CONTROLLER_INPUTS) : path.text;
         if (why) {
             return cannot_write(f, why);
         }
     }
-    struct soft_blob *b = calloc(1, sizeof *b);
+    struct controller_blob *b = calloc(1, sizeof *b);
     if (!b) {
         return fmu_fail(f, "out of memory");
     }
@@ -55,7 +55,7 @@ static int model_open(struct fmu *f)
 
 static void model_close(struct fmu *f)
 {
-    struct soft_blob *b = f->blob;
+    struct controller_blob *b = f->blob;
 
     if (b) {
         program_close(b->gcode);
@@ -63,9 +63,9 @@ static void model_close(struct fmu *f)
     }
 }
 
-static void publish_times(struct vars *v, const struct soft *s)
+static void publish_times(struct vars *v, const struct controller *s)
 {
-    const struct soft_report *r = &s->report;
+    const struct controller_report *r = &s->report;
 
     v->runs = r->runs;
     v->deadline_misses = r->late;
@@ -83,7 +83,8 @@ static void publish_times(struct vars *v, const struct soft *s)
     v->line_known_most = (double)r->told_most / FPGA_CLOCK_HZ;
 }
 
-static void publish_arm(struct vars *v, const struct soft *s, const struct soft_config *c)
+static void publish_arm(struct vars *v, const struct controller *s,
+                        const struct controller_config *c)
 {
     const struct robot *r = &s->robot;
 
@@ -99,7 +100,7 @@ static void publish_arm(struct vars *v, const struct soft *s, const struct soft_
     v->path_length = r->length;
 }
 
-static void publish_card(struct vars *v, struct soft *s, const struct soft_config *c)
+static void publish_card(struct vars *v, struct controller *s, const struct controller_config *c)
 {
     struct fpga_host host;
     const bool write = s->posts;
@@ -109,7 +110,7 @@ static void publish_card(struct vars *v, struct soft *s, const struct soft_confi
     FPGA_OUT(TAKE)
     FPGA_AO(TAKE)
     FPGA_LEVELS(TAKE)
-    soft_post(s, c, &host);
+    controller_post(s, c, &host);
     FPGA_OUT(SHOW)
     FPGA_AO(SHOW)
     FPGA_LEVELS(SHOW)
@@ -118,19 +119,19 @@ static void publish_card(struct vars *v, struct soft *s, const struct soft_confi
     }
 }
 
-static struct soft_panel panel_of(const struct vars *v)
+static struct controller_panel panel_of(const struct vars *v)
 {
-    struct soft_panel p = { .hold = v->hold,
-                            .abort = v->abort,
-                            .start = v->start,
-                            .single = v->single,
-                            .reset = v->reset,
-                            .teach = v->teach,
-                            .replay = v->replay,
-                            .override = v->override,
-                            .frame = (enum robot_frame)v->jog_frame,
-                            .jog_speed = v->jog_speed,
-                            .jog_way = v->jog_way };
+    struct controller_panel p = { .hold = v->hold,
+                                  .abort = v->abort,
+                                  .start = v->start,
+                                  .single = v->single,
+                                  .reset = v->reset,
+                                  .teach = v->teach,
+                                  .replay = v->replay,
+                                  .override = v->override,
+                                  .frame = (enum robot_frame)v->jog_frame,
+                                  .jog_speed = v->jog_speed,
+                                  .jog_way = v->jog_way };
     memcpy(p.jog, v->jog, sizeof p.jog);
     return p;
 }
@@ -138,16 +139,16 @@ static struct soft_panel panel_of(const struct vars *v)
 static void publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;
-    struct soft *s = &f->s.m.soft;
-    const struct soft_blob *b = f->blob;
-    const struct soft_panel panel = panel_of(v);
+    struct controller *s = &f->s.m.controller;
+    const struct controller_blob *b = f->blob;
+    const struct controller_panel panel = panel_of(v);
     const bool cycle = s->posts || s->stopped || f->s.m.instant == 0;
 
-    v->status = soft_status(s, &panel);
-    v->done = soft_done(s);
+    v->status = controller_status(s, &panel);
+    v->done = controller_done(s);
     v->error = s->trouble.error;
     v->error_line = s->trouble.line;
-    v->line = s->robot.line > 0 ? s->move_line[s->robot.line % SOFT_MOVES] : 0;
+    v->line = s->robot.line > 0 ? s->move_line[s->robot.line % CONTROLLER_MOVES] : 0;
     v->move = (int32_t)s->given;
     v->reached = (int32_t)s->reached;
     v->taught = s->taught_count;
@@ -159,8 +160,8 @@ static void publish(struct fmu *f)
     publish_card(v, s, &b->config);
     v->polls = s->report.polls;
     if (v->error != f->s.m.told) {
-        char words[SOFT_WORDS];
-        soft_words(&s->trouble, words);
+        char words[CONTROLLER_WORDS];
+        controller_words(&s->trouble, words);
         f->s.m.told = v->error;
         if (v->error) {
             fmu_warn(f, "%s: line %d: %s", v->program, (int)v->error_line, words);
@@ -171,18 +172,18 @@ static void publish(struct fmu *f)
 /* Plan every move of a part program before the first one starts, so that faults are found early. */
 static int rehearse(struct fmu *f, const struct orders_text *t)
 {
-    const struct soft_blob *b = f->blob;
-    struct soft *s = &f->s.m.soft;
+    const struct controller_blob *b = f->blob;
+    struct controller *s = &f->s.m.controller;
     struct fault_list all;
 
     orders_check(&b->config.orders, t, &s->robot.pose, &all);
     if (judge_program(f, "program", f->s.v.program, b->gcode, &all)) {
         return -1;
     }
-    soft_rehearse(s, &b->config, t);
-    if (s->trouble.error != SOFT_OK) {
-        char words[SOFT_WORDS];
-        soft_words(&s->trouble, words);
+    controller_rehearse(s, &b->config, t);
+    if (s->trouble.error != CONTROLLER_OK) {
+        char words[CONTROLLER_WORDS];
+        controller_words(&s->trouble, words);
         return fmu_fail(f, "%s: line %d: %s", f->s.v.program, (int)s->trouble.line, words);
     }
     return 0;
@@ -190,16 +191,16 @@ static int rehearse(struct fmu *f, const struct orders_text *t)
 
 static int model_start(struct fmu *f)
 {
-    const struct soft_blob *b = f->blob;
+    const struct controller_blob *b = f->blob;
     const struct orders_text t = text_of(b);
-    struct soft *s = &f->s.m.soft;
+    struct controller *s = &f->s.m.controller;
 
-    soft_start(s, &b->config);
+    controller_start(s, &b->config);
     if (t.gcode) {
         if (rehearse(f, &t)) {
             return -1;
         }
-        soft_start(s, &b->config);
+        controller_start(s, &b->config);
     }
     f->s.m.text = b->text;
     publish(f);
@@ -210,8 +211,8 @@ static int model_start(struct fmu *f)
 static void read_bus(struct fmu *f, int64_t at)
 {
     const struct vars *v = &f->s.v;
-    const struct soft_blob *b = f->blob;
-    const struct soft_panel panel = panel_of(v);
+    const struct controller_blob *b = f->blob;
+    const struct controller_panel panel = panel_of(v);
     const struct orders_text t = text_of(b);
     struct fpga_shown card = { 0 };
 
@@ -221,13 +222,13 @@ static void read_bus(struct fmu *f, int64_t at)
     READ(int32_t, memory, )
     READ(bool, stopped, )
     READ(int32_t, pulse_count, )
-    soft_instant(&f->s.m.soft, &b->config, &t, &card, &panel, at / FPGA_CLOCK_NS);
+    controller_instant(&f->s.m.controller, &b->config, &t, &card, &panel, at / FPGA_CLOCK_NS);
 }
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
-    const struct soft_blob *b = f->blob;
+    const struct controller_blob *b = f->blob;
     const struct vars *v = &f->s.v;
 
     (void)t0;
@@ -257,7 +258,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
-    const char *why = v->teach_file[0] ? write_points(f, &f->s.m.soft) : NULL;
+    const char *why = v->teach_file[0] ? write_points(f, &f->s.m.controller) : NULL;
 
     return why ? cannot_write(f, why) : 0;
 }

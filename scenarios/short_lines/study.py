@@ -28,7 +28,7 @@ from motionfmu.analysis import gcode
 
 HERE = Path(__file__).parent
 sys.path.append(str(HERE.parents[1] / "tests/helpers"))
-from shape_paths import Chords, Piece, shaped  # noqa: E402
+from shape_paths import Chords, Segment, shaped  # noqa: E402
 
 toppra.setup_logging("ERROR")
 TOLERANCE, ACC, JERK, PERIOD = 0.02, 1000.0, 50000.0, 1e-3  # [mm], [mm/s²], [mm/s³], [s]
@@ -103,8 +103,8 @@ def programmed(chain: np.ndarray) -> np.ndarray:
     return np.vstack(points)
 
 
-def curve(chain: np.ndarray, feed: float) -> list[Piece]:
-    """Pieces of our own path."""
+def curve(chain: np.ndarray, feed: float) -> list[Segment]:
+    """Segments of our own path."""
     rows = ["merge 0.02", "start " + " ".join(map(repr, chain["start"][0].tolist()))]
     for c in chain:
         end = " ".join(map(repr, c["end"].tolist()))
@@ -118,17 +118,17 @@ def curve(chain: np.ndarray, feed: float) -> list[Piece]:
 
 
 class Grid(interpolator.AbstractGeometricPath):
-    """The path of pieces at the points of a grid."""
+    """The path of segments at the points of a grid."""
 
     dof = 3
     waypoints = None
 
-    def __init__(self, pieces: list[Piece]) -> None:
+    def __init__(self, segments: list[Segment]) -> None:
         ways, states, at = [], [], 0.0
-        pieces = [p for p in pieces if p.length > SLIVER]
-        for n, p in enumerate(pieces):
+        segments = [p for p in segments if p.length > SLIVER]
+        for n, p in enumerate(segments):
             count = max(48, int(np.ceil(p.length / 0.05)))
-            u = np.linspace(0.0, p.length, count + 1)[: count + (n == len(pieces) - 1)]
+            u = np.linspace(0.0, p.length, count + 1)[: count + (n == len(segments) - 1)]
             states.append(np.stack(p.at(u), axis=1)[:, :, :3])
             ways.append(at + u)
             at += p.length
@@ -160,13 +160,13 @@ class FeedConstraint(constraint.LinearConstraint):
         return None, None, None, None, None, None, np.stack([np.zeros_like(most), most], 1)
 
 
-def bound(pieces: list[Piece], feed: float) -> float:
+def bound(segments: list[Segment], feed: float) -> float:
     """Least time from rest to rest with each axis within ACC. [s]"""
     total, begin = 0.0, 0
-    for n, piece in enumerate(pieces, 1):
-        if not (piece.rest or n == len(pieces)):
+    for n, segment in enumerate(segments, 1):
+        if not (segment.rest or n == len(segments)):
             continue
-        path = Grid(pieces[begin:n])
+        path = Grid(segments[begin:n])
         begin = n
         axes = constraint.JointAccelerationConstraint(
             np.array([[-ACC, ACC]] * 3), constraint.DiscretizationType.Interpolation

@@ -16,33 +16,35 @@
     FMU_LIST(in.flow.call, in.flow.level) \
     FMU_LIST(in.made, in.count)
 
-/* For a struct ring, and for the struct track_mean of a mover. */
-#define RING_IN_USE(ring)        FMU_RING(ring.entry, ring.head, ring.count, 0)
-#define MEAN_IN_USE(mean, mover) FMU_WHEN(mean, mover.motion, MOVER_CHAIN, MOVER_CHAIN)
+/* For a struct ring, and for the struct lookahead_mean of a trajectory. */
+#define RING_IN_USE(ring) FMU_RING(ring.entry, ring.head, ring.count, 0)
+#define MEAN_IN_USE(mean, trajectory) \
+    FMU_WHEN(mean, trajectory.motion, TRAJECTORY_CHAIN, TRAJECTORY_CHAIN)
 
-/* For a struct curve_plan, whose shape and pace are made when a curve begins. */
-#define CURVE_IN_USE(curve, mover) \
-    FMU_WHEN(curve.shape, mover.motion, MOVER_CURVE, MOVER_CURVE) \
+/* For a struct curve_plan, whose shape and speed profile are made when a curve begins. */
+#define CURVE_IN_USE(curve, trajectory) \
+    FMU_WHEN(curve.shape, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
     FMU_WHEN(curve.shape.run.vertex, curve.shape.running, 1, 1) \
     FMU_LIST(curve.shape.run.vertex, curve.shape.run.vertices) \
-    FMU_BETWEEN(curve.shape.piece, curve.shape.gone, curve.shape.made, 0) \
+    FMU_BETWEEN(curve.shape.segment, curve.shape.gone, curve.shape.made, 0) \
     FMU_BETWEEN(curve.shape.mark, curve.shape.marks_gone, curve.shape.marks, 0) \
-    FMU_WHEN(curve.pace, mover.motion, MOVER_CURVE, MOVER_CURVE) \
-    FMU_RING(curve.pace.ring, curve.pace.at.head, curve.pace.count, PACE_KEPT) \
-    FMU_TO_END(curve.pace.plan[0].node, curve.pace.plan[0].first) \
-    FMU_TO_END(curve.pace.plan[1].node, curve.pace.plan[1].first)
+    FMU_WHEN(curve.profile, trajectory.motion, TRAJECTORY_CURVE, TRAJECTORY_CURVE) \
+    FMU_RING(curve.profile.ring, curve.profile.at.head, curve.profile.count, SPEED_PROFILE_KEPT) \
+    FMU_TO_END(curve.profile.plan[0].node, curve.profile.plan[0].first) \
+    FMU_TO_END(curve.profile.plan[1].node, curve.profile.plan[1].first)
 
 /* For a struct mcc. */
 #define MCC_IN_USE(mcc) \
     FMU_LIST(mcc.tools.tool, mcc.tools.count) \
     INTERPRETER_IN_USE(mcc.program) \
     RING_IN_USE(mcc.ring) \
-    MEAN_IN_USE(mcc.mean, mcc.mover) \
-    CURVE_IN_USE(mcc.curve_plan, mcc.mover) \
+    MEAN_IN_USE(mcc.mean, mcc.trajectory) \
+    CURVE_IN_USE(mcc.curve_plan, mcc.trajectory) \
     FMU_RING(mcc.queue.item, mcc.queue.head, mcc.queue.count, 0)
 
 /* For a struct voltage. */
 #define VOLTAGE_IN_USE(voltage) \
-    FMU_BETWEEN(voltage.trail.point, voltage.trail.first, voltage.trail.frames, 1)
+    FMU_BETWEEN(voltage.commanded_path.point, voltage.commanded_path.first, \
+                voltage.commanded_path.frames, 1)
 
 #endif

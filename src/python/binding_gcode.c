@@ -5,7 +5,7 @@
 #include "binding.h"
 #include "binding_text.h"
 #include "interpreter.h"
-#include "mover.h"
+#include "trajectory.h"
 #include "waiting.h"
 
 /* A program being read, and a machine for its cycle time. */
@@ -18,9 +18,9 @@ struct gcode_reader {
     double origin[INTERPRETER_SYSTEMS][AXES]; /* [mm] */
     struct tool_table tools;
     double period; /* [s] interpolation cycle */
-    struct mover mover;
+    struct trajectory trajectory;
     struct ring ring;
-    struct track_mean mean;
+    struct lookahead_mean mean;
     struct curve_plan curve;
 };
 
@@ -223,31 +223,31 @@ int64_t binding_gcode_time(struct gcode_reader *g, struct command *c, int64_t co
     memset(seconds, 0, (size_t)count * sizeof *seconds);
     ring_clear(&g->ring);
     memset(&g->mean, 0, sizeof g->mean);
-    mover_start(&g->mover);
-    mover_stand(&g->mover, &g->program.machine, g->point);
-    g->mover.override[0] = g->mover.override[1] = 1.0;
-    const struct mover_beside beside = { &g->ring, &g->mean, &g->curve };
+    trajectory_start(&g->trajectory);
+    trajectory_stand(&g->trajectory, &g->program.machine, g->point);
+    g->trajectory.override[0] = g->trajectory.override[1] = 1.0;
+    const struct trajectory_beside beside = { &g->ring, &g->mean, &g->curve };
     for (;;) {
         struct point point;
         double left = g->period;
         do {
             taken = fill(g, c, taken, count);
             g->curve.last = taken == count;
-            left = mover_advance(&g->mover, &beside, left);
+            left = trajectory_advance(&g->trajectory, &beside, left);
             taken = fill(g, c, taken, count);
-        } while (left > 0.0 && !mover_resting(&g->mover, &g->ring));
-        mover_point(&g->mover, &beside, &g->program.machine, g->period, &point);
-        mover_accept(&g->mover, &beside, &point);
+        } while (left > 0.0 && !trajectory_resting(&g->trajectory, &g->ring));
+        trajectory_point(&g->trajectory, &beside, &g->program.machine, g->period, &point);
+        trajectory_accept(&g->trajectory, &beside, &point);
         if (places) {
             memcpy(places[periods], point.place, sizeof point.place);
         }
         periods++;
-        if (g->mover.started > 0) {
-            seconds[g->mover.started - 1] += g->period - left;
+        if (g->trajectory.started > 0) {
+            seconds[g->trajectory.started - 1] += g->period - left;
         }
-        if (mover_waits(&g->mover, &g->ring)) {
-            mover_continue(&g->mover);
-        } else if (taken == count && mover_resting(&g->mover, &g->ring)) {
+        if (trajectory_waits(&g->trajectory, &g->ring)) {
+            trajectory_continue(&g->trajectory);
+        } else if (taken == count && trajectory_resting(&g->trajectory, &g->ring)) {
             return periods;
         }
     }

@@ -7,32 +7,33 @@
 #include "binding.h"
 #include "binding_text.h"
 #include "robot_station.h"
-#include "soft_words.h"
+#include "controller_words.h"
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
-enum { MESSAGE = INFORM_MESSAGE_MAX };
+enum { MESSAGE = ROBOT_JOB_MESSAGE_MAX };
 
 /* A program in either language, with its points. It must stay in memory while it runs. */
 struct robot_program {
     struct binding_text text;
     struct source source;
-    struct inform_program inform;
-    struct inform_points points;
+    struct robot_job_program job;
+    struct robot_job_points points;
     struct orders_text orders;
 };
 
 #define SETTING(type, m, elements, unit, start, low, high) \
     { #m, \
       unit, \
-      KIND(((struct soft_settings *)0)->m), \
-      OFFSET(robot_station_config, soft.m), \
-      SIZE(robot_station_config, soft.m) / (int32_t)sizeof(type), \
+      KIND(((struct controller_settings *)0)->m), \
+      OFFSET(robot_station_config, controller.m), \
+      SIZE(robot_station_config, controller.m) / (int32_t)sizeof(type), \
       sizeof(type), \
       SAME },
 #define CARD(m, unit) ONE(robot_station_config, card.m, #m, unit)
 static const struct field config_fields[] = {
-    SOFT_SETTINGS(SETTING) ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
+    CONTROLLER_SETTINGS(SETTING)
+        ONE_IN(robot_station_config, card.irq_every, "irq_every", "s", SECONDS),
     CARD(input_irq_mask, "bits"),
     CARD(follow_mask, "bits"),
     CARD(stop_mask, "bits"),
@@ -59,18 +60,18 @@ static const struct field reading_fields[] = {
 
 #define SEEN(m, name, unit) ONE(robot_station, m, name, unit)
 /* Reports, with the names and units of the FMU's outputs. */
-#define REPORT(m, name) ONE(robot_station, soft.report.m, name, "")
-#define TIME(m, name)   ONE_IN(robot_station, soft.report.m, name, "s", SECONDS)
+#define REPORT(m, name) ONE(robot_station, controller.report.m, name, "")
+#define TIME(m, name)   ONE_IN(robot_station, controller.report.m, name, "s", SECONDS)
 static const struct field seen_fields[] = {
     SEEN(clock, "clock", "clocks"),
-    SEEN(soft.robot.speed, "path_feed", "mm/s"),
-    SEEN(soft.robot.length, "path_length", "mm"),
-    SEEN(soft.given, "move", ""),
-    SEEN(soft.reached, "reached", ""),
-    SEEN(soft.taught_count, "taught", ""),
-    SEEN(soft.trouble.error, "error", ""),
-    SEEN(soft.trouble.line, "error_line", ""),
-    SEEN(soft.count, "queue", ""),
+    SEEN(controller.robot.speed, "path_feed", "mm/s"),
+    SEEN(controller.robot.length, "path_length", "mm"),
+    SEEN(controller.given, "move", ""),
+    SEEN(controller.reached, "reached", ""),
+    SEEN(controller.taught_count, "taught", ""),
+    SEEN(controller.trouble.error, "error", ""),
+    SEEN(controller.trouble.line, "error_line", ""),
+    SEEN(controller.count, "queue", ""),
     SEEN(card.inputs.image, "inputs", "bits"),
     SEEN(card.outputs, "outputs", "bits"),
     ROW(robot_station, card.output_clock, "output_clock", "clocks"),
@@ -103,7 +104,7 @@ static const struct field seen_fields[] = {
     TIME(told_most, "line_known_most"),
 };
 
-#define KEY(m)         ONE(robot_station, soft.m.pressed, "press_" #m, "")
+#define KEY(m)         ONE(robot_station, controller.m.pressed, "press_" #m, "")
 #define PANEL(m, unit) ONE(robot_station, panel.m, #m, unit)
 static const struct field panel_fields[] = {
     PANEL(hold, ""),
@@ -149,7 +150,7 @@ const struct table ROBOT_TABLES[] = {
     { "robot_move", move_fields, sizeof move_fields, sizeof(struct robot_move) },
     { "robot_refusal", refusal_fields, sizeof refusal_fields, sizeof(struct robot_refusal) },
     { "robot_program", NULL, 0, sizeof(struct robot_program) },
-    { "robot_soft", NULL, 0, sizeof(struct soft) },
+    { "robot_controller", NULL, 0, sizeof(struct controller) },
     { "robot_arm", NULL, 0, sizeof(struct manipulator) },
     { NULL, NULL, 0, 0 },
 };
@@ -164,7 +165,7 @@ void binding_robot_defaults(struct robot_station_config *c)
 int binding_robot_on(struct robot_station *s, const struct robot_station_config *c,
                      double number[2], char message[MESSAGE])
 {
-    struct soft_wrong w;
+    struct controller_wrong w;
 
     if (robot_station_start(s, c, &w)) {
         return 0;
@@ -191,14 +192,14 @@ void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
 int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
                        bool gcode, binding_file file, char message[MESSAGE])
 {
-    struct inform_report r;
+    struct robot_job_report r;
 
     memset(p, 0, sizeof *p);
-    inform_points_clear(&p->points);
+    robot_job_points_clear(&p->points);
     p->orders.points = &p->points;
-    if (inform_points_read(&p->points, text[1], length[1], &r) < 0) {
-        char found[INFORM_MESSAGE_MAX];
-        inform_message(&r, text[1], found);
+    if (robot_job_points_read(&p->points, text[1], length[1], &r) < 0) {
+        char found[ROBOT_JOB_MESSAGE_MAX];
+        robot_job_message(&r, text[1], found);
         snprintf(message, MESSAGE, "points: %.400s", found);
         return 1;
     }
@@ -206,23 +207,23 @@ int binding_robot_read(struct robot_program *p, const char *const text[2], const
     if (gcode) {
         p->source = binding_source(&p->text);
         p->orders.gcode = &p->source;
-    } else if (inform_read(&p->inform, &p->points, text[0], length[0], &r) < 0) {
-        inform_message(&r, text[0], message);
+    } else if (robot_job_read(&p->job, &p->points, text[0], length[0], &r) < 0) {
+        robot_job_message(&r, text[0], message);
         return 1;
     } else {
-        p->orders.inform = &p->inform;
+        p->orders.job = &p->job;
     }
     return 0;
 }
 
-static int check_gcode(struct robot_station *s, const struct robot_program *p, struct soft *trial,
-                       char message[MESSAGE])
+static int check_gcode(struct robot_station *s, const struct robot_program *p,
+                       struct controller *trial, char message[MESSAGE])
 {
-    char words[SOFT_WORDS];
+    char words[CONTROLLER_WORDS];
     struct fault_list all;
     int count = 0;
 
-    orders_check(&s->config.orders, &p->orders, &s->soft.robot.pose, &all);
+    orders_check(&s->config.orders, &p->orders, &s->controller.robot.pose, &all);
     for (int i = 0; i < all.count && count < MESSAGE; i++) {
         const struct fault_report *r = &all.of[i];
         const char *text = "";
@@ -236,8 +237,8 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
         return 1;
     }
     robot_station_rehearse(s, &p->orders, trial);
-    if (trial->trouble.error != SOFT_OK) {
-        soft_words(&trial->trouble, words);
+    if (trial->trouble.error != CONTROLLER_OK) {
+        controller_words(&trial->trouble, words);
         snprintf(message, MESSAGE, "line %d: %s", (int)trial->trouble.line, words);
         return 1;
     }
@@ -246,24 +247,24 @@ static int check_gcode(struct robot_station *s, const struct robot_program *p, s
 
 /* Start a program that was read, while the robot is at rest; a part program is planned first. */
 int binding_robot_start(struct robot_station *s, const struct robot_program *p, const char *job,
-                        struct soft *trial, char message[MESSAGE])
+                        struct controller *trial, char message[MESSAGE])
 {
-    struct inform_start *start = &s->config.orders.start;
+    struct robot_job_start *start = &s->config.orders.start;
 
     if (p->orders.gcode && check_gcode(s, p, trial, message)) {
         return 1;
     }
     start->job = 0;
     start->out = s->card.host_outputs;
-    if (p->orders.inform && job[0]) {
-        start->job = inform_job(&p->inform, job);
+    if (p->orders.job && job[0]) {
+        start->job = robot_job_find(&p->job, job);
         if (start->job < 0) {
             start->job = 0;
             snprintf(message, MESSAGE, "no job \"%.40s\" in the program", job);
             return 1;
         }
     }
-    s->soft.start.pressed = true;
+    s->controller.start.pressed = true;
     return 0;
 }
 
@@ -281,20 +282,20 @@ int binding_robot_move(struct robot_station *s, struct robot_move *m, const doub
     }
     m->target.pose = m->target.by_joints ? pose_none() : pose_of(target, target + 3);
     m->spin *= DEGREE;
-    const enum robot_status status = soft_move(&s->soft, &s->config, m, &s->tool, why);
-    soft_refusal_words(status, why, message);
+    const enum robot_status status = controller_move(&s->controller, &s->config, m, &s->tool, why);
+    controller_refusal_words(status, why, message);
     return (int)status;
 }
 
 int binding_robot_running(const struct robot_station *s)
 {
-    return soft_running(&s->soft);
+    return controller_running(&s->controller);
 }
 
 int binding_robot_jog(struct robot_station *s, struct robot_refusal *why, char message[MESSAGE])
 {
-    const enum robot_status status = soft_jog(&s->soft, &s->config, &s->panel, why);
-    soft_refusal_words(status, why, message);
+    const enum robot_status status = controller_jog(&s->controller, &s->config, &s->panel, why);
+    controller_refusal_words(status, why, message);
     return (int)status;
 }
 
@@ -307,26 +308,26 @@ int binding_robot_output(struct robot_station *s, uint32_t mask, uint32_t value,
                        .value = value,
                        .index = index,
                        .amount = volt };
-    return (int)soft_output(&s->soft, &o);
+    return (int)controller_output(&s->controller, &o);
 }
 
 int binding_robot_tool(struct robot_station *s, const double tool[6])
 {
-    if (!robot_idle(&s->soft.robot)) {
+    if (!robot_idle(&s->controller.robot)) {
         return 1;
     }
     s->tool = pose_of(tool, tool + 3);
-    return (int)robot_tool(&s->soft.robot, &s->config.robot, &s->tool);
+    return (int)robot_tool(&s->controller.robot, &s->config.robot, &s->tool);
 }
 
 void binding_robot_words(const struct robot_station *s, char message[MESSAGE])
 {
-    soft_words(&s->soft.trouble, message);
+    controller_words(&s->controller.trouble, message);
 }
 
-int binding_robot_taught(const struct robot_station *s, int32_t n, char line[INFORM_POINT_TEXT])
+int binding_robot_taught(const struct robot_station *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT])
 {
-    return soft_taught(&s->soft, n, line);
+    return controller_taught(&s->controller, n, line);
 }
 
 /* Position and rotation of a tool as a matrix, or of its inverse. */

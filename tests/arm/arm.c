@@ -8,28 +8,28 @@ enum { PLANS, ROOM = 0, BOUNDARY = 0, POINT_TIME = 20000 }; /* task; semaphore; 
 bool arm_start(struct arm *a, const struct mechanism *m, const double place[AXES])
 {
     memset(a, 0, sizeof *a);
-    mover_start(&a->mover);
+    trajectory_start(&a->trajectory);
     dda_reset(&a->dda, ARM_JOINTS, ARM_TICKS, 1);
     for (int i = 0; i < ARM_JOINTS; i++) {
         fifo_reset(&a->fifo[i], ARM_DEPTH);
     }
-    return mover_stand(&a->mover, m, place)
+    return trajectory_stand(&a->trajectory, m, place)
            && !kernel_start(&a->kernel, &(struct kernel_config){ .tasks = 1 });
 }
 
 static void make_frame(struct arm *a, const struct mechanism *m)
 {
-    const struct mover_beside beside = arm_beside(a);
+    const struct trajectory_beside beside = arm_beside(a);
     struct point p;
     double left = FRAME;
     do {
-        left = mover_advance(&a->mover, &beside, left);
-    } while (left > 0.0 && !mover_resting(&a->mover, &a->ring));
-    mover_point(&a->mover, &beside, m, FRAME, &p);
+        left = trajectory_advance(&a->trajectory, &beside, left);
+    } while (left > 0.0 && !trajectory_resting(&a->trajectory, &a->ring));
+    trajectory_point(&a->trajectory, &beside, m, FRAME, &p);
     for (int i = 0; i < ARM_JOINTS; i++) {
-        fifo_push(&a->fifo[i], a->entry[i], p.pulses[i] - a->mover.pulses[i]);
+        fifo_push(&a->fifo[i], a->entry[i], p.pulses[i] - a->trajectory.pulses[i]);
     }
-    mover_accept(&a->mover, &beside, &p);
+    trajectory_accept(&a->trajectory, &beside, &p);
 }
 
 static void task(struct arm *a, const struct mechanism *m)

@@ -1,6 +1,6 @@
 /* arm - a controller in sixty lines: the tool of an arm draws straight lines.
  *
- *     command ──mover──> frame ──fifo──> dda ──> pulses of both joints
+ *     command ──trajectory──> frame ──fifo──> dda ──> pulses of both joints
  *     task, when there is room           hardware, whose interrupt tells of room
  */
 #ifndef ARM_H
@@ -11,24 +11,24 @@
 #include "dda.h"
 #include "fifo.h"
 #include "kernel.h"
-#include "mover.h"
+#include "trajectory.h"
 
 enum { ARM_JOINTS = 2, ARM_DEPTH = 8, ARM_CLOCK = 50000000, ARM_TICKS = 100000 }; /* 2 ms */
 
 struct arm {
     struct kernel kernel;
-    struct mover mover;
+    struct trajectory trajectory;
     struct ring ring;
-    struct track_mean mean;
+    struct lookahead_mean mean;
     struct dda dda;
     struct fifo fifo[ARM_JOINTS];
     int32_t entry[ARM_JOINTS][ARM_DEPTH];
     bool planned, told; /* of the task: the time of a point is over; of the interrupt */
 };
 
-static inline struct mover_beside arm_beside(struct arm *a)
+static inline struct trajectory_beside arm_beside(struct arm *a)
 {
-    return (struct mover_beside){ &a->ring, &a->mean, NULL };
+    return (struct trajectory_beside){ &a->ring, &a->mean, NULL };
 }
 
 /* At rest with the tool at a place; false if it is out of reach. */

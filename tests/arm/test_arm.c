@@ -82,7 +82,7 @@ static double draw(void)
     } while (hypot(end[0] - start[0], end[1] - start[1]) < 1.0);
     CHECK(arm_start(&arm, &m, start));
     for (int i = 0; i < ARM_JOINTS; i++) {
-        pulses[i] = arm.mover.pulses[i];
+        pulses[i] = arm.trajectory.pulses[i];
     }
     const struct command c = line(&m, start, end, 0.0);
     ring_push(&arm.ring, &c);
@@ -108,14 +108,15 @@ static double draw(void)
         before = along;
         waiting += moving > 0 && !moves && along < c.path.length - 2e-5;
         moving += moves;
-    } while (!(mover_resting(&arm.mover, &arm.ring) && arm.fifo[0].stock == 0) && clock < 1 << 30);
+    } while (!(trajectory_resting(&arm.trajectory, &arm.ring) && arm.fifo[0].stock == 0)
+             && clock < 1 << 30);
     arm_run(&arm, &m, clock + ARM_TICKS + 1);
     CHECK(fabs(before - c.path.length) < 2e-5);
     CHECK(moving > 20 && waiting == 0);
     dda_counts(&arm.dda, clock + ARM_TICKS, counts);
     for (int i = 0; i < ARM_JOINTS; i++) {
-        CHECK_EQ(counts[i], arm.mover.pulses[i] - (pulses[i] - counts[i]));
-        CHECK_EQ(pulses[i], arm.mover.pulses[i]);
+        CHECK_EQ(counts[i], arm.trajectory.pulses[i] - (pulses[i] - counts[i]));
+        CHECK_EQ(pulses[i], arm.trajectory.pulses[i]);
     }
     CHECK(kernel_busy(&arm.kernel, 0) >= moving * 20000 && kernel_idle(&arm.kernel) > 0);
     return fastest;
@@ -163,15 +164,15 @@ static void drive_ramp(const struct arm *now, const struct mechanism *m, int32_t
     static struct arm a;
     struct point p;
 
-    const struct mover_beside beside = arm_beside(&a);
+    const struct trajectory_beside beside = arm_beside(&a);
     a = *now;
-    memcpy(high, a.mover.pulses, AXES * sizeof *high);
-    mover_abort(&a.mover, &a.ring);
+    memcpy(high, a.trajectory.pulses, AXES * sizeof *high);
+    trajectory_abort(&a.trajectory, &a.ring);
     for (bool rests = false; !rests;) {
-        rests = mover_resting(&a.mover, &a.ring);
-        mover_advance(&a.mover, &beside, FRAME);
-        CHECK(mover_point(&a.mover, &beside, m, FRAME, &p));
-        mover_accept(&a.mover, &beside, &p);
+        rests = trajectory_resting(&a.trajectory, &a.ring);
+        trajectory_advance(&a.trajectory, &beside, FRAME);
+        CHECK(trajectory_point(&a.trajectory, &beside, m, FRAME, &p));
+        trajectory_accept(&a.trajectory, &beside, &p);
         for (int i = 0; i < ARM_JOINTS; i++) {
             high[i] = p.pulses[i] > high[i] ? p.pulses[i] : high[i];
         }
@@ -184,7 +185,7 @@ static void ramps(double tolerance)
 {
     const struct mechanism m = machine();
     static struct arm copy;
-    const struct mover_beside beside = arm_beside(&arm), aside = arm_beside(&copy);
+    const struct trajectory_beside beside = arm_beside(&arm), aside = arm_beside(&copy);
     double at[3][AXES];
     int32_t high[AXES];
 
@@ -196,13 +197,13 @@ static void ramps(double tolerance)
         const struct command c = line(&m, at[i], at[i + 1], tolerance);
         ring_push(&arm.ring, &c);
     }
-    for (int n = 0; !mover_resting(&arm.mover, &arm.ring) && n < 5000; n++) {
+    for (int n = 0; !trajectory_resting(&arm.trajectory, &arm.ring) && n < 5000; n++) {
         struct point p;
-        for (double left = FRAME; left > 0.0 && !mover_resting(&arm.mover, &arm.ring);) {
-            left = mover_advance(&arm.mover, &beside, left);
+        for (double left = FRAME; left > 0.0 && !trajectory_resting(&arm.trajectory, &arm.ring);) {
+            left = trajectory_advance(&arm.trajectory, &beside, left);
         }
-        CHECK(mover_point(&arm.mover, &beside, &m, FRAME, &p));
-        mover_accept(&arm.mover, &beside, &p);
+        CHECK(trajectory_point(&arm.trajectory, &beside, &m, FRAME, &p));
+        trajectory_accept(&arm.trajectory, &beside, &p);
         if (n % 16) {
             continue;
         }
@@ -213,11 +214,11 @@ static void ramps(double tolerance)
             bounded.joint[i].low = -1e4;
             bounded.joint[i].high = (high[i] + 60) / SCALE; /* within a frame near rest */
             copy = arm;
-            CHECK_EQ(reach_beyond(&copy.mover, &aside, &bounded, FRAME), -1);
+            CHECK_EQ(reach_beyond(&copy.trajectory, &aside, &bounded, FRAME), -1);
             bounded.joint[i].high = (high[i] - 60) / SCALE;
-            if (high[i] - 60 > arm.mover.pulses[i]) {
+            if (high[i] - 60 > arm.trajectory.pulses[i]) {
                 copy = arm;
-                CHECK_EQ(reach_beyond(&copy.mover, &aside, &bounded, FRAME), i);
+                CHECK_EQ(reach_beyond(&copy.trajectory, &aside, &bounded, FRAME), i);
             }
         }
     }
@@ -229,24 +230,25 @@ static void orders(void)
     const struct mechanism m = machine();
     const double start[AXES] = { 3.0, 2.5 };
     const struct axes_limits l = { 50.0, 90.0, 500.0, 500.0, 5000.0 };
-    const struct mover_beside beside = arm_beside(&arm);
+    const struct trajectory_beside beside = arm_beside(&arm);
     struct point p;
 
-    CHECK(arm_start(&arm, &m, start) && mover_order(&arm.mover, &m));
-    const int32_t from = arm.mover.pulses[0], other = arm.mover.pulses[1];
+    CHECK(arm_start(&arm, &m, start) && trajectory_order(&arm.trajectory, &m));
+    const int32_t from = arm.trajectory.pulses[0], other = arm.trajectory.pulses[1];
     double joint[AXES] = { 0.0 };
     CHECK(mechanism_first(&m, start, joint));
-    axes_go(&arm.mover.axes, 0, joint[0] + 10.0, &l);
-    while (!mover_resting(&arm.mover, &arm.ring)) {
-        mover_advance(&arm.mover, &beside, FRAME);
-        CHECK(mover_point(&arm.mover, &beside, &m, FRAME, &p));
+    axes_go(&arm.trajectory.axes, 0, joint[0] + 10.0, &l);
+    while (!trajectory_resting(&arm.trajectory, &arm.ring)) {
+        trajectory_advance(&arm.trajectory, &beside, FRAME);
+        CHECK(trajectory_point(&arm.trajectory, &beside, &m, FRAME, &p));
         const double r = hypot(p.place[0], p.place[1]);
         CHECK(fabs(r - hypot(3.0, 2.5)) < 1e-9 && p.pulses[1] == other);
-        mover_accept(&arm.mover, &beside, &p);
+        trajectory_accept(&arm.trajectory, &beside, &p);
     }
-    CHECK(abs(arm.mover.pulses[0] - from - (int32_t)(10.0 * SCALE)) <= 1);
-    mover_bind(&arm.mover);
-    CHECK(mover_in_joints(&arm.mover) && fabs(arm.mover.rest[0] - joint[0] - 10.0) < 1e-9);
+    CHECK(abs(arm.trajectory.pulses[0] - from - (int32_t)(10.0 * SCALE)) <= 1);
+    trajectory_bind(&arm.trajectory);
+    CHECK(trajectory_in_joints(&arm.trajectory)
+          && fabs(arm.trajectory.rest[0] - joint[0] - 10.0) < 1e-9);
 }
 
 int main(void)

@@ -25,7 +25,8 @@ LARGEST = {
 STEP = 1e-3  # [s]
 EVERY = 7
 # Scenario, and how long it runs [s]: motion one by one with numbered parameters, as a curve; words
-# of a program with tools; a law that keeps a trail; groups; a robot, whose look-ahead is a chain.
+# of a program with tools; a law that keeps the commanded path; groups; a robot, whose look-ahead
+# is a chain.
 RUNS = {
     "square": 1.0,
     "short_lines": 1.2,

@@ -14,8 +14,8 @@ static struct mcc m, before; /* 1.4 MB each: not on the stack */
 static int64_t sum[AXES];    /* [pulses] of all frames since the start */
 static double slowest;       /* [s] longest deceleration time so far */
 
-/* Everything but the shape and the pace of curves, most of the bytes: nothing here turns curves on,
- * so they are zeros all the time, and a comparison of the whole would tell. */
+/* Everything but the shape and the speed profile of curves, most of the bytes: nothing here turns
+ * curves on, so they are zeros all the time, and a comparison of the whole would tell. */
 static void remember(void)
 {
     const size_t behind = offsetof(struct mcc, queue);
@@ -137,7 +137,7 @@ static int axes(struct bytes *b, uint8_t which)
     remember();
     const int code = MCC_update_param(&m);
     for (int i = 0; i < AXES && code == MCC_NO_ERR; i++) {
-        sum[i] = m.mover.pulses[i] + m.comp[i].added; /* an axis may have been turned round */
+        sum[i] = m.trajectory.pulses[i] + m.comp[i].added; /* an axis may have been turned round */
     }
     return code;
 }
@@ -172,7 +172,8 @@ static void look(void)
         reaction_look(&m, &l);
     }
     for (int i = 0; i < AXES && !m.dry_run; i++) {
-        sum[i] = m.mover.pulses[i] + m.comp[i].added; /* homing, an emergency stop may set it */
+        sum[i] =
+            m.trajectory.pulses[i] + m.comp[i].added; /* homing, an emergency stop may set it */
     }
 }
 
@@ -271,7 +272,7 @@ static void come_to_rest(void)
 {
     const double seconds = slowest * 4.0 + 1.0;
     const double dda = machine_dda_time(&m.machine);
-    const bool by_hand = mover_ordered(&m.mover);
+    const bool by_hand = trajectory_ordered(&m.trajectory);
     int64_t n = 0, cycles = 0;
     if (!m.open || seconds / dda > REST_POINTS) {
         return;
@@ -287,7 +288,7 @@ static void come_to_rest(void)
         n += fuzz_take(&m, sum);
         HOLDS(cycles++ < REST_POINTS && (by_hand || (double)(n - 2) * dda <= seconds));
     } while (!MCC_check_stop(&m));
-    HOLDS(m.mover.mix.count == 0 && m.ring.count == 0);
+    HOLDS(m.trajectory.mix.count == 0 && m.ring.count == 0);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
@@ -305,7 +306,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             HOLDS(memcmp(&before, &m, sizeof m) == 0);
         }
         for (int k = 0; k < AXES && m.open && MCC_check_stop(&m); k++) {
-            HOLDS(fabs(m.end[k] - m.mover.rest[k]) < 1e-12); /* shorter lines are none */
+            HOLDS(fabs(m.end[k] - m.trajectory.rest[k]) < 1e-12); /* shorter lines are none */
         }
         slowest = fmax(slowest, slowest_of(&m.machine));
         if (!(slowest < REST_POINTS * machine_dda_time(&m.machine))) {

@@ -281,7 +281,8 @@ static void come_to_rest(void)
     for (int n = 0; n < GROUP_MAX; n++) {
         const struct mcc *m = &s.group[n].mcc;
         for (int i = 0; i < AXES && s.group[n].used; i++) {
-            HOLDS(m->written.pulses[i] == m->mover.pulses[i] && m->end[i] == m->mover.rest[i]);
+            HOLDS(m->written.pulses[i] == m->trajectory.pulses[i]
+                  && m->end[i] == m->trajectory.rest[i]);
         }
     }
 }

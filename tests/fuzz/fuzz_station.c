@@ -252,7 +252,7 @@ static void check_rest(const struct station_reading *r)
     for (int i = 0; i < AXES; i++) {
         const int64_t out = m->machine.axis[i].inverted ? -r->pulses[i] : r->pulses[i];
         const uint32_t place = (uint32_t)m->protection.base[i] + (uint32_t)(uint64_t)out;
-        HOLDS(m->dry_run || place == (uint32_t)(m->mover.pulses[i] + m->comp[i].added));
+        HOLDS(m->dry_run || place == (uint32_t)(m->trajectory.pulses[i] + m->comp[i].added));
     }
 }
 

@@ -1,4 +1,4 @@
-"""Pieces of src/motion/smooth/shape for rows of commands, and how far they are from the path."""
+"""Segments of src/motion/smooth/shape for rows of commands, and how far they are from the path."""
 
 import itertools
 import math
@@ -18,7 +18,7 @@ Array = np.ndarray
 
 
 @dataclass
-class Piece:
+class Segment:
     """One line of shape_batch."""
 
     kind: str
@@ -77,13 +77,13 @@ class Piece:
         return point, slope, bend
 
 
-def shaped(rows: list[str]) -> tuple[list[Piece], list[float]]:
-    """The pieces of commands in the words of shape_batch.c, and where the commands begin."""
+def shaped(rows: list[str]) -> tuple[list[Segment], list[float]]:
+    """The segments of commands in the words of shape_batch.c, and where the commands begin."""
     done = subprocess.run(
         [BATCH], input="\n".join(rows), capture_output=True, text=True, timeout=60
     )
     assert done.returncode == 0, done.stderr
-    pieces, marks = [], []
+    segments, marks = [], []
     for line in done.stdout.splitlines():
         kind, *numbers = line.split()
         if kind == "mark":
@@ -91,8 +91,8 @@ def shaped(rows: list[str]) -> tuple[list[Piece], list[float]]:
         elif kind != "commands":
             assert kind in ("line", "curve", "arc", "cubic"), line
             x = [float(n) for n in numbers]
-            pieces.append(Piece(kind, x[0], x[2] == 1.0, np.array(x[3:]), x[1]))
-    return pieces, marks
+            segments.append(Segment(kind, x[0], x[2] == 1.0, np.array(x[3:]), x[1]))
+    return segments, marks
 
 
 def lines(points: Array, tolerance: float, merge: float = 1e9) -> list[str]:
@@ -133,10 +133,10 @@ class Chords:
         return best
 
 
-def fine(pieces: list[Piece], error: float) -> Array:
-    """Points on the pieces whose chords are within an error: |r''| h^2 / 8, bound by samples."""
+def fine(segments: list[Segment], error: float) -> Array:
+    """Points on the segments whose chords are within an error: |r''| h^2 / 8, bound by samples."""
     rows = []
-    for p in pieces:
+    for p in segments:
         most = np.linalg.norm(p.at(np.linspace(0.0, p.length, 17))[2], axis=1).max() * 1.5
         n = max(4, math.ceil(p.length * math.sqrt(most / (8.0 * error))))
         rows.append(p.at(np.linspace(0.0, p.length, n + 1))[0])
@@ -156,22 +156,22 @@ def farthest(points: Array, chords: Chords, limit: float, slack: float = 2e-7) -
     return most
 
 
-def both_ways(pieces: list[Piece], programmed: Array, tolerance: float) -> tuple[float, float]:
+def both_ways(segments: list[Segment], programmed: Array, tolerance: float) -> tuple[float, float]:
     """Bounds of the distances curve to path and path to curve: wider by 5e-4 of the tolerance."""
     error = 5e-4 * tolerance
     full = np.zeros((len(programmed), 6))
     full[:, : programmed.shape[1]] = programmed
-    curve = fine(pieces, error)
+    curve = fine(segments, error)
     longest = tolerance
     limit = tolerance - error
     there = farthest(curve, Chords(full, longest), limit) + error
     return there, farthest(full, Chords(curve, longest), limit) + error
 
 
-def jumps(pieces: list[Piece]) -> Array:
-    """Largest differences of place, r' and r'' where pieces meet; r'' by what rounding makes."""
+def jumps(segments: list[Segment]) -> Array:
+    """Largest differences of place, r' and r'' where segments meet; r'' by what rounding makes."""
     most = np.zeros(3)
-    for a, b in itertools.pairwise(pieces):
+    for a, b in itertools.pairwise(segments):
         one, two = a.at(np.array([a.length])), b.at(np.array([0.0]))
         far = 1.0 + np.abs(one[0]).max()
         for n in range(1 if a.rest else 3):
@@ -181,10 +181,10 @@ def jumps(pieces: list[Piece]) -> Array:
     return most
 
 
-def least_time(pieces: list[Piece], acc: float, speed: float, step: float = 0.02) -> float:
+def least_time(segments: list[Segment], acc: float, speed: float, step: float = 0.02) -> float:
     """Time-optimal time with each axis' acceleration and a speed: forwards and backwards."""
     total, rows = 0.0, []
-    for p in pieces:
+    for p in segments:
         n = max(3, math.ceil(p.length / step))
         _, slope, bend = p.at(np.linspace(0.0, p.length, n + 1)[:-1])
         rows.append(np.hstack([slope, bend, np.full((n, 1), p.length / n)]))

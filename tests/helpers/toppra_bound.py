@@ -1,10 +1,10 @@
-"""Least time along a chain of pieces, found by the toppra package on a fine grid."""
+"""Least time along a chain of segments, found by the toppra package on a fine grid."""
 
 from typing import Any
 
 import numpy as np
 import toppra
-from pace_rides import LIBRARY, look
+from speed_rides import LIBRARY, look
 from toppra import algorithm, constraint, interpolator
 
 toppra.setup_logging("ERROR")
@@ -18,7 +18,7 @@ class ChainPath(interpolator.AbstractGeometricPath):
 
     def __init__(self, told: np.ndarray) -> None:
         self.told = told
-        self.length = LIBRARY.pace_batch_pieces(len(told), told)
+        self.length = LIBRARY.speed_batch_segments(len(told), told)
 
     @property
     def path_interval(self) -> np.ndarray:

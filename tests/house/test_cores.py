@@ -129,7 +129,7 @@ def test_no_core_knows_of_saved_states() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "bool mover_damaged(const struct mover *p, const struct ring *r);",
+        "bool trajectory_damaged(const struct trajectory *p, const struct ring *r);",
         "bool dda_sound(const struct dda *d, int32_t channels)",
         "void queue_unused(const struct queue *q, struct spans *s);",
         "const char *pc_damage(const struct pc *pc)",
@@ -194,8 +194,8 @@ def test_a_header_that_cannot_be_installed_is_told(tmp_path: Path) -> None:
 
 
 def test_nine_cores_or_more_serve_any_controller() -> None:
-    assert len(SHARED) >= 9 and {"elementary", "path", "mover", "tasks"} <= set(SHARED)
-    assert not {"mcc", "epcio", "soft", "netcard"} & set(SHARED)
+    assert len(SHARED) >= 9 and {"elementary", "path", "trajectory", "tasks"} <= set(SHARED)
+    assert not {"mcc", "epcio", "robot_controller", "netcard"} & set(SHARED)
 
 
 def test_a_drawing_has_each_core_above_all_that_it_uses() -> None:

@@ -113,5 +113,5 @@ def test_what_is_wrong_is_told() -> None:
     assert missing("`shape_join.c` `shape_jion`")[0] == "shape_jion"
     assert missing("`shape_jion.c` `shape_join`")[0] == "shape_jion.c"
     assert missing("`shape_turn.c` `SHARP` `TURN`") == []
-    assert missing("`test_pace.py` `test_nothing`")[0] == "test_nothing"
-    assert missing("`pace.c`") == ["no function in '`pace.c`'"]
+    assert missing("`test_speed.py` `test_nothing`")[0] == "test_nothing"
+    assert missing("`speed_profile.c`") == ["no function in '`speed_profile.c`'"]

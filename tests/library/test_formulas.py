@@ -21,13 +21,13 @@ def test_blend_of_look_ahead() -> None:
     part, x = 0.5 * T, T  # the half of it before the vertex; all of it
     h, steep, y = 3 * x**2 - 2 * x**3, 3 * x * (1 - x), 2 * x**3 * (1 - 0.5 * x)
     s = 2 * x - 1
-    assert constant("mover/corner.c", "CUT") == y[T == 0.5][0]
+    assert constant("trajectory/corner.c", "CUT") == y[T == 0.5][0]
     near, off = 2 * part - 1, 2 * part**3 * (1 - 0.5 * part)
     before, behind = 0.5 * (off**2 - 2 * off * near).max(), 0.5 * (off**2).max()
     print(f"off by the curvature before {before:.5f}, behind {behind:.5f}")
-    assert max(before, behind) <= constant("mover/corner.c", "CUT_CURVED") < 2 * before
+    assert max(before, behind) <= constant("trajectory/corner.c", "CUT_CURVED") < 2 * before
     bend = ((1 - h) ** 2 + h**2 + steep * (2 * y - s)).max()
-    assert bend <= constant("mover/corner.c", "BEND_CURVED") < 1.01 * bend
+    assert bend <= constant("trajectory/corner.c", "BEND_CURVED") < 1.01 * bend
     twist = (3 * steep + 1.5 * abs(1 - 2 * x) * (2 * y - s)).max()
     print(f"bend {bend:.4f}, twist {twist:.4f}")
     assert twist <= 4.0 < 2 * twist

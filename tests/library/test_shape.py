@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from shape_paths import Array, Piece, both_ways, jumps, least_time, lines, shaped
+from shape_paths import Array, Segment, both_ways, jumps, least_time, lines, shaped
 
 TURN = 2.0 * math.pi
 
@@ -73,15 +73,15 @@ SHAPES = [
 @pytest.mark.parametrize(("shape", "tolerance", "least", "most"), SHAPES)
 def test_a_curve_within_the_tolerance(shape, tolerance, least, most) -> None:  # type: ignore[no-untyped-def]
     points = shape()
-    pieces, marks = shaped(lines(points, tolerance))
-    there, back = both_ways(pieces, points, tolerance)
-    place, slope, bend = jumps(pieces)
-    time = least_time(pieces, 1000.0, 100.0)
+    segments, marks = shaped(lines(points, tolerance))
+    there, back = both_ways(segments, points, tolerance)
+    place, slope, bend = jumps(segments)
+    time = least_time(segments, 1000.0, 100.0)
     speeds = np.concatenate(
-        [np.linalg.norm(p.at(np.linspace(0.0, p.length, 9))[1][:, :3], axis=1) for p in pieces]
+        [np.linalg.norm(p.at(np.linspace(0.0, p.length, 9))[1][:, :3], axis=1) for p in segments]
     )
     print(
-        f"{shape.__name__} {len(points) - 1} lines, {len(pieces)} pieces, off {there:.5f} "
+        f"{shape.__name__} {len(points) - 1} lines, {len(segments)} segments, off {there:.5f} "
         f"{back:.5f} of {tolerance}, jumps {place:.0e} {slope:.0e} {bend:.0e}, "
         f"|r'| {speeds.min():.3f}..{speeds.max():.3f}, {time:.3f} s"
     )
@@ -89,7 +89,7 @@ def test_a_curve_within_the_tolerance(shape, tolerance, least, most) -> None:  #
     assert place < 1e-9 and slope < 1e-9 and bend < 1e-8
     assert len(marks) == len(points) - 1 and np.all(np.diff(marks) >= 0.0)
     assert least < time < most
-    assert np.allclose(pieces[-1].at(np.array([pieces[-1].length]))[0][0, :2], points[-1, :2])
+    assert np.allclose(segments[-1].at(np.array([segments[-1].length]))[0][0, :2], points[-1, :2])
 
 
 def arc_gap(points: Array, arc: tuple[Array, float, float, float]) -> Array:
@@ -163,11 +163,11 @@ def wander(seed: int, scale: float, tolerance: float) -> tuple[list[str], Array]
 @pytest.mark.parametrize(("scale", "tolerance"), [(1.0, 0.02), (10.0, 0.02), (1.0, 0.2)])
 def test_lines_and_arcs_at_random(seed: int, scale: float, tolerance: float) -> None:
     rows, path = wander(seed, scale, tolerance)
-    pieces, marks = shaped(rows)
-    there, back = both_ways(pieces, path, tolerance)
-    place, slope, bend = jumps(pieces)
-    rests = sum(p.rest for p in pieces)
-    print(f"off {there:.5f} {back:.5f} of {tolerance}, {len(pieces)} pieces, {rests} rests")
+    segments, marks = shaped(rows)
+    there, back = both_ways(segments, path, tolerance)
+    place, slope, bend = jumps(segments)
+    rests = sum(p.rest for p in segments)
+    print(f"off {there:.5f} {back:.5f} of {tolerance}, {len(segments)} segments, {rests} rests")
     assert there <= 1.001 * tolerance and back <= 1.001 * tolerance  # chords of the arcs here
     assert place < 1e-9 and slope < 1e-9 and bend < 1e-8
     assert len(marks) == 60
@@ -208,14 +208,14 @@ def splines(seed: int, tolerance: float) -> tuple[list[str], Array]:
 @pytest.mark.parametrize(("seed", "tolerance"), [(0, 0.02), (1, 0.02), (2, 0.005)])
 def test_cubics_keep_their_geometry(seed: int, tolerance: float) -> None:
     rows, path = splines(seed, tolerance)
-    pieces, marks = shaped(rows)
-    there, back = both_ways(pieces, path, tolerance)
-    place, slope, bend = jumps(pieces)
-    kept = sum(p.kind == "cubic" for p in pieces)
-    print(f"off {there:.5f} {back:.5f} of {tolerance}, {len(pieces)} pieces, {kept} cubics")
+    segments, marks = shaped(rows)
+    there, back = both_ways(segments, path, tolerance)
+    place, slope, bend = jumps(segments)
+    kept = sum(p.kind == "cubic" for p in segments)
+    print(f"off {there:.5f} {back:.5f} of {tolerance}, {len(segments)} segments, {kept} cubics")
     assert there <= 1.001 * tolerance and back <= 1.001 * tolerance  # chords here
     assert place < 1e-9 and slope < 1e-8 and bend < 1e-6  # lengths by splines here
-    assert kept > 5 and not any(p.rest for p in pieces[:-1])
+    assert kept > 5 and not any(p.rest for p in segments[:-1])
     assert len(marks) == len(rows) - 2
 
 
@@ -226,26 +226,27 @@ def test_steps_of_every_size_and_reversals(seed: int) -> None:
     steps[::17] = 0.0
     steps[5::19] = -steps[4::19][: len(steps[5::19])]
     points = np.cumsum(steps, axis=0) + [0.0, 1e3, 1e5][seed % 3]
-    pieces, marks = shaped(lines(points, 0.05))
-    there, back = both_ways(pieces, points, 0.05)
-    print(f"off {there:.5f} {back:.5f}, {len(pieces)} pieces, {sum(p.rest for p in pieces)} rests")
+    segments, marks = shaped(lines(points, 0.05))
+    there, back = both_ways(segments, points, 0.05)
+    rests = sum(p.rest for p in segments)
+    print(f"off {there:.5f} {back:.5f}, {len(segments)} segments, {rests} rests")
     assert there <= 0.05 and back <= 0.05
-    assert jumps(pieces)[0] < 1e-9
+    assert jumps(segments)[0] < 1e-9
     assert len(marks) == 199
 
 
 def test_without_merging_only_corners_are_rounded() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]])
-    pieces, _ = shaped(lines(points, 0.02, 0.0))
-    assert [p.kind for p in pieces] == ["line", *(["curve", "curve", "line"] * 2)]
-    middle = pieces[2].at(np.zeros(1))[0][0, :2]
+    segments, _ = shaped(lines(points, 0.02, 0.0))
+    assert [p.kind for p in segments] == ["line", *(["curve", "curve", "line"] * 2)]
+    middle = segments[2].at(np.zeros(1))[0][0, :2]
     assert 0.95 * 0.02 < math.dist(middle, (1.0, 0.0)) <= 0.02
 
 
 def test_where_there_is_no_room_one_quintic_rounds_a_corner() -> None:
     points = np.array([[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.2, 0.1]])
-    pieces, _ = shaped(lines(points, 0.02, 0.0))
-    curves = [p for p in pieces if p.kind == "curve"]
+    segments, _ = shaped(lines(points, 0.02, 0.0))
+    curves = [p for p in segments if p.kind == "curve"]
     assert len(curves) == 2
     # two lines: the curve's middle is 0.1875 of its half length times the turn off the corner
     half = 0.5 * curves[0].length
@@ -254,7 +255,7 @@ def test_where_there_is_no_room_one_quintic_rounds_a_corner() -> None:
     assert math.dist(middle, (0.1, 0.0)) <= 0.02
 
 
-def one_quintic(turn: float, side: float, tolerance: float) -> list[Piece]:
+def one_quintic(turn: float, side: float, tolerance: float) -> list[Segment]:
     """Two lines from and to rest whose corner is cut by all of a tolerance, on the inside alone."""
     ways = np.zeros((2, 6))
     ways[:, :2] = polar(np.ones(2), np.array([0.0, turn]))
@@ -262,9 +263,9 @@ def one_quintic(turn: float, side: float, tolerance: float) -> list[Piece]:
     at = np.array([-1.0, -0.6, -0.2])[:, None] * half
     control = np.vstack([at * ways[0], -at[::-1] * ways[1]])
     return [
-        Piece("line", side - half, False, np.r_[-side * ways[0], ways[0]]),
-        Piece("curve", 2.0 * half, False, np.r_[np.zeros(6), control.ravel()]),
-        Piece("line", side - half, True, np.r_[half * ways[1], ways[1]]),
+        Segment("line", side - half, False, np.r_[-side * ways[0], ways[0]]),
+        Segment("curve", 2.0 * half, False, np.r_[np.zeros(6), control.ravel()]),
+        Segment("line", side - half, True, np.r_[half * ways[1], ways[1]]),
     ]
 
 
@@ -272,10 +273,10 @@ def one_quintic(turn: float, side: float, tolerance: float) -> list[Piece]:
 def test_a_corner_keeps_the_lower_feed(slow: int) -> None:
     rows = lines(np.array([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]), 0.02, 0.0)
     rows[slow] = rows[slow].replace(" 100 ", " 40 ")
-    pieces, _ = shaped(rows)
-    assert [p.kind for p in pieces] == ["line", "curve", "curve", "line"]
-    assert [p.feed for p in pieces[1:3]] == [40.0, 40.0]
-    assert sorted((pieces[0].feed, pieces[3].feed)) == [40.0, 100.0]
+    segments, _ = shaped(rows)
+    assert [p.kind for p in segments] == ["line", "curve", "curve", "line"]
+    assert [p.feed for p in segments[1:3]] == [40.0, 40.0]
+    assert sorted((segments[0].feed, segments[3].feed)) == [40.0, 100.0]
 
 
 @pytest.mark.parametrize(
@@ -285,24 +286,24 @@ def test_a_corner_keeps_the_lower_feed(slow: int) -> None:
 def test_a_corner_takes_the_tolerance_on_both_sides(degrees: float, part: float) -> None:
     tolerance, side, turn = 0.05, 14.0, math.radians(degrees)
     points = np.array([[-side, 0.0], [0.0, 0.0], [side * math.cos(turn), side * math.sin(turn)]])
-    pieces, _ = shaped(lines(points, tolerance, 0.0))
-    there, back = both_ways(pieces, points, tolerance)
-    curves = [p for p in pieces if p.kind == "curve"]
+    segments, _ = shaped(lines(points, tolerance, 0.0))
+    there, back = both_ways(segments, points, tolerance)
+    curves = [p for p in segments if p.kind == "curve"]
     first = curves[0].at(np.linspace(0.0, curves[0].length, 2001))[0]
     x, y = first[:, 0], first[:, 1]
     swing = (y < 0.0) | ((x > 0.0) & (x * math.sin(turn) > y * math.cos(turn)))
     outside = np.hypot(np.maximum(x, 0.0), y)[swing].max()  # off the line or its end
     inside = float(np.linalg.norm(first[-1, :2]))
     new, old = (
-        least_time(pieces, 1000.0, 100.0),
+        least_time(segments, 1000.0, 100.0),
         least_time(one_quintic(turn, side, tolerance), 1000.0, 100.0),
     )
     print(
         f"{degrees} degrees: {curves[0].length:.3f} mm, out {outside:.5f}, in {inside:.5f}, off "
         f"{there:.5f} {back:.5f} of {tolerance}, {new:.5f} s, one quintic {old:.5f} s"
     )
-    assert [p.kind for p in pieces] == ["line", "curve", "curve", "line"]
+    assert [p.kind for p in segments] == ["line", "curve", "curve", "line"]
     assert there <= tolerance and back <= tolerance
     assert 0.9 * tolerance < outside and 0.98 * tolerance < inside
-    assert max(jumps(pieces)) < 1e-8
+    assert max(jumps(segments)) < 1e-8
     assert new < part * old

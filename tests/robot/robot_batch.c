@@ -64,6 +64,6 @@ void robot_batch_moves(const struct opw *o, const double (*limits)[4], double sm
         }
         const bool good = robot_move(&robot, &c, &m, &why) == ROBOT_OK;
         robot_cycle(&robot, &c);
-        time[n] = good ? robot.mover.mix.move[0].profile.total : -1.0;
+        time[n] = good ? robot.trajectory.mix.move[0].profile.total : -1.0;
     }
 }

@@ -1,4 +1,4 @@
-/* Commands from the standard input through the shaper; pieces and marks to the standard output.
+/* Commands from the standard input through the shaper; segments and marks to the standard output.
  *
  *   merge M | start X Y Z U V W | line TOLERANCE FEED X Y Z U V W |
  *   arc TOLERANCE FEED PLANE CCW TURNS CENTRE_A CENTRE_B X Y Z U V W |
@@ -26,20 +26,20 @@ static void print_row(const double x[], int n)
 
 static void drain(void)
 {
-    const int32_t pieces = shape_count(&shape), marks = shape_marks(&shape);
+    const int32_t segments = shape_count(&shape), marks = shape_marks(&shape);
 
-    for (int32_t k = 0; k < pieces && !quiet; k++) {
-        const struct piece *p = shape_piece(&shape, k);
+    for (int32_t k = 0; k < segments && !quiet; k++) {
+        const struct segment *p = shape_segment(&shape, k);
         printf("%s %.17g %.17g %d",
-               p->kind == PIECE_CURVE  ? "curve"
-               : p->kind == PIECE_LINE ? "line"
-               : p->kind == PIECE_ARC  ? "arc"
-                                       : "cubic",
+               p->kind == SEGMENT_CURVE  ? "curve"
+               : p->kind == SEGMENT_LINE ? "line"
+               : p->kind == SEGMENT_ARC  ? "arc"
+                                         : "cubic",
                p->length, p->feed, p->rest);
-        if (p->kind == PIECE_CURVE) {
+        if (p->kind == SEGMENT_CURVE) {
             print_row(p->origin, AXES);
-            print_row(p->control[0], PIECE_POINTS * AXES);
-        } else if (p->kind == PIECE_LINE) {
+            print_row(p->control[0], SEGMENT_POINTS * AXES);
+        } else if (p->kind == SEGMENT_LINE) {
             print_row(p->start, AXES);
             print_row(p->slope, AXES);
         } else {
@@ -47,10 +47,10 @@ static void drain(void)
             print_row(p->path.start, AXES);
             print_row(p->path.end, AXES);
         }
-        if (p->kind == PIECE_CUBIC) {
+        if (p->kind == SEGMENT_CUBIC) {
             print_row(p->path.bezier.inner[0], 6);
             print_row(&p->path.length, 1);
-        } else if (p->kind == PIECE_ARC) {
+        } else if (p->kind == SEGMENT_ARC) {
             print_row(p->path.centre, 2);
             printf(" %.17g %.17g %.17g %.17g %.17g %d", p->path.radius, p->path.growth,
                    p->path.angle, p->path.sweep, p->path.length, (int)p->path.plane);
@@ -61,7 +61,7 @@ static void drain(void)
         const struct shape_mark *m = shape_mark(&shape, k);
         printf("mark %.17g %d\n", m->at, (int)m->index);
     }
-    shape_drop(&shape, pieces);
+    shape_drop(&shape, segments);
     shape_drop_marks(&shape, marks);
 }
 

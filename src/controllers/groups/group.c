@@ -21,7 +21,8 @@ void groups_init(struct groups *s, const struct group_config *config,
     }
 }
 
-/* Channels that exist, that nobody has, at least one and none twice. */
+/* Whether a group may have these channels: each exists, is free and is named once; at least one
+ * is. */
 static bool channels_free(const struct groups *s, int card, const int32_t channel[AXES])
 {
     bool taken[AXES] = { false };
@@ -258,7 +259,7 @@ static void look(struct groups *s, int card, const struct pcl_card *shows, int64
                interrupt ? pcl_latency(&c->random, s->config.latency, s->config.jitter) : 0);
 }
 
-/* When a card is to be served; INT64_MAX if not at all. */
+/* Clock at which a card is to be served; INT64_MAX: never. */
 static int64_t due(const struct groups *s, int card)
 {
     const struct pcl *p = &s->card[card].pcl;

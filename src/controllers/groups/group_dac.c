@@ -18,7 +18,7 @@ static bool looped(const struct group_card *c, int channel)
            && c->command_mode[channel] == GROUP_COMMAND_VOLTAGE;
 }
 
-/* An encoder counter that closes a loop. */
+/* Whether an encoder counter closes a loop. */
 static bool counter_taken(const struct group_card *c, int encoder)
 {
     for (int i = 0; i < GROUP_DACS; i++) {

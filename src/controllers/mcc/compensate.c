@@ -20,7 +20,7 @@ bool compensate_due(const struct mcc *m)
 {
     for (int i = 0; i < AXES && !m->dry_run; i++) {
         if (m->machine.axis[i].used
-            && !comp_done(&m->comp_table[i], &m->comp[i], m->mover.pulses[i])) {
+            && !comp_done(&m->comp_table[i], &m->comp[i], m->trajectory.pulses[i])) {
             return true;
         }
     }

@@ -6,24 +6,24 @@
 /* Nothing under way and nothing to come. */
 static bool idle(const struct mcc *m)
 {
-    return !m->running && m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped
-           && !m->mover.confirming;
+    return !m->running && m->ring.count == 0 && !trajectory_busy(&m->trajectory)
+           && !m->trajectory.stopped && !m->trajectory.confirming;
 }
 
 void control_settle(struct mcc *m)
 {
-    if (mover_busy(&m->mover) || m->ring.count > 0 || m->running) {
+    if (trajectory_busy(&m->trajectory) || m->ring.count > 0 || m->running) {
         return;
     }
-    m->mover.allowed = false;
-    memcpy(m->end, m->mover.rest, sizeof m->end); /* an abort may have moved it, */
-    if (m->mover.outputs.spindle == 0.0) {
+    m->trajectory.allowed = false;
+    memcpy(m->end, m->trajectory.rest, sizeof m->end); /* an abort may have moved it, */
+    if (m->trajectory.outputs.spindle == 0.0) {
         m->program.switches.turning = 0; /* and switched these off */
     }
-    m->program.switches.told = m->mover.surface;
-    m->program.switches.coolant = m->mover.outputs.coolant;
-    m->program.switches.overrides = m->mover.overrides;
-    m->program.tools.loaded = m->mover.outputs.tool;
+    m->program.switches.told = m->trajectory.surface;
+    m->program.switches.coolant = m->trajectory.outputs.coolant;
+    m->program.switches.overrides = m->trajectory.overrides;
+    m->program.tools.loaded = m->trajectory.outputs.tool;
 }
 
 int MCC_motion_hold(struct mcc *m)
@@ -31,10 +31,10 @@ int MCC_motion_hold(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (m->mover.hold || m->mover.abort || idle(m)) {
+    if (m->trajectory.hold || m->trajectory.abort || idle(m)) {
         return MCC_HOLD_ILLEGAL;
     }
-    mover_hold(&m->mover, true);
+    trajectory_hold(&m->trajectory, true);
     return MCC_NO_ERR;
 }
 
@@ -43,10 +43,10 @@ int MCC_motion_conti(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!m->mover.hold || m->mover.abort) {
+    if (!m->trajectory.hold || m->trajectory.abort) {
         return MCC_CONTI_ILLEGAL;
     }
-    mover_hold(&m->mover, false);
+    trajectory_hold(&m->trajectory, false);
     return MCC_NO_ERR;
 }
 
@@ -55,18 +55,18 @@ int MCC_motion_abort(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (m->mover.abort || idle(m)) {
+    if (m->trajectory.abort || idle(m)) {
         return MCC_ABORT_ILLEGAL;
     }
     m->running = false;
-    mover_abort(&m->mover, &m->ring);
+    trajectory_abort(&m->trajectory, &m->ring);
     control_settle(m);
     return MCC_NO_ERR;
 }
 
 bool control_rests(const struct mcc *m)
 {
-    return idle(m) && m->queue.count == 0 && !m->mover.untold;
+    return idle(m) && m->queue.count == 0 && !m->trajectory.untold;
 }
 
 int MCC_check_stop(const struct mcc *m)
@@ -106,8 +106,8 @@ int MCC_enable_dry_run(struct mcc *m)
         return MCC_COMMAND_NOTFINISHED;
     }
     m->dry_run = true;
-    memcpy(m->dry_place, m->mover.rest, sizeof m->dry_place);
-    memcpy(m->dry_pulses, m->mover.pulses, sizeof m->dry_pulses);
+    memcpy(m->dry_place, m->trajectory.rest, sizeof m->dry_place);
+    memcpy(m->dry_pulses, m->trajectory.pulses, sizeof m->dry_pulses);
     return MCC_NO_ERR;
 }
 
@@ -124,8 +124,8 @@ int MCC_disable_dry_run(struct mcc *m)
     }
     m->dry_run = false;
     memcpy(m->end, m->dry_place, sizeof m->end);
-    memcpy(m->mover.rest, m->dry_place, sizeof m->mover.rest);
-    memcpy(m->mover.pulses, m->dry_pulses, sizeof m->mover.pulses);
+    memcpy(m->trajectory.rest, m->dry_place, sizeof m->trajectory.rest);
+    memcpy(m->trajectory.pulses, m->dry_pulses, sizeof m->trajectory.pulses);
     memcpy(m->written.place, m->dry_place, sizeof m->written.place);
     memcpy(m->written.pulses, m->dry_pulses, sizeof m->written.pulses);
     return MCC_NO_ERR;

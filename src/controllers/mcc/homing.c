@@ -16,7 +16,7 @@ int homing_set(struct mcc *m, int axis, const struct home_config *config, bool i
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (mover_ordered(&m->mover) && m->homing.state == HOMING_RUNS) {
+    if (trajectory_ordered(&m->trajectory) && m->homing.state == HOMING_RUNS) {
         return MCC_COMMAND_NOTFINISHED;
     }
     if (axis < 0 || axis >= AXES || !home_valid(config)
@@ -55,7 +55,7 @@ double homing_place(const struct mcc *m, int i, int32_t count)
 /* The axis stands: planned so, all its pulses written, and for some time at its encoder. */
 static bool rests(const struct mcc *m, int i)
 {
-    return axes_rests(&m->mover.axes, i) && m->homing.axis[i].clocks >= m->homing.settle;
+    return axes_rests(&m->trajectory.axes, i) && m->homing.axis[i].clocks >= m->homing.settle;
 }
 
 static void watch(struct mcc *m, int i, int64_t clocks)
@@ -63,8 +63,8 @@ static void watch(struct mcc *m, int i, int64_t clocks)
     struct homing_axis *x = &m->homing.axis[i];
     const int32_t moved = (int32_t)((uint32_t)m->signals.enc[i] - (uint32_t)x->still);
 
-    if (!axes_rests(&m->mover.axes, i) || m->written.pulses[i] != m->mover.pulses[i] || moved < -1
-        || moved > 1) {
+    if (!axes_rests(&m->trajectory.axes, i) || m->written.pulses[i] != m->trajectory.pulses[i]
+        || moved < -1 || moved > 1) {
         x->still = m->signals.enc[i];
         x->clocks = 0;
     } else {
@@ -77,7 +77,7 @@ static struct home_inputs inputs(const struct mcc *m, int i)
     const struct homing_axis *x = &m->homing.axis[i];
     double place, speed;
 
-    axes_state(&m->mover.axes, i, &place, &speed);
+    axes_state(&m->trajectory.axes, i, &place, &speed);
     return (struct home_inputs){ .sensor = (m->signals.home >> i & 1) != 0,
                                  .upper = (m->signals.upper >> i & 1) != 0,
                                  .lower = (m->signals.lower >> i & 1) != 0,
@@ -92,7 +92,7 @@ static struct home_inputs inputs(const struct mcc *m, int i)
 static void obey(struct mcc *m, int i, const struct home_order *o)
 {
     struct homing_axis *x = &m->homing.axis[i];
-    struct axes *axes = &m->mover.axes;
+    struct axes *axes = &m->trajectory.axes;
     struct axes_limits l = machine_axis_limits(&m->machine, i, x->config.high_speed);
 
     if (o->arm) {
@@ -164,7 +164,7 @@ int MCC_go_home(struct mcc *m, const int32_t order[AXES])
     if (bad) {
         return bad;
     }
-    if (mover_ordered(&m->mover)) {
+    if (trajectory_ordered(&m->trajectory)) {
         return MCC_COMMAND_NOTFINISHED;
     }
     if (m->dry_run) {
@@ -185,7 +185,7 @@ int MCC_go_home(struct mcc *m, const int32_t order[AXES])
 int MCC_check_homef(const struct mcc *m)
 {
     switch (m->homing.state) {
-    case HOMING_RUNS:   return mover_ordered(&m->mover) ? 0 : MCC_HOME_COMMAND_NOTCALLED;
+    case HOMING_RUNS:   return trajectory_ordered(&m->trajectory) ? 0 : MCC_HOME_COMMAND_NOTCALLED;
     case HOMING_DONE:   return 1;
     case HOMING_FAILED: return MCC_RUN_TIME;
     default:            return MCC_HOME_COMMAND_NOTCALLED;
@@ -196,23 +196,23 @@ static void fail(struct mcc *m, int i, enum home_fault fault)
 {
     m->error = MCC_ERROR_HOME + 16 * (int32_t)fault + i + 1;
     m->homing.state = HOMING_FAILED;
-    mover_abort(&m->mover, &m->ring);
+    trajectory_abort(&m->trajectory, &m->ring);
     control_settle(m);
 }
 
 /* All axes stand at their origins, every point is written: here is 0 from now on. */
 static void set_origin(struct mcc *m)
 {
-    mover_bind(&m->mover);
-    memcpy(m->end, m->mover.rest, sizeof m->end);
+    trajectory_bind(&m->trajectory);
+    memcpy(m->end, m->trajectory.rest, sizeof m->end);
     for (int i = 0; i < AXES; i++) {
         struct homing_axis *x = &m->homing.axis[i];
         if (m->homing.order[i] > 0) {
-            const uint32_t counts = (uint32_t)m->mover.pulses[i];
+            const uint32_t counts = (uint32_t)m->trajectory.pulses[i];
             x->zero = (int32_t)((uint32_t)x->zero + (x->inverted ? 0u - counts : counts));
-            m->protection.base[i] -= m->mover.pulses[i];
-            m->mover.pulses[i] = m->written.pulses[i] = 0;
-            m->mover.rest[i] = m->written.place[i] = m->end[i] = 0.0;
+            m->protection.base[i] -= m->trajectory.pulses[i];
+            m->trajectory.pulses[i] = m->written.pulses[i] = 0;
+            m->trajectory.rest[i] = m->written.place[i] = m->end[i] = 0.0;
         }
     }
     m->homing.state = HOMING_DONE;
@@ -223,7 +223,7 @@ void homing_look(struct mcc *m, int64_t clocks)
     struct homing *h = &m->homing;
     bool done = true;
 
-    if (!mover_ordered(&m->mover) || m->mover.abort || h->state != HOMING_RUNS) {
+    if (!trajectory_ordered(&m->trajectory) || m->trajectory.abort || h->state != HOMING_RUNS) {
         return;
     }
     for (int i = 0; i < AXES; i++) {

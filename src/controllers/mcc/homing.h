@@ -1,5 +1,5 @@
 /* homing - the axes' search of their origins: the state machine of `home` for each axis, wired to
- * the axes mover, the card's signals and its index latch. The calls stand in mcc.h.
+ * the trajectory's axes, the card's signals and its index latch. The calls stand in mcc.h.
  *
  * Places are those of the encoder, in mm of the library: the library and the card begin with their
  * counters at zero. So what a search finds does not depend on how far the axis lags behind.
@@ -19,7 +19,7 @@ struct homing_axis {
     bool inverted;             /* the encoder counts down when the axis moves up */
     int32_t zero;              /* [counts] of the encoder where the axis is at 0 */
     struct home home;
-    struct home_order order; /* that the mover has */
+    struct home_order order; /* the one that the trajectory's axis follows */
     int32_t latched;         /* the card's number of latches when armed last */
     int32_t still;           /* [counts] the encoder has stood within a count of here ... */
     int64_t clocks;          /* [clocks] for so long, all pulses being written */

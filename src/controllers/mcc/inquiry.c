@@ -18,8 +18,8 @@ int inquiry_set_place(struct mcc *m, enum inquiry_place place)
 /* All commands so far have ended and the card has taken their points. */
 static bool ended(const struct mcc *m)
 {
-    return m->ring.count == 0 && !mover_busy(&m->mover) && !m->mover.stopped && !m->mover.confirming
-           && !m->mover.untold && m->queue.count == 0;
+    return m->ring.count == 0 && !trajectory_busy(&m->trajectory) && !m->trajectory.stopped
+           && !m->trajectory.confirming && !m->trajectory.untold && m->queue.count == 0;
 }
 
 static double value_of(const struct signals *s, const struct waiting *w)
@@ -92,7 +92,7 @@ static double place_of(const struct mcc *m, int i)
     const double scale = machine_pulses_per_mm(&m->machine.axis[i]);
 
     if (!m->machine.axis[i].used) {
-        return m->mover.rest[i];
+        return m->trajectory.rest[i];
     }
     if (m->inquiry.place == INQUIRY_PULSES) {
         return reaction_put_out(m, i) / scale;
@@ -105,31 +105,31 @@ static void probe(struct mcc *m, int64_t clocks)
 {
     struct inquiry *q = &m->inquiry;
 
-    if (!q->touched && contact(m) && m->mover.started == m->commands) {
+    if (!q->touched && contact(m) && m->trajectory.started == m->commands) {
         q->touched = true;
         for (int i = 0; i < AXES; i++) {
             q->contact[i] = place_of(m, i);
         }
-        mover_leave(&m->mover, &m->ring);
+        trajectory_leave(&m->trajectory, &m->ring);
     }
     if (!ended(m) || !reaction_arrived(m)) {
         return;
     }
     q->clocks += clocks; /* the axes are still behind their pulses */
     if (q->touched) {
-        waiting_probed(&m->program, q->contact, m->mover.rest, true);
+        waiting_probed(&m->program, q->contact, m->trajectory.rest, true);
     } else if (q->clocks >= m->homing.settle) {
         if (m->program.wait.must && !m->dry_run) {
             reaction_stop(m, MCC_ERROR_PROBE_END);
         } else {
-            waiting_probed(&m->program, m->mover.rest, m->mover.rest, false);
+            waiting_probed(&m->program, m->trajectory.rest, m->trajectory.rest, false);
         }
     }
 }
 
 void inquiry_look(struct mcc *m, int64_t clocks)
 {
-    const bool asked = m->running && !m->mover.abort && waiting_now(&m->program);
+    const bool asked = m->running && !m->trajectory.abort && waiting_now(&m->program);
 
     if (asked && m->program.wait.kind == WAIT_PROBE) {
         probe(m, clocks);

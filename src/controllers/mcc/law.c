@@ -65,8 +65,8 @@ static void turn(double v[3], const double a[3], const double b[3])
 }
 
 /* W(e) n: the speed [mm/s] of X Y Z that brings the tool back to the path. */
-static void cross_coupled(const struct law_config *c, struct law *s, const struct trail_foot *foot,
-                          double speed[3])
+static void cross_coupled(const struct law_config *c, struct law *s,
+                          const struct commanded_path_foot *foot, double speed[3])
 {
     double before[3];
     const bool both =

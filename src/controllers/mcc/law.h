@@ -9,7 +9,7 @@
 #ifndef LAW_H
 #define LAW_H
 
-#include "trail.h"
+#include "commanded_path.h"
 
 struct law_axis {
     bool on;             /* a voltage is wanted */
@@ -28,19 +28,19 @@ struct law_config {
 
 /* What the law sees at an instant. */
 struct law_look {
-    int32_t pulses[AXES];   /* [pulses] put out */
-    int32_t error[AXES];    /* [pulses] less counts, at the instant before */
-    double speed[AXES];     /* [pulses/s] of the commanded point */
-    struct trail_foot foot; /* for cross-coupled control */
+    int32_t pulses[AXES];            /* [pulses] put out */
+    int32_t error[AXES];             /* [pulses] less counts, at the instant before */
+    double speed[AXES];              /* [pulses/s] of the commanded point */
+    struct commanded_path_foot foot; /* for cross-coupled control */
 };
 
 struct law {
     bool begun;
-    int32_t pulses[AXES];   /* at the instant before */
-    double behind[AXES];    /* [pulses] c - F(c) */
-    double speed[AXES];     /* [pulses/s] F(c') */
-    struct trail_foot foot; /* at the instant before */
-    double sum[3];          /* [mm s] of the contour error, across the path */
+    int32_t pulses[AXES];            /* at the instant before */
+    double behind[AXES];             /* [pulses] c - F(c) */
+    double speed[AXES];              /* [pulses/s] F(c') */
+    struct commanded_path_foot foot; /* at the instant before */
+    double sum[3];                   /* [mm s] of the contour error, across the path */
 };
 
 /* Voltages of the axes that are on, within +-limit [V]; the others stay as they are. */

@@ -154,9 +154,9 @@ struct motion_limits machine_limits(const struct machine *m)
                                    .down = rule(m, m->dec_type, m->dec_time) };
 }
 
-struct pace_limits machine_pace(const struct machine *m)
+struct speed_limits machine_speed_limits(const struct machine *m)
 {
-    struct pace_limits l = { .acc = { 0.0 } };
+    struct speed_limits l = { .acc = { 0.0 } };
 
     for (int i = 0; i < AXES; i++) {
         const struct machine_axis *a = &m->axis[i];

@@ -4,7 +4,7 @@
 
 #include "axes.h"
 #include "command.h"
-#include "pace.h"
+#include "speed_profile.h"
 
 enum { CLOCK_HZ = 40000000, CLOCK_NS = 1000000000 / CLOCK_HZ }; /* clock of the card */
 
@@ -106,7 +106,7 @@ struct mechanism machine_mechanism(const struct machine *m);
 struct motion_limits machine_limits(const struct machine *m);
 
 /* What each axis keeps to on a curve. */
-struct pace_limits machine_pace(const struct machine *m);
+struct speed_limits machine_speed_limits(const struct machine *m);
 
 /* Limits of an axis that moves for itself at a speed [mm/s]. */
 struct axes_limits machine_axis_limits(const struct machine *m, int axis, double speed);

@@ -96,22 +96,22 @@ int MCC_get_ptp_asyn_dec_step(const struct mcc *m, double ms[AXES])
 
 int manual_allowed(const struct mcc *m)
 {
-    return !m->open         ? MCC_INITIAL_MOTION
-           : m->error       ? MCC_RUN_TIME
-           : m->mover.abort ? MCC_ABORT_NOT_FINISH
-           : m->running || m->ring.count || m->mover.stopped || m->mover.confirming
-                   || (mover_ordered(&m->mover) ? m->homing.state == HOMING_RUNS
-                                                : mover_busy(&m->mover))
+    return !m->open              ? MCC_INITIAL_MOTION
+           : m->error            ? MCC_RUN_TIME
+           : m->trajectory.abort ? MCC_ABORT_NOT_FINISH
+           : m->running || m->ring.count || m->trajectory.stopped || m->trajectory.confirming
+                   || (trajectory_ordered(&m->trajectory) ? m->homing.state == HOMING_RUNS
+                                                          : trajectory_busy(&m->trajectory))
                ? MCC_COMMAND_NOTFINISHED
                : MCC_NO_ERR;
 }
 
 void manual_use(struct mcc *m, int axis, enum manual_use use)
 {
-    if (!mover_ordered(&m->mover)) {
+    if (!trajectory_ordered(&m->trajectory)) {
         memset(&m->manual, 0, sizeof m->manual);
         const struct mechanism machine = machine_mechanism(&m->machine);
-        mover_order(&m->mover, &machine);
+        trajectory_order(&m->trajectory, &machine);
         if (m->homing.state == HOMING_RUNS) {
             m->homing.state = HOMING_NEVER; /* an abort has dropped that search */
         }
@@ -121,16 +121,16 @@ void manual_use(struct mcc *m, int axis, enum manual_use use)
 
 static enum manual_use use_of(const struct mcc *m, int axis)
 {
-    return mover_ordered(&m->mover) ? m->manual.axis[axis].use : MANUAL_NONE;
+    return trajectory_ordered(&m->trajectory) ? m->manual.axis[axis].use : MANUAL_NONE;
 }
 
 static double place_of(const struct mcc *m, int axis)
 {
     double place, speed;
-    if (!mover_ordered(&m->mover)) {
-        return m->mover.rest[axis];
+    if (!trajectory_ordered(&m->trajectory)) {
+        return m->trajectory.rest[axis];
     }
-    axes_state(&m->mover.axes, axis, &place, &speed);
+    axes_state(&m->trajectory.axes, axis, &place, &speed);
     return place;
 }
 
@@ -181,13 +181,13 @@ int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
     }
     if (direction == 0) {
         if (use_of(m, axis) == MANUAL_JOG) {
-            axes_stand(&m->mover.axes, axis);
+            axes_stand(&m->trajectory.axes, axis);
         }
         return MCC_NO_ERR;
     }
     manual_use(m, axis, MANUAL_JOG);
     const struct axes_limits l = jog_limits(m, axis, percent);
-    axes_run(&m->mover.axes, axis, direction * l.speed, &l);
+    axes_run(&m->trajectory.axes, axis, direction * l.speed, &l);
     return MCC_NO_ERR;
 }
 
@@ -202,7 +202,7 @@ static int step(struct mcc *m, int axis, double target, const struct axes_limits
         return MCC_COMMAND_NOTFINISHED;
     }
     manual_use(m, axis, MANUAL_JOG);
-    axes_go(&m->mover.axes, axis, target, l);
+    axes_go(&m->trajectory.axes, axis, target, l);
     return MCC_NO_ERR;
 }
 
@@ -275,7 +275,7 @@ int MCC_MPG_disable(struct mcc *m)
     for (int i = 0; i < AXES; i++) {
         if (use_of(m, i) == MANUAL_WHEEL) {
             m->manual.axis[i].use = MANUAL_JOG;
-            axes_stand(&m->mover.axes, i);
+            axes_stand(&m->trajectory.axes, i);
         }
     }
     return MCC_NO_ERR;
@@ -302,13 +302,13 @@ static void follow(struct mcc *m, int axis)
     const double want = round(w->base + w->ratio * (double)w->turned);
     const double target = el_max(-COMMAND_PULSES_MAX, el_min(COMMAND_PULSES_MAX, want)) / scale;
     if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
-        axes_stand(&m->mover.axes, axis);
+        axes_stand(&m->trajectory.axes, axis);
         rebase(m, axis);
-    } else if (m->mover.axes.axis[axis].order != AXES_GO
-               || m->mover.axes.axis[axis].goal != target) {
+    } else if (m->trajectory.axes.axis[axis].order != AXES_GO
+               || m->trajectory.axes.axis[axis].goal != target) {
         const struct axes_limits l =
             machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
-        axes_go(&m->mover.axes, axis, target, &l);
+        axes_go(&m->trajectory.axes, axis, target, &l);
     }
 }
 
@@ -316,17 +316,17 @@ static void follow(struct mcc *m, int axis)
 static void guard(struct mcc *m, int axis)
 {
     double place, speed;
-    axes_state(&m->mover.axes, axis, &place, &speed);
+    axes_state(&m->trajectory.axes, axis, &place, &speed);
     const bool far = fabs(pulses_of(m, axis)) > COMMAND_PULSES_MAX && speed * place > 0.0;
-    if (m->mover.axes.axis[axis].order != AXES_STAND && speed != 0.0
+    if (m->trajectory.axes.axis[axis].order != AXES_STAND && speed != 0.0
         && (far || on_limit(m, axis, speed))) {
-        axes_stand(&m->mover.axes, axis);
+        axes_stand(&m->trajectory.axes, axis);
     }
 }
 
 void manual_look(struct mcc *m)
 {
-    if (!mover_ordered(&m->mover) || m->mover.abort) {
+    if (!trajectory_ordered(&m->trajectory) || m->trajectory.abort) {
         return;
     }
     for (int i = 0; i < AXES; i++) {
@@ -342,18 +342,18 @@ void manual_end(struct mcc *m)
 {
     bool used = false;
 
-    if (!mover_ordered(&m->mover)) {
+    if (!trajectory_ordered(&m->trajectory)) {
         return;
     }
     for (int i = 0; i < AXES; i++) {
         struct manual_axis *a = &m->manual.axis[i];
-        if (a->use == MANUAL_JOG && axes_done(&m->mover.axes, i)) {
+        if (a->use == MANUAL_JOG && axes_done(&m->trajectory.axes, i)) {
             a->use = MANUAL_NONE;
         }
         used = used || a->use != MANUAL_NONE;
     }
     if (!used) {
-        mover_bind(&m->mover);
-        memcpy(m->end, m->mover.rest, sizeof m->end);
+        trajectory_bind(&m->trajectory);
+        memcpy(m->end, m->trajectory.rest, sizeof m->end);
     }
 }

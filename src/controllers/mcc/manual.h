@@ -1,6 +1,6 @@
 /* manual - axes moved by hand, one by one: jog and hand wheel. The calls stand in mcc.h.
  *
- * While an axis is in use here, or in homing, commands are refused and the mover's axes follow
+ * While an axis is in use here, or in homing, commands are refused and the trajectory's axes follow
  * orders.
  */
 #ifndef MANUAL_H

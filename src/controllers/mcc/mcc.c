@@ -10,7 +10,7 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     }
     memset(m, 0, sizeof *m);
     m->machine = *machine;
-    m->curve_plan.limits = machine_pace(machine);
+    m->curve_plan.limits = machine_speed_limits(machine);
     for (int i = 0; i < AXES; i++) {
         if (m->machine.axis[i].max_dda == 0) {
             m->machine.axis[i].max_dda = machine_dda_limit(machine);
@@ -25,8 +25,8 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     machine_complete_asyn(&m->machine);
     m->cart_max_speed = machine->max_feed;
     m->feed = machine->feed;
-    mover_start(&m->mover);
-    m->mover.confirm = guard_watched(&m->machine) != 0;
+    trajectory_start(&m->trajectory);
+    m->trajectory.confirm = guard_watched(&m->machine) != 0;
     m->open = true;
     return MCC_NO_ERR;
 }
@@ -51,12 +51,12 @@ int MCC_get_errcode(const struct mcc *m)
 /* Whether a motion call can be taken now. */
 static int acceptable(const struct mcc *m)
 {
-    return !m->open                                 ? MCC_INITIAL_MOTION
-           : m->error                               ? MCC_RUN_TIME
-           : m->mover.abort                         ? MCC_ABORT_NOT_FINISH
-           : m->running || mover_ordered(&m->mover) ? MCC_COMMAND_NOTACCEPTED
-           : ring_full(&m->ring)                    ? MCC_COMMAND_BUFFER_FULL
-                                                    : MCC_NO_ERR;
+    return !m->open                                           ? MCC_INITIAL_MOTION
+           : m->error                                         ? MCC_RUN_TIME
+           : m->trajectory.abort                              ? MCC_ABORT_NOT_FINISH
+           : m->running || trajectory_ordered(&m->trajectory) ? MCC_COMMAND_NOTACCEPTED
+           : ring_full(&m->ring)                              ? MCC_COMMAND_BUFFER_FULL
+                                                              : MCC_NO_ERR;
 }
 
 /* A target of the user in machine coordinates; false if it is no number. */

@@ -13,7 +13,7 @@
 #include "comp.h"
 #include "interpreter.h"
 #include "manual.h"
-#include "mover.h"
+#include "trajectory.h"
 #include "signals.h"
 
 /* Return codes of the library that occur here. */
@@ -113,8 +113,8 @@ struct mcc {
     bool running;     /* the part program has lines to come */
     struct interpreter program;
     struct ring ring;
-    struct mover mover;
-    struct track_mean mean;
+    struct trajectory trajectory;
+    struct lookahead_mean mean;
     struct curve_plan curve_plan;
     struct queue queue;
     struct point written;   /* the latest point the card took */
@@ -132,10 +132,10 @@ struct mcc {
     double cart_max_speed;                 /* [mm/s] likewise */
 };
 
-/* What the mover of a library uses. */
-static inline struct mover_beside mcc_beside(struct mcc *m)
+/* What a library's trajectory uses beside itself. */
+static inline struct trajectory_beside mcc_beside(struct mcc *m)
 {
-    const struct mover_beside beside = { &m->ring, &m->mean, &m->curve_plan };
+    const struct trajectory_beside beside = { &m->ring, &m->mean, &m->curve_plan };
     return beside;
 }
 

@@ -98,19 +98,19 @@ static void set_homing(struct homing_axis *x, const MCC_MACH_PARAM *p, bool turn
 static void keep_place(struct mcc *m, int i, const struct machine_axis *new)
 {
     const struct machine_axis *old = &m->machine.axis[i];
-    double place = m->mover.rest[i];
+    double place = m->trajectory.rest[i];
 
     if (new->inverted != old->inverted) {
-        m->mover.pulses[i] = -m->mover.pulses[i];
+        m->trajectory.pulses[i] = -m->trajectory.pulses[i];
         m->protection.base[i] = -m->protection.base[i];
         place = -place;
         m->comp[i] = (struct comp){ -m->comp[i].added, !m->comp[i].backward };
     }
     if (machine_pulses_per_mm(new) != machine_pulses_per_mm(old)) {
-        place = m->mover.pulses[i] / machine_pulses_per_mm(new);
+        place = m->trajectory.pulses[i] / machine_pulses_per_mm(new);
     }
-    m->mover.rest[i] = m->end[i] = m->written.place[i] = place;
-    m->written.pulses[i] = m->mover.pulses[i];
+    m->trajectory.rest[i] = m->end[i] = m->written.place[i] = place;
+    m->written.pulses[i] = m->trajectory.pulses[i];
     m->written.added[i] = m->comp[i].added;
 }
 
@@ -138,7 +138,7 @@ int MCC_update_param(struct mcc *m)
                    w.axis[i].inverted != m->machine.axis[i].inverted, &w.axis[i]);
     }
     m->machine = w;
-    m->curve_plan.limits = machine_pace(&w);
+    m->curve_plan.limits = machine_speed_limits(&w);
     m->signals = signals_turned(&card, &w);
     return MCC_NO_ERR;
 }

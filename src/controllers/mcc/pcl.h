@@ -19,9 +19,9 @@ enum {
     PCL_REFUSALS = 3 /* wholly refused transactions in a row that no full FIFO explains */
 };
 
-/* What one library has in a transaction. */
+/* The part of one library in a transaction. */
 struct pcl_part {
-    int32_t points; /* frames from its queue; the others are standstill */
+    int32_t points; /* number of frames from its queue; the others are standstill */
     bool late;      /* in the middle of a motion */
 };
 
@@ -97,7 +97,7 @@ int64_t pcl_due(const struct pcl *p);
 /* The FIFO's page has its turn: the services that wait are due. */
 void pcl_turn(struct pcl *p, int64_t clock);
 
-/* Serve: take the points there are. */
+/* Serve an interrupt: take the points that the queue has. */
 void pcl_take(struct pcl *p, const struct mcc *m);
 
 /* The same for several libraries: so many frames of standstill; then the points of each, its axes

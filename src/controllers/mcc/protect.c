@@ -70,7 +70,7 @@ static int set_in_pos(struct mcc *m, int axes, bool on)
         bool *in_pos = &m->machine.axis[i].in_pos;
         *in_pos = axes >> i & 1 ? on : *in_pos;
     }
-    m->mover.confirm = guard_watched(&m->machine) != 0;
+    m->trajectory.confirm = guard_watched(&m->machine) != 0;
     return MCC_NO_ERR;
 }
 

@@ -15,7 +15,7 @@ static const int64_t OUTSIDE = -1; /* of `settled`: not within the tolerance */
 static bool frame(const struct mcc *m, struct point *p)
 {
     for (int i = 0; i < AXES; i++) {
-        const int64_t pulses = (int64_t)p->pulses[i] - m->mover.pulses[i];
+        const int64_t pulses = (int64_t)p->pulses[i] - m->trajectory.pulses[i];
         if (llabs(pulses) > m->machine.axis[i].max_dda) {
             return false;
         }
@@ -40,7 +40,7 @@ static int32_t blocked(const struct mcc *m, const struct point *from, const stru
 /* Software limits count from the origin that homing looks for, and it meets limit switches. */
 static bool homing(const struct mcc *m)
 {
-    return mover_ordered(&m->mover) && m->homing.state == HOMING_RUNS;
+    return trajectory_ordered(&m->trajectory) && m->homing.state == HOMING_RUNS;
 }
 
 /* Whether a point keeps within travel and switches; else *error as of reaction_point. */
@@ -52,10 +52,11 @@ static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
     int axis = -1;
 
     if (mechanism_bounded(machine)) {
-        axis = mechanism_outside(machine, m->mover.pulses, p->pulses);
-        const struct mover_beside beside = mcc_beside(m);
-        axis = axis >= 0 ? axis
-                         : reach_beyond(&m->mover, &beside, machine, machine_dda_time(&m->machine));
+        axis = mechanism_outside(machine, m->trajectory.pulses, p->pulses);
+        const struct trajectory_beside beside = mcc_beside(m);
+        axis = axis >= 0
+                   ? axis
+                   : reach_beyond(&m->trajectory, &beside, machine, machine_dda_time(&m->machine));
     }
     *error = MCC_ERROR_TRAVEL + axis;
     if (axis < 0 && !ramping) {
@@ -90,9 +91,9 @@ void reaction_stop(struct mcc *m, int32_t error)
     m->error = again ? m->error : error;
     m->running = false;
     if (again) {
-        mover_stop(&m->mover, &m->ring);
+        trajectory_stop(&m->trajectory, &m->ring);
     } else {
-        mover_abort(&m->mover, &m->ring);
+        trajectory_abort(&m->trajectory, &m->ring);
     }
     control_settle(m);
 }
@@ -109,9 +110,9 @@ static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
 
     m->error = m->error ? m->error : error;
     m->running = false;
-    mover_stop(&m->mover, &m->ring);
-    memcpy(m->mover.pulses, last->pulses, sizeof m->mover.pulses);
-    memcpy(m->mover.rest, last->place, sizeof m->mover.rest);
+    trajectory_stop(&m->trajectory, &m->ring);
+    memcpy(m->trajectory.pulses, last->pulses, sizeof m->trajectory.pulses);
+    memcpy(m->trajectory.rest, last->place, sizeof m->trajectory.rest);
     for (int i = 0; i < AXES; i++) {
         m->comp[i].added = last->added[i];
     }
@@ -132,7 +133,7 @@ static void follow(struct mcc *m)
 
     for (int i = 0; i < AXES; i++) {
         if (m->machine.axis[i].used) {
-            w->pulses[i] = m->mover.pulses[i] = reaction_put_out(m, i);
+            w->pulses[i] = m->trajectory.pulses[i] = reaction_put_out(m, i);
             w->place[i] = w->pulses[i] / machine_pulses_per_mm(&m->machine.axis[i]);
         }
         w->frame[i] = 0;
@@ -140,7 +141,7 @@ static void follow(struct mcc *m)
     }
     w->feed = 0.0;
     w->waits = false;
-    memcpy(m->mover.rest, w->place, sizeof m->mover.rest);
+    memcpy(m->trajectory.rest, w->place, sizeof m->trajectory.rest);
     memcpy(m->end, w->place, sizeof m->end);
 }
 
@@ -148,10 +149,10 @@ static void emergency(struct mcc *m)
 {
     m->error = MCC_ERROR_STOP;
     m->running = false;
-    mover_stop(&m->mover, &m->ring);
+    trajectory_stop(&m->trajectory, &m->ring);
     queue_clear(&m->queue);
-    m->written.outputs = m->mover.outputs; /* off now, not with a point */
-    m->mover.untold = false;
+    m->written.outputs = m->trajectory.outputs; /* off now, not with a point */
+    m->trajectory.untold = false;
 }
 
 static void note_pulses(struct mcc *m, int64_t clocks)
@@ -167,7 +168,7 @@ static void note_pulses(struct mcc *m, int64_t clocks)
 
 bool reaction_arrived(const struct mcc *m)
 {
-    bool all = m->queue.count == 0 && !mover_busy(&m->mover);
+    bool all = m->queue.count == 0 && !trajectory_busy(&m->trajectory);
     for (int i = 0; i < AXES && !m->dry_run; i++) {
         all = all && (!m->machine.axis[i].used || m->written.pulses[i] == reaction_put_out(m, i));
     }
@@ -198,11 +199,11 @@ static void confirm(struct mcc *m, int64_t clocks)
     const double timeout = machine->inpos_timeout * CLOCK_HZ;
     const bool late = timeout > 0.0 && (double)p->waited >= timeout;
     if (p->settled != OUTSIDE && (double)p->settled >= settle) {
-        m->mover.confirming = false;
+        m->trajectory.confirming = false;
     } else if (late && (mode == MACHINE_INPOS_ONCE_BLOCK || mode == MACHINE_INPOS_SETTLE_BLOCK)) {
         reaction_stop(m, MCC_ERROR_IN_POS);
     } else if (late) {
-        m->mover.confirming = false;
+        m->trajectory.confirming = false;
     }
 }
 
@@ -225,13 +226,13 @@ void reaction_look(struct mcc *m, const struct reaction_look *l)
     if (axis >= 0 && !m->error) {
         reaction_stop(m, MCC_ERROR_TRACK + axis);
     }
-    if (!m->error && !m->mover.abort && !homing(m) && m->queue.count > 0) {
+    if (!m->error && !m->trajectory.abort && !homing(m) && m->queue.count > 0) {
         const int32_t error = blocked(m, &m->written, queue_peek(&m->queue, 0), &axis);
         if (axis >= 0) {
             reaction_stop(m, error); /* the newest points may go another way */
         }
     }
-    if (m->mover.confirming) {
+    if (m->trajectory.confirming) {
         confirm(m, l->clocks);
     }
     inquiry_look(m, l->clocks);

@@ -20,9 +20,9 @@
 
 #include "mcc.h"
 
-/* Complete a point with its frame; m->mover is there, `ramping` if an abort has brought it. False
- * if it must not be queued: then *error is the run-time error to raise, 0 for a stop without one.
- * The machine is that of m. */
+/* Complete a point, where m->trajectory is, with its frame; `ramping`: an abort has led there.
+ * False: it must not be queued, and *error is the run-time error to raise, 0 for a stop without
+ * one. The machine is that of m. */
 bool reaction_point(struct mcc *m, const struct mechanism *machine, bool ramping, struct point *p,
                     int32_t *error);
 

@@ -204,12 +204,12 @@ static int set_override(struct mcc *m, double percent, bool ptp)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    const double *now = m->mover.override;
+    const double *now = m->trajectory.override;
     const double ratio = percent / 100.0;
     if (!(ratio == 0.0 || (machine_positive(ratio) && ratio <= 2.0))) {
         return MCC_PARAMETER;
     }
-    mover_override(&m->mover, ptp ? now[0] : ratio, ptp ? ratio : now[1]);
+    trajectory_override(&m->trajectory, ptp ? now[0] : ratio, ptp ? ratio : now[1]);
     return MCC_NO_ERR;
 }
 
@@ -220,7 +220,7 @@ int MCC_set_over_spd(struct mcc *m, double percent)
 
 double MCC_get_over_spd(const struct mcc *m)
 {
-    return m->mover.override[0] * 100.0;
+    return m->trajectory.override[0] * 100.0;
 }
 
 int MCC_set_ptp_ospd(struct mcc *m, double percent)
@@ -230,7 +230,7 @@ int MCC_set_ptp_ospd(struct mcc *m, double percent)
 
 double MCC_get_ptp_ospd(const struct mcc *m)
 {
-    return m->mover.override[1] * 100.0;
+    return m->trajectory.override[1] * 100.0;
 }
 
 int MCC_set_P_gain(struct mcc *m, const int32_t gain[AXES])

@@ -72,12 +72,12 @@ int task_start(struct mcc *m)
     if (m->error) {
         return MCC_RUN_TIME;
     }
-    if (m->running || m->mover.abort || mover_ordered(&m->mover)) {
+    if (m->running || m->trajectory.abort || trajectory_ordered(&m->trajectory)) {
         return MCC_COMMAND_NOTACCEPTED;
     }
     begin(m, &m->program);
     m->running = true;
-    mover_allow(&m->mover);
+    trajectory_allow(&m->trajectory);
     return MCC_NO_ERR;
 }
 
@@ -123,8 +123,8 @@ int task_set_single_block(struct mcc *m, bool on)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    const struct mover_beside beside = mcc_beside(m);
-    mover_single(&m->mover, &beside, on);
+    const struct trajectory_beside beside = mcc_beside(m);
+    trajectory_single(&m->trajectory, &beside, on);
     return MCC_NO_ERR;
 }
 
@@ -133,10 +133,10 @@ int task_continue(struct mcc *m)
     if (!m->open) {
         return MCC_INITIAL_MOTION;
     }
-    if (!mover_waits(&m->mover, &m->ring) || m->mover.untold || m->queue.count > 0) {
+    if (!trajectory_waits(&m->trajectory, &m->ring) || m->trajectory.untold || m->queue.count > 0) {
         return MCC_CONTI_ILLEGAL;
     }
-    mover_continue(&m->mover);
+    trajectory_continue(&m->trajectory);
     return MCC_NO_ERR;
 }
 
@@ -211,34 +211,35 @@ int task_read_all(struct mcc *m, const struct source *s)
 bool task_can_point(const struct mcc *m)
 {
     return works(m) && m->queue.count < m->machine.queue_depth
-           && (m->mover.untold || compensate_due(m) || !mover_resting(&m->mover, &m->ring));
+           && (m->trajectory.untold || compensate_due(m)
+               || !trajectory_resting(&m->trajectory, &m->ring));
 }
 
 int task_point(struct mcc *m, const struct source *s)
 {
     const struct mechanism machine = machine_mechanism(&m->machine);
     const double frame = machine_dda_time(&m->machine);
-    const struct mover before = m->mover;
+    const struct trajectory before = m->trajectory;
     const int32_t head = m->ring.head, count = m->ring.count;
     struct point point;
     int32_t error;
-    const struct mover_beside beside = mcc_beside(m);
+    const struct trajectory_beside beside = mcc_beside(m);
     double left = frame;
     int made = 0;
 
     do {
-        left = mover_advance(&m->mover, &beside, left);
+        left = trajectory_advance(&m->trajectory, &beside, left);
         made += s ? refill(m, s, head) : 0;
-    } while (left > 0.0 && !mover_resting(&m->mover, &m->ring));
-    mover_point(&m->mover, &beside, &machine, frame, &point);
+    } while (left > 0.0 && !trajectory_resting(&m->trajectory, &m->ring));
+    trajectory_point(&m->trajectory, &beside, &machine, frame, &point);
     if (!reaction_point(m, &machine, before.abort, &point, &error)) {
-        m->mover = before;
+        m->trajectory = before;
         m->ring.head = head;
         m->ring.count = count;
         reaction_stop(m, error);
         return made;
     }
-    mover_accept(&m->mover, &beside, &point);
+    trajectory_accept(&m->trajectory, &beside, &point);
     queue_push(&m->queue, &point);
     return made;
 }
@@ -248,7 +249,7 @@ void task_settle(struct mcc *m)
     if (!works(m)) {
         return;
     }
-    if (mover_resting(&m->mover, &m->ring) && !compensate_due(m)) {
+    if (trajectory_resting(&m->trajectory, &m->ring) && !compensate_due(m)) {
         memset(m->protection.frame, 0, sizeof m->protection.frame);
     }
     control_settle(m);
@@ -266,7 +267,7 @@ void task_run(struct mcc *m, const struct source *s)
 
 bool task_moving(const struct mcc *m)
 {
-    return mover_moving(&m->mover);
+    return trajectory_moving(&m->trajectory);
 }
 
 enum task_status task_status(const struct mcc *m)
@@ -274,11 +275,12 @@ enum task_status task_status(const struct mcc *m)
     if (MCC_check_stop(m)) {
         return TASK_STOPPED;
     }
-    if ((mover_held(&m->mover) || m->mover.stopped) && m->queue.count == 0 && !m->mover.untold
-        && mover_resting(&m->mover, &m->ring)) {
+    if ((trajectory_held(&m->trajectory) || m->trajectory.stopped) && m->queue.count == 0
+        && !m->trajectory.untold && trajectory_resting(&m->trajectory, &m->ring)) {
         return TASK_HOLD;
     }
-    if (mover_waits(&m->mover, &m->ring) && m->queue.count == 0 && !m->mover.untold) {
+    if (trajectory_waits(&m->trajectory, &m->ring) && m->queue.count == 0
+        && !m->trajectory.untold) {
         return TASK_BLOCK_HOLD;
     }
     return manual_wheel(m)                        ? TASK_WHEEL

@@ -8,7 +8,7 @@ static void begin_trail(struct voltage *v, const struct mcc *m)
 {
     static const double origin[3] = { 0.0 };
 
-    trail_start(&v->trail, origin);
+    commanded_path_start(&v->commanded_path, origin);
     memset(v->sum, 0, sizeof v->sum);
     memset(v->place, 0, sizeof v->place);
     memcpy(v->base, m->signals.pulses, sizeof v->base);
@@ -57,7 +57,7 @@ void voltage_follow(struct voltage *v, const struct machine *m)
 static void take(struct voltage *v, const struct mcc *m, const struct point *point)
 {
     const double dda_time = machine_dda_time(&m->machine);
-    struct trail_point p = { { 0.0 }, { 0.0 }, { 0 } };
+    struct commanded_path_point p = { { 0.0 }, { 0.0 }, { 0 } };
 
     for (int i = 0; i < AXES; i++) {
         const struct machine_axis *a = &m->machine.axis[i];
@@ -77,7 +77,7 @@ static void take(struct voltage *v, const struct mcc *m, const struct point *poi
             p.added[i] = v->added[i] - v->added_base[i];
         }
     }
-    trail_push(&v->trail, &p);
+    commanded_path_push(&v->commanded_path, &p);
 }
 
 void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part *part,
@@ -89,30 +89,31 @@ void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part
 }
 
 /* The frame being put out; an empty FIFO puts nothing out behind it. */
-static const struct trail_point *now_out(struct voltage *v, const struct mcc *m, int64_t now,
-                                         int32_t stock)
+static const struct commanded_path_point *now_out(struct voltage *v, const struct mcc *m,
+                                                  int64_t now, int32_t stock)
 {
-    const int64_t frame = v->trail.frames - stock;
+    const int64_t frame = v->commanded_path.frames - stock;
 
     if (frame != v->frame) {
         v->frame = frame;
         v->since = now;
     }
     const bool over = now - v->since > machine_dda_clocks(&m->machine);
-    return over || frame < v->trail.first ? NULL : trail_at(&v->trail, frame);
+    return over || frame < v->commanded_path.first ? NULL
+                                                   : commanded_path_at(&v->commanded_path, frame);
 }
 
 /* Pulses, errors and compensation of the instant before, when that frame was put out. */
-static struct trail_foot nearest(struct voltage *v, const struct mcc *m, int64_t frame)
+static struct commanded_path_foot nearest(struct voltage *v, const struct mcc *m, int64_t frame)
 {
-    const struct trail_point *at = trail_at(&v->trail, frame);
+    const struct commanded_path_point *at = commanded_path_at(&v->commanded_path, frame);
     double tool[3];
 
     for (int k = 0; k < 3; k++) {
         const int64_t counts = (int64_t)v->law.pulses[k] - m->signals.err[k];
         tool[k] = (double)(counts - v->base[k] - at->added[k]) / v->config.pulses_per_mm[k];
     }
-    return trail_nearest(&v->trail, tool, v->frame);
+    return commanded_path_nearest(&v->commanded_path, tool, v->frame);
 }
 
 void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t stock, double limit,
@@ -127,7 +128,7 @@ void voltage_tick(struct voltage *v, const struct mcc *m, int64_t now, int32_t s
     memcpy(look.error, m->signals.err, sizeof look.error);
     if (v->special) {
         const int64_t before = v->frame;
-        const struct trail_point *out = now_out(v, m, now, stock);
+        const struct commanded_path_point *out = now_out(v, m, now, stock);
         if (out) {
             memcpy(look.speed, out->speed, sizeof look.speed);
         }

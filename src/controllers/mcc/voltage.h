@@ -18,18 +18,18 @@ struct voltage {
     bool wanted[AXES], inverted[AXES];
     bool special; /* more than the P law is wanted */
     struct law law;
-    struct trail trail;
-    int32_t base[3];       /* [pulses] put out where the trail's coordinates are 0 */
+    struct commanded_path commanded_path;
+    int32_t base[3];       /* [pulses] put out where the commanded path's coordinates are 0 */
     int64_t sum[AXES];     /* [pulses] of the frames taken since, without compensation */
     double place[AXES];    /* [pulses] the ideal point of it */
     int32_t added[AXES];   /* [pulses] compensation of the latest frame, */
-    int32_t added_base[3]; /* and where the trail begins */
+    int32_t added_base[3]; /* [pulses] compensation there */
     int64_t frame;         /* being put out, */
     int64_t since;         /* [clock] the instant at which that was first seen */
 };
 
-/* At rest, with these gains; the first look is where the trail begins. Of the axes that are on here
- * those are on that the machine uses, and pulses per mm are the machine's. */
+/* At rest, with these gains; the commanded path begins at the first look. An axis is on if it is on
+ * here and the machine uses it; pulses per mm are the machine's. */
 void voltage_start(struct voltage *v, const struct law_config *c, const struct machine *m);
 
 /* Before the tick of an instant: the machine may have another lead, direction or use of an axis,

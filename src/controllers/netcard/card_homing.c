@@ -168,7 +168,7 @@ static void come_to_rest(struct netcard *c)
     }
 }
 
-/* A frame, if there is room for it; else sleep. */
+/* Give the next frame if the FIFO has room; else sleep. */
 static void step(struct netcard *c)
 {
     if (card_home_full(c)) {

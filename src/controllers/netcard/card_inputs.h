@@ -37,13 +37,13 @@ struct card_inputs {
     uint32_t pending;             /* lines */
     uint32_t waiting;             /* lines whose action waits for the end of the deaf time */
     uint32_t ended;               /* lines whose deaf time is over, not served since */
-    int64_t deaf[CARD_INPUTS];    /* [ns] until then; -1: it hears */
-    int64_t edges, lost, ignored; /* all; while one was pending; while deaf */
+    int64_t deaf[CARD_INPUTS];    /* [ns] until which the line is deaf; -1: it hears */
+    int64_t edges, lost, ignored; /* edges in all; lost while one was pending; ignored while deaf */
 };
 
 /* What a routine has found. */
 struct card_input_served {
-    int line;                /* -1 nothing: a line of this vector was not pending */
+    int line;                /* -1: no line of this vector was pending */
     enum card_action action; /* to be done now; CARD_NONE also for an edge without one */
 };
 

@@ -254,7 +254,7 @@ void card_tell_status(struct netcard *c)
     session_status(&c->session, &s, c->now);
 }
 
-/* What the loss of the link does. */
+/* Act on the loss of the link, as the settings say. */
 static int lost(struct netcard *c)
 {
     enum net_code code;

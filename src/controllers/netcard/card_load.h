@@ -16,14 +16,14 @@
 enum { CARD_LOADS = 7, CARD_LOAD_MARKS = 11 };
 
 struct card_load {
-    int32_t latest; /* mark */
+    int32_t latest; /* index of the latest mark */
     struct card_load_mark {
         int64_t clock;            /* [ns] of the kernel */
         int64_t busy[CARD_LOADS]; /* [ns] so far */
     } mark[CARD_LOAD_MARKS];      /* all 0: that of power-up */
 };
 
-/* What each has had so far at this clock; its share. [1/1000] */
+/* Tell what each has had so far at this clock [ns], and get the share of each [1/1000]. */
 void card_load_tell(struct card_load *l, int64_t clock, const int64_t busy[CARD_LOADS],
                     uint16_t share[CARD_LOADS]);
 

@@ -1,6 +1,6 @@
 #include "netcard_parts.h"
 
-/* Error clear of the drives. */
+/* Give the drives their error clear. */
 static const int64_t CLEAR_NS = 20000000;
 
 static bool has_job(const struct netcard *c)

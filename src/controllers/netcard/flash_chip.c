@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* splitmix64 */
+/* The next random number, by splitmix64. */
 static uint64_t draw(uint64_t *random)
 {
     uint64_t x = *random += 0x9e3779b97f4a7c15u;
@@ -59,7 +59,7 @@ bool flash_busy(const struct flash_chip *f, int64_t now)
     return f->work != FLASH_IDLE && now < f->end;
 }
 
-/* What is over has its effect. */
+/* If the operation is over, let it have its effect. */
 static void settle(struct flash_chip *f, int64_t now)
 {
     if (f->work == FLASH_IDLE || now < f->end)
@@ -87,7 +87,7 @@ static int64_t begin(struct flash_chip *f, enum flash_work work, int32_t at, int
     return f->end - now;
 }
 
-/* May a thing of so many begin? What was before it is over then. */
+/* May an operation begin at place `which` of so many? One that is over has its effect first. */
 static bool ready(struct flash_chip *f, int32_t which, int32_t of, int64_t now)
 {
     settle(f, now);

@@ -50,7 +50,7 @@ static bool limit(const struct home_cycle_input *in, int i, double direction)
     return ((direction > 0.0 ? in->plus : in->minus) >> i & 1) != 0;
 }
 
-static void enter(struct home_course *c, enum home_cycle_phase phase)
+static void enter(struct home_search *c, enum home_cycle_phase phase)
 {
     c->phase = phase;
     c->begin = c->motion.commanded;
@@ -66,7 +66,7 @@ static void fail(struct home_cycle *h, int axis, enum home_cycle_fault fault)
     h->state = HOME_CYCLE_STOPPING;
 }
 
-/* Those of the lowest order above the last one that are to be homed begin. */
+/* Begin with the axes of the lowest order above the one before. */
 static void next_order(struct home_cycle *h, const struct home_cycle_input *in)
 {
     int32_t next = INT32_MAX;
@@ -113,7 +113,7 @@ int64_t home_cycle_zero(const struct home_cycle *h, int axis)
 
 static void search(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     if (seen) {
         c->stopping = true;
@@ -129,7 +129,7 @@ static void search(struct home_cycle *h, int i, const struct home_cycle_input *i
 
 static void turn(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     c->passed = c->passed || seen;
     if (c->passed && !on(h, i, in)) {
@@ -143,7 +143,7 @@ static void turn(struct home_cycle *h, int i, const struct home_cycle_input *in,
 static void back(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
     const struct home_axis *a = &h->config.axis[i];
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     c->passed = c->passed || seen;
     if (limit(in, i, -way(a))) {
@@ -159,7 +159,7 @@ static void back(struct home_cycle *h, int i, const struct home_cycle_input *in,
 static void edge(struct home_cycle *h, int i, const struct home_cycle_input *in)
 {
     const struct home_axis *a = &h->config.axis[i];
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
     const bool latched = (in->latched >> i & 1) != 0;
 
     c->off = c->off || !on(h, i, in);
@@ -176,7 +176,7 @@ static void edge(struct home_cycle *h, int i, const struct home_cycle_input *in)
 /* The axis rests behind what a phase has found. */
 static void next_phase(struct home_cycle *h, int i)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     switch (c->phase) {
     case HOME_CYCLE_TURN:   enter(c, HOME_CYCLE_SEARCH); break;
@@ -192,7 +192,7 @@ static void next_phase(struct home_cycle *h, int i)
 
 static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
 {
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
     const bool seen = on(h, i, in) || (in->latched >> i & 1) != 0;
 
     if (c->stopping) {
@@ -231,13 +231,13 @@ static double speed_of(const struct home_axis *a, enum home_cycle_phase phase)
     }
 }
 
-/* Pulses of the next period. */
+/* Pulses of an axis in the next period. */
 static int32_t go(struct home_cycle *h, int i)
 {
     const struct home_axis *a = &h->config.axis[i];
     const double period = h->config.period;
     const struct home_limits limits = { a->acc * period * period, a->start * period };
-    struct home_course *c = &h->axis[i];
+    struct home_search *c = &h->axis[i];
 
     if (c->stopping || h->state != HOME_CYCLE_RUNNING) {
         return home_motion_run(&c->motion, &limits, 0.0);

@@ -69,7 +69,7 @@ enum home_cycle_state {
     HOME_CYCLE_FAILED
 };
 
-/* What is seen, once each period. */
+/* What the search sees of the axes, once each period. */
 struct home_cycle_input {
     int64_t position[CARD_AXES]; /* [pulses] put out so far, any zero */
     uint32_t origin;             /* levels of the switches, a bit each axis */
@@ -78,7 +78,7 @@ struct home_cycle_input {
     int64_t latch[CARD_AXES];    /* [pulses] the position at its clock, the latest */
 };
 
-struct home_course {
+struct home_search {
     enum home_cycle_phase phase;
     bool stopping;       /* found; it comes to rest */
     bool turned, passed; /* met a limit in the search; was on the switch in this phase */
@@ -95,7 +95,7 @@ struct home_cycle {
     int32_t fault_axis; /* -1 none */
     uint32_t mask;      /* axes to be homed */
     int32_t order;      /* of those that go now */
-    struct home_course axis[CARD_AXES];
+    struct home_search axis[CARD_AXES];
 };
 
 /* Whether every value lies in its range and is finite. */
@@ -114,7 +114,7 @@ void home_cycle_stop(struct home_cycle *h);
 /* ENDED: count of an axis that is position 0 from now on [pulses]. */
 int64_t home_cycle_zero(const struct home_cycle *h, int axis);
 
-/* Level of a switch that is on. An edge to it is what `latched` tells. */
+/* Level of a switch that is on; an edge to that level sets `latched`. */
 bool home_cycle_on_level(enum card_trigger trigger);
 
 #endif

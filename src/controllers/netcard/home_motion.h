@@ -9,13 +9,13 @@
 #include <stdint.h>
 
 struct home_motion {
-    int64_t commanded; /* [pulses] in whole */
-    double rest;       /* [pulses] of a pulse not yet given, within 0 .. 1 */
+    int64_t commanded; /* [pulses] whole pulses commanded so far */
+    double rest;       /* [pulses] 0..1 part of a pulse that is not yet commanded */
     double speed;      /* [pulses/period] signed */
     int32_t still;     /* periods at rest */
 };
 
-/* What one may have, in pulses and periods. */
+/* Limits of a motion, in pulses and periods. */
 struct home_limits {
     double acc, start;
 };

@@ -262,7 +262,7 @@ static void pend_vectors(struct netcard *c, uint32_t vectors)
     }
 }
 
-/* What the hardware does at c->now. */
+/* Let the hardware do what is due at c->now. */
 static void hardware(struct netcard *c)
 {
     card_advance_player(c);
@@ -285,7 +285,7 @@ static int64_t earlier(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* When the hardware has something to do, behind c->now. */
+/* Time at which the hardware next has something to do, after c->now. */
 static int64_t horizon(const struct netcard *c, int64_t until)
 {
     const int64_t clock = player_next(&c->player);

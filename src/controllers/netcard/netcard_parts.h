@@ -4,14 +4,14 @@
 
 #include "netcard.h"
 
-/* Answer of a task: it goes on at `step` when it has had so many cycles, so much time, this
- * semaphore. */
+/* The answer of a task to the kernel: it goes on at `step` when it has had so many cycles, so much
+ * time, or this semaphore. */
 void card_work(struct netcard *c, int context, int64_t cycles, int step);
 void card_spend(struct netcard *c, int context, int64_t ns, int step);
 void card_take(struct netcard *c, enum netcard_task task, int semaphore, int step);
 int64_t card_cycles_ns(int64_t cycles);
 
-/* So many cycles, and a frame of five words on the bus to the FPGA. [ns] */
+/* Time of so many cycles and of a frame of five words on the bus to the FPGA. [ns] */
 int64_t card_frame_ns(const struct netcard *c, int64_t cycles);
 
 /* What one context does next; each gives the kernel one answer. home, stop, pause and run by the
@@ -25,7 +25,7 @@ void card_run(struct netcard *c);
 void literal_task(struct netcard *c, enum netcard_task task);
 void card_interrupt(struct netcard *c, int interrupt);
 
-/* Where such a task goes on: c->step has it. */
+/* Where a task goes on; c->step holds it. */
 enum card_run_step {
     RUN_WAIT,
     RUN_BEGIN,
@@ -54,10 +54,10 @@ enum card_turn_step { TURN_WAIT, TURN_LOOK, TURN_ACT, TURN_RELEASE, TURN_RELEASE
 int card_order(struct netcard *c, enum card_command command, uint32_t axes, enum net_code *code);
 int literal_order(struct netcard *c, enum card_command command, uint32_t axes);
 
-/* Rest: READY or EMPTY, as the flash has it. */
+/* The state becomes that of rest: READY, or EMPTY if there is no job in flash. */
 void card_rest(struct netcard *c);
 
-/* The job's rest event, if it is owed. */
+/* Put out the job's rest event, if it is owed. */
 void card_put_rest(struct netcard *c);
 
 /* The way of the axes to position 0, where a job begins: the tool's (Z, U) first, then X and Y
@@ -106,7 +106,7 @@ void card_home_frame(struct netcard *c, bool goes);
 bool card_home_found(struct netcard *c);
 void card_home_raise(struct netcard *c);
 
-/* FAULT at once: no more pulses, the job and homing are over. */
+/* Go to FAULT at once: no more pulses come, the job and homing are over. */
 void card_fault(struct netcard *c, enum net_code error);
 
 /* The link: a message for the card; the semaphore to be given, -1 none. What the store has come to
@@ -118,7 +118,7 @@ void card_tell_status(struct netcard *c);
 /* Time that each task, and all interrupts together, have had the processor. [ns] */
 void card_busy(const struct netcard *c, int64_t busy[CARD_LOADS]);
 
-/* The player is advanced to now, what it tells is kept for its interrupt. */
+/* Advance the player to c->now, and keep what it tells for its interrupt. */
 void card_advance_player(struct netcard *c);
 
 static inline bool card_literal(const struct netcard *c)

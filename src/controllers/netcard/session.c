@@ -292,7 +292,7 @@ void session_drop(struct session *s)
     net_channel_drop(&s->channel);
 }
 
-/* The ACK that waits, if answers leave room for it. */
+/* Send the ACK that waits, if answers leave room for it. */
 static void flush(struct session *s)
 {
     const struct net_ack ack = { s->acked, s->credit, s->missing };

@@ -8,7 +8,7 @@
 
 static const double VOLTS_MAX = VOLTAGE_RANGE; /* [V] */
 
-/* What the modules are doing now is what others see. */
+/* Show others what the modules are doing now. */
 static void show(struct pc *pc)
 {
     cyclic_tell(&pc->modules, &pc->shown);

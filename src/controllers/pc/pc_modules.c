@@ -118,7 +118,7 @@ static bool in_time(const struct pc *pc)
     return p->raised < 0 || pc_clock(pc) - p->raised < deadline;
 }
 
-/* The write first, then the rest of its page. */
+/* End the write, then serve the rest of its page. */
 static void pcl_end(struct pc *pc, const struct pc_now *now)
 {
     const int64_t clock = pc_clock(pc);
@@ -164,7 +164,7 @@ static void wake_ipo(struct pc *pc)
     pc->point_due = due;
 }
 
-/* Ask for the next service of the PCL, unless it is at work. */
+/* Ask for the next service of the position control, unless it is at work. */
 static void wake_pcl(struct pc *pc)
 {
     const int64_t page = isr_ready(&pc->pcl.isr), write = pcl_due(&pc->pcl);

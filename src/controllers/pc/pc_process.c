@@ -93,6 +93,6 @@ void pc_control_process(struct pc *pc, const struct pc_panel *panel, const struc
     error_keys(pc, program);
     if (!pc->config.no_panel) {
         task_operate(m, panel->hold, panel->override);
-        mover_adapt(&m->mover, panel->adaptive);
+        trajectory_adapt(&m->trajectory, panel->adaptive);
     }
 }

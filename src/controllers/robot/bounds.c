@@ -11,8 +11,8 @@ static const double MM = 1e-3; /* [m] */
 
 /* The part of the path that is looked at. */
 struct part {
-    const struct course_geometry *g;
-    const struct course_move *move;
+    const struct arm_geometry *g;
+    const struct arm_move *move;
     const struct path *path;
     double middle;            /* [mm] */
     const double *joint;      /* [rad] there */
@@ -28,7 +28,7 @@ struct limbs {
     double shoulder, elbow; /* side: +1 or -1 */
 };
 
-/* Where it stands. */
+/* Joints 1 to 3 of that arm: directions and rates. */
 struct stand {
     struct jet base[2], fore[2]; /* cosine, sine of joint 1, of the forearm from upright */
     struct jet rate[3];          /* of the joints */
@@ -141,7 +141,7 @@ static void sides(const struct part *p, const struct opw *o, struct limbs *l)
 static bool by_pose(const struct part *p, double half, struct jet rate[OPW_JOINTS])
 {
     const struct opw *o = &p->g->arm->opw;
-    const struct course_move *m = p->move;
+    const struct arm_move *m = p->move;
     const double *tool = p->g->arm->tool.at;
     struct opw_pose flange;
     struct jet hand[3][3], reach[3], seen[3], across[2], side[2];
@@ -234,11 +234,11 @@ static bool by_wrist(const struct part *p, double half, struct jet rate[OPW_JOIN
     return true;
 }
 
-bool bounds_of(const struct course_geometry *g, const struct path *path, double from, double to,
+bool bounds_of(const struct arm_geometry *g, const struct path *path, double from, double to,
                const double joint[OPW_JOINTS], struct bounds *b)
 {
-    const struct course *c = g->course;
-    struct part p = { g,     &c->move[(c->count - 1) % COURSE_SIZE],
+    const struct arm_moves *c = g->moves;
+    struct part p = { g,     &c->move[(c->count - 1) % ARM_MOVES_SIZE],
                       path,  0.5 * (from + to) * path->length,
                       joint, { 0.0 } };
     const double half = 0.5 * (to - from) * path->length;
@@ -247,7 +247,7 @@ bool bounds_of(const struct course_geometry *g, const struct path *path, double 
     for (int i = 0; i < OPW_JOINTS; i++) {
         p.inner[i] = g->arm->opw.sign[i] * joint[i] - g->arm->opw.offset[i];
     }
-    if (!(p.move->kind == COURSE_WRIST ? by_wrist(&p, half, rate) : by_pose(&p, half, rate))) {
+    if (!(p.move->kind == ARM_MOVE_WRIST ? by_wrist(&p, half, rate) : by_pose(&p, half, rate))) {
         return false;
     }
     for (int i = 0; i < OPW_JOINTS; i++) {

@@ -6,22 +6,22 @@
 #ifndef BOUNDS_H
 #define BOUNDS_H
 
-#include "course.h"
+#include "arm_moves.h"
 
-/* Absolute values of the joints' derivatives by the way. */
+/* Absolute values of the joints' derivatives along the path. */
 struct bounds_pair {
     double slope[OPW_JOINTS]; /* [rad/mm] |dq/ds| */
     double bend[OPW_JOINTS];  /* [rad/mm^2] |d2q/ds2| */
 };
 
 struct bounds {
-    struct bounds_pair most;   /* nowhere on the part more than this */
-    struct bounds_pair middle; /* in its middle */
+    struct bounds_pair most;   /* nowhere on the part are they larger */
+    struct bounds_pair middle; /* in the middle of the part */
 };
 
-/* Bounds on a path of the latest move of the course from part `from` to `to`, 0 .. 1; joint[] holds
- * the joints in the middle of them. False: a place may be singular there, so nothing is known. */
-bool bounds_of(const struct course_geometry *g, const struct path *path, double from, double to,
+/* Bounds on the part `from` .. `to` (0..1) of the path of the arm's latest move; joint[] holds the
+ * joints in the middle of the part. False: a place of it may be singular, so nothing is known. */
+bool bounds_of(const struct arm_geometry *g, const struct path *path, double from, double to,
                const double joint[OPW_JOINTS], struct bounds *b);
 
 #endif

@@ -20,7 +20,7 @@ double robot_joint_speed(const struct robot_config *c, int joint)
 void robot_plan_joints(struct robot *r, const struct robot_config *c,
                        const double target[OPW_JOINTS], double share)
 {
-    struct course_move m = { .kind = COURSE_JOINTS };
+    struct arm_move m = { .kind = ARM_MOVE_JOINTS };
     struct manipulator arm = c->arm;
     double end[AXES], way = 0.0, acc = INFINITY;
 
@@ -35,14 +35,14 @@ void robot_plan_joints(struct robot *r, const struct robot_config *c,
     }
     const struct pose pose = manipulator_pose(&arm, target);
     memcpy(m.turn, pose.turn, sizeof m.turn);
-    course_add(&r->course, &m, way);
+    arm_moves_add(&r->moves, &m, way);
     memcpy(end, r->rear, sizeof end);
     memcpy(end, pose.at, sizeof pose.at);
-    end[course_axis(&r->course)] += way;
-    struct way *w = &r->way;
+    end[arm_moves_axis(&r->moves)] += way;
+    struct tool_path *w = &r->tool_path;
     path_line(&w->path, r->rear, end);
     w->path.length = way;
-    w->piece[0] = (struct way_piece){ 1.0, UNIT * share, acc };
+    w->segment[0] = (struct tool_path_segment){ 1.0, UNIT * share, acc };
     w->count = way > 0.0;
     w->next = 0;
     const double jerk = c->smooth > 0.0 ? acc / c->smooth : 0.0;
@@ -52,7 +52,7 @@ void robot_plan_joints(struct robot *r, const struct robot_config *c,
     r->stop = false;
     memcpy(r->rear, end, sizeof end);
     memcpy(r->rear_joint, target, sizeof r->rear_joint);
-    r->rear_kind = COURSE_JOINTS;
+    r->rear_kind = ARM_MOVE_JOINTS;
     r->rear_zone = 0.0;
 }
 

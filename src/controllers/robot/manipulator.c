@@ -13,10 +13,10 @@ static const double TURN = 6.283185307179586;
 /* An elbow whose sine is below this may leave its side: the arm is stretched. */
 static const double STRETCHED = 1e-6;
 
-/* Limits hold but for this. [rad] */
+/* A joint may be beyond a limit by so much. [rad] */
 static const double ROUNDING = 1e-9;
 
-/* Of the largest pivot; a smaller one is singular. */
+/* Share of the largest pivot below which a pivot is 0: the place is singular. */
 static const double PIVOT = 1e-13;
 
 static const double ANY_LOW[OPW_JOINTS] = { -INFINITY, -INFINITY, -INFINITY,

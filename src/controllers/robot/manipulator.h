@@ -18,23 +18,23 @@ struct manipulator_joint {
 struct manipulator {
     struct opw opw;
     struct manipulator_joint joint[OPW_JOINTS];
-    struct pose tool; /* its tip in the flange's frame */
+    struct pose tool; /* pose of its tip in the flange's frame */
 };
 
-/* Tool tip by the joints. */
+/* Pose of the tool tip for joints [rad]. */
 struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS]);
 
-/* Joints of a pose on the way from those in joint[]: the nearest of the branches, whole turns
- * counted, on the same side of the elbow, whatever the limits. So joint 5, or the wrist centre over
- * axis 1, goes smoothly through a singular place that the way meets exactly. False, and joint[] as
- * it was: out of reach. */
+/* Joints of the next pose of a path, which joint[] leads to: the nearest branch on the same side of
+ * the elbow, whole turns counted, whatever the limits. So joint 5, or the wrist centre over axis 1,
+ * goes smoothly through a singular place that the path meets exactly. False, and joint[] as it was:
+ * the pose is out of reach. */
 bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
                         double joint[OPW_JOINTS]);
 
 /* The same with joints 4 to 6 given in joint[]: joints 1 to 3 bring the tip to its place [mm]. */
 bool manipulator_arm(const struct manipulator *m, const double at[3], double joint[OPW_JOINTS]);
 
-/* Of a joint's whole turns: the nearest. */
+/* Number of whole turns of a joint that stands for: the nearest. */
 enum { MANIPULATOR_ANY_TURN = 1000 };
 
 /* Why there are no joints for a pose. */
@@ -51,15 +51,17 @@ enum manipulator_status manipulator_solve(const struct manipulator *m, const str
                                           uint32_t branches, const int *turn,
                                           double joint[OPW_JOINTS], int *which);
 
-/* Motion of the tip by each joint's: velocity [mm/rad] and turn [1], base frame. */
+/* Motion of the tip for a unit rate of each joint: velocity [mm/rad] and turn [1], base frame. */
 void manipulator_jacobian(const struct manipulator *m, const double joint[OPW_JOINTS],
                           double column[OPW_JOINTS][6]);
 
-/* Joints' rates for a motion of the tip: velocity, turn. False: singular. */
+/* Rates of the joints [rad/s] for a motion of the tip: velocity [mm/s], turn [rad/s]. False: the
+ * place is singular. */
 bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINTS],
                        const double motion[6], double rate[OPW_JOINTS]);
 
-/* First joint beyond its limits, and further out than `from`, by more than rounding; -1 none. */
+/* First joint that is beyond its limits and further out than in `from`, by more than rounding; -1:
+ * none. */
 int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINTS],
                         const double joint[OPW_JOINTS]);
 

@@ -32,14 +32,14 @@ struct opw_pose {
     double turn[3][3]; /* rotation matrix */
 };
 
-/* A branch is a sum of these. */
+/* Flags of a branch of the inverse kinematics, which is a sum of these. */
 enum opw_flag {
     OPW_FLIP = 1,  /* wrist: joint 5 on its other side, 4 and 6 half a turn away */
     OPW_ELBOW = 2, /* the other elbow */
     OPW_BACK = 4   /* shoulder: the wrist centre lies behind axis 1 */
 };
 
-/* Pose of the flange by the joints. [rad] */
+/* Pose of the flange for joints [rad]. */
 void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw_pose *pose);
 
 /* Joints of all branches that reach a pose, each within half a turn of 0. [rad] Returns a bit for
@@ -47,7 +47,7 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
 uint32_t opw_inverse(const struct opw *o, const struct opw_pose *pose,
                      const double near[OPW_JOINTS], double joint[OPW_BRANCHES][OPW_JOINTS]);
 
-/* The same of the branches wanted only, a bit each. */
+/* The same for the wanted branches alone, a bit each. */
 uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
                         const double near[OPW_JOINTS], uint32_t wanted,
                         double joint[OPW_BRANCHES][OPW_JOINTS]);
@@ -66,7 +66,7 @@ int opw_branch(const struct opw *o, const double joint[OPW_JOINTS]);
  * c2 hypot(a2, c3) times their product. [m^3] */
 void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3]);
 
-/* The second of them alone. */
+/* The second factor, the elbow's, alone. */
 double opw_elbow(const struct opw *o, const double joint[OPW_JOINTS]);
 
 #endif

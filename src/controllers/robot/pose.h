@@ -1,4 +1,4 @@
-/* pose - a place with an attitude: of a frame in another one. */
+/* pose - position and orientation of one frame in another. */
 #ifndef POSE_H
 #define POSE_H
 
@@ -9,19 +9,19 @@ struct pose {
     double turn[4]; /* quaternion */
 };
 
-/* A frame that is the other one. */
+/* The pose of a frame in itself: no shift, no turn. */
 struct pose pose_none(void);
 
-/* Of a program: X Y Z [mm], A B C [deg]. */
+/* The pose that a program writes as X Y Z [mm], A B C [deg]. */
 struct pose pose_of(const double xyz[3], const double abc[3]);
 
-/* Frame b in frame a in a third: there it is the product. */
+/* Pose in the base of a frame that has the pose b in frame a, which has the pose a in the base. */
 struct pose pose_product(const struct pose *a, const struct pose *b);
 
-/* The other frame in this one. */
+/* Pose of the other frame in this one. */
 struct pose pose_inverse(const struct pose *a);
 
-/* A point [mm] of the frame, in the other one. */
+/* Where a point [mm] of the frame lies in the other one. */
 void pose_point(const struct pose *a, const double point[3], double out[3]);
 
 /* A user's frame by its origin, a point on its x axis and one in its xy plane with y > 0. [mm]

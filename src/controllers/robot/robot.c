@@ -8,13 +8,13 @@
 
 static const double TURN = 6.283185307179586;
 
-/* The mover gets places and no joints: pulses come from the joints at the end of the cycle. */
+/* The trajectory gets places and no joints: pulses come from the joints at the end of the cycle. */
 static const struct mechanism PLACES;
 
-struct course_geometry robot_geometry(const struct robot *r, struct manipulator *arm)
+struct arm_geometry robot_geometry(const struct robot *r, struct manipulator *arm)
 {
     arm->tool = r->tool;
-    return (struct course_geometry){ arm, &r->course };
+    return (struct arm_geometry){ arm, &r->moves };
 }
 
 static void come_to_rest(struct robot *r, const struct robot_config *c)
@@ -23,21 +23,21 @@ static void come_to_rest(struct robot *r, const struct robot_config *c)
 
     arm.tool = r->tool;
     r->pose = manipulator_pose(&arm, r->joint);
-    course_start(&r->course, r->pose.turn);
+    arm_moves_start(&r->moves, r->pose.turn);
     memset(r->rear, 0, sizeof r->rear);
     memcpy(r->rear, r->pose.at, sizeof r->pose.at);
     memcpy(r->rear_joint, r->joint, sizeof r->joint);
-    r->rear_kind = COURSE_POSE;
+    r->rear_kind = ARM_MOVE_POSE;
     r->rear_zone = 0.0;
-    r->way.count = r->way.next = 0;
+    r->tool_path.count = r->tool_path.next = 0;
     r->jogging = r->lost = false;
-    mover_stand(&r->mover, &PLACES, r->rear);
+    trajectory_stand(&r->trajectory, &PLACES, r->rear);
 }
 
 void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS])
 {
     memset(r, 0, sizeof *r);
-    mover_start(&r->mover);
+    trajectory_start(&r->trajectory);
     r->tool = c->arm.tool;
     memcpy(r->joint, joint, sizeof r->joint);
     come_to_rest(r, c);
@@ -45,18 +45,20 @@ void robot_start(struct robot *r, const struct robot_config *c, const double joi
 
 bool robot_idle(const struct robot *r)
 {
-    return !mover_busy(&r->mover) && r->ring.count == 0 && r->way.next >= r->way.count;
+    return !trajectory_busy(&r->trajectory) && r->ring.count == 0
+           && r->tool_path.next >= r->tool_path.count;
 }
 
 bool robot_rests(const struct robot *r)
 {
-    return mover_resting(&r->mover, &r->ring) && (r->way.next >= r->way.count || r->mover.hold);
+    return trajectory_resting(&r->trajectory, &r->ring)
+           && (r->tool_path.next >= r->tool_path.count || r->trajectory.hold);
 }
 
 bool robot_ready(const struct robot *r)
 {
-    return r->way.next >= r->way.count && !r->mover.abort && (!r->jogging || robot_idle(r))
-           && r->ring.count < RING_SIZE - ROBOT_ROOM;
+    return r->tool_path.next >= r->tool_path.count && !r->trajectory.abort
+           && (!r->jogging || robot_idle(r)) && r->ring.count < RING_SIZE - ROBOT_ROOM;
 }
 
 uint32_t robot_branches(const struct robot_target *t)
@@ -79,11 +81,11 @@ void robot_settle(struct robot *r, const struct robot_config *c)
 
 void robot_feed(struct robot *r)
 {
-    struct way *w = &r->way;
+    struct tool_path *w = &r->tool_path;
 
     while (w->next < w->count && r->ring.count < RING_SIZE - 1) {
         struct command c = r->command;
-        const struct way_piece *p = &w->piece[w->next];
+        const struct tool_path_segment *p = &w->segment[w->next];
         if (r->stop) {
             command_delay(&c, w->path.start, 0.0);
             r->stop = false;
@@ -91,7 +93,7 @@ void robot_feed(struct robot *r)
             ring_push(&r->ring, &c);
             continue;
         }
-        way_piece_path(w, &c.path);
+        tool_path_next(w, &c.path);
         c.index = ++r->index;
         c.feed = c.cap = p->cap;
         if (c.tolerance > 0.0) {
@@ -110,7 +112,7 @@ static double apart(const double a[3], const double b[3])
     return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
 }
 
-/* What is shown after a cycle. */
+/* Set what the robot shows after a cycle. */
 static void show(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS],
                  const struct pose *pose)
 {
@@ -140,12 +142,12 @@ static void predict(const struct robot *r, const struct robot_config *c, const d
 void robot_cycle(struct robot *r, const struct robot_config *c)
 {
     struct manipulator arm = c->arm;
-    const struct course_geometry g = robot_geometry(r, &arm);
-    const struct kinematics kinematics = course_kinematics();
+    const struct arm_geometry g = robot_geometry(r, &arm);
+    const struct kinematics kinematics = arm_moves_kinematics();
     const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
     double joint[OPW_JOINTS];
     struct pose pose = r->pose;
-    const struct mover_beside beside = { &r->ring, &r->mean, NULL };
+    const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct point point;
 
     memcpy(joint, r->joint, sizeof joint);
@@ -154,11 +156,11 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         return;
     }
     robot_feed(r);
-    for (double left = c->cycle; left > 0.0 && !mover_resting(&r->mover, &r->ring);) {
-        left = mover_advance(&r->mover, &beside, left);
+    for (double left = c->cycle; left > 0.0 && !trajectory_resting(&r->trajectory, &r->ring);) {
+        left = trajectory_advance(&r->trajectory, &beside, left);
         robot_feed(r);
     }
-    mover_point(&r->mover, &beside, &PLACES, c->cycle, &point);
+    trajectory_point(&r->trajectory, &beside, &PLACES, c->cycle, &point);
     predict(r, c, point.place, joint);
     if (!mechanism_joints(&m, point.place, joint)
         || manipulator_outside(&arm, r->joint, joint) >= 0) {
@@ -168,34 +170,34 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         robot_stop(r);
         return;
     }
-    course_pose(&g, point.place, joint, &pose);
+    arm_moves_pose(&g, point.place, joint, &pose);
     show(r, c, joint, &pose);
-    r->solved += course_by_joints(&r->course, point.place) ? 0.0 : r->speed * c->cycle;
+    r->solved += arm_moves_by_joints(&r->moves, point.place) ? 0.0 : r->speed * c->cycle;
     r->line = point.line;
-    mover_accept(&r->mover, &beside, &point);
+    trajectory_accept(&r->trajectory, &beside, &point);
 }
 
 void robot_hold(struct robot *r, bool on)
 {
-    mover_hold(&r->mover, on);
+    trajectory_hold(&r->trajectory, on);
 }
 
 void robot_abort(struct robot *r)
 {
-    r->way.next = r->way.count;
-    mover_abort(&r->mover, &r->ring);
+    r->tool_path.next = r->tool_path.count;
+    trajectory_abort(&r->trajectory, &r->ring);
 }
 
 void robot_stop(struct robot *r)
 {
-    r->way.next = r->way.count;
-    mover_stop(&r->mover, &r->ring);
+    r->tool_path.next = r->tool_path.count;
+    trajectory_stop(&r->trajectory, &r->ring);
 }
 
 void robot_override(struct robot *r, double share)
 {
     const double s = el_max(0.0, el_min(1.0, share));
-    mover_override(&r->mover, s, s);
+    trajectory_override(&r->trajectory, s, s);
 }
 
 void robot_end(const struct robot *r, double joint[OPW_JOINTS])

@@ -1,7 +1,8 @@
 /* robot - a six-axis arm that moves: lines, circles, moves of the joints, jogging.
  *
- *     robot_move, robot_jog ──> way: pieces ──> ring ──> mover ──> robot_cycle: joints
- *     refused before anything moves             look-ahead         each cycle
+ *     robot_move, robot_jog ──> tool_path ──> ring ──> trajectory ──> robot_cycle: joints
+ *     refused before          segments       look-ahead         each cycle
+ *     anything moves
  *
  * Poses are those of the tool's tip in the base frame of the robot; a user's frame is a
  * pose_product before. A call that is refused changes nothing.
@@ -9,13 +10,13 @@
 #ifndef ROBOT_H
 #define ROBOT_H
 
-#include "mover.h"
-#include "way.h"
+#include "trajectory.h"
+#include "tool_path.h"
 
-/* Beside opw_flag: a target says nothing of its branch; of a joint's whole turns. */
+/* A target that says nothing of its branch; of the whole turns of a joint. */
 enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
 
-/* No place, angle or direction of a move is larger, in its unit: squares stay numbers and a way is
+/* No place, angle or direction of a move is larger, in its unit: squares stay numbers and a path is
  * halved a hundred times at most. */
 #define ROBOT_MOST 1e9
 
@@ -31,14 +32,14 @@ struct robot_config {
     double slot_pulses;       /* highest number of pulses in a slot */
 };
 
-/* Where a move leads. */
+/* Where a move leads to. */
 struct robot_target {
-    bool by_joints;           /* joint[] holds, else pose */
+    bool by_joints;           /* joint[] is the target, else pose is */
     double joint[OPW_JOINTS]; /* [rad] */
     struct pose pose;
     int branch;           /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
-    int open;             /* flags that branch says nothing of */
-    bool turned;          /* of a pose: turn[] holds, but for ROBOT_ANY_TURN */
+    int open;             /* sum of the opw_flags that branch leaves open */
+    bool turned;          /* of a pose: turn[] is asked for, but for ROBOT_ANY_TURN */
     int turn[OPW_JOINTS]; /* whole turns: joint n is within half a turn of so many */
 };
 
@@ -96,23 +97,23 @@ struct robot_refusal {
 enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
 
 struct robot {
-    struct mover mover;
+    struct trajectory trajectory;
     struct ring ring;
-    struct track_mean mean;
-    struct course course;
-    struct pose tool;              /* in force */
-    struct way way;                /* of the latest move, on its way into the ring */
-    struct robot_move move;        /* that move */
-    struct command command;        /* what its pieces have in common */
-    bool stop;                     /* an exact stop before its first piece */
-    double rear[AXES];             /* place at the end of the latest move */
+    struct lookahead_mean mean;
+    struct arm_moves moves;
+    struct pose tool;           /* in force */
+    struct tool_path tool_path; /* of the latest move; its segments go into the ring one by one */
+    struct robot_move move;     /* that move */
+    struct command command;     /* what its segments have in common */
+    bool stop;                  /* an exact stop before its first segment */
+    double rear[AXES];          /* place at the end of the latest move */
     double rear_joint[OPW_JOINTS]; /* [rad] there */
-    enum course_kind rear_kind;
+    enum arm_move_kind rear_kind;
     double rear_zone;
     int32_t index;          /* of the latest command */
     bool jogging, jog_held; /* the latest move is a jog; its key is still down */
     enum robot_frame jog_frame;
-    double jog_way[6]; /* its direction */
+    double jog_direction[6];
 
     double joint[OPW_JOINTS]; /* [rad] ideal, at the end of the latest cycle */
     double rate[OPW_JOINTS];  /* [rad/s] mean of that cycle */
@@ -127,7 +128,7 @@ struct robot {
 /* At rest at joints [rad]. Any joints: out of its limits the arm moves back only. */
 void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS]);
 
-/* Whether the next move may be given. */
+/* Whether the next move may be given: all of the one before is in the ring. */
 bool robot_ready(const struct robot *r);
 
 /* Plan a move behind those given before. */
@@ -140,11 +141,11 @@ void robot_cycle(struct robot *r, const struct robot_config *c);
 /* Nothing moves and nothing is left to do but what hold or override 0 keeps. */
 bool robot_rests(const struct robot *r);
 
-/* All moves are done. */
+/* Whether all moves are done. */
 bool robot_idle(const struct robot *r);
 
-/* Pause on the path, go on; ramp to rest and drop all moves; the same without a ramp; speeds by a
- * share 0 .. */
+/* Pause on the path or go on; ramp to rest and drop all moves; drop them without a ramp; drive at a
+ * share of all speeds, 0 or more. */
 void robot_hold(struct robot *r, bool on);
 void robot_abort(struct robot *r);
 void robot_stop(struct robot *r);
@@ -153,7 +154,7 @@ void robot_override(struct robot *r, double share);
 /* Joints at the end of the moves given so far, for the target of a next one. [rad] */
 void robot_end(const struct robot *r, double joint[OPW_JOINTS]);
 
-/* Another tool; ROBOT_BUSY while moves are not done. */
+/* Take another tool; ROBOT_BUSY while moves are not done. */
 enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
                              const struct pose *tool);
 

@@ -7,13 +7,13 @@
 #include "el_extremes.h"
 #include "robot_plan.h"
 
-/* A jog that turns only goes so far. [rad] */
+/* Farthest that a jog goes that only turns the tool. [rad] */
 static const double TURNS = 12.566370614359172;
 
 /* Before a place that is not reached a jog ends by so much; one shorter than that is none. [mm] */
 static const double SHORT = 1e-6;
 
-/* Times that a way is made shorter. */
+/* Times that the path of a jog is made shorter. */
 enum { TRIES = 8 };
 
 static double norm3(const double a[3])
@@ -21,7 +21,7 @@ static double norm3(const double a[3])
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-/* Joints along a direction up to the first limit. */
+/* Move the joints along a direction, up to the first limit. */
 static enum robot_status jog_joints(struct robot *r, const struct robot_config *c,
                                     const double direction[OPW_JOINTS], double way,
                                     struct robot_move *move, struct robot_refusal *why)
@@ -54,7 +54,8 @@ static enum robot_status jog_joints(struct robot *r, const struct robot_config *
     return robot_plan(r, c, move, NULL, NULL, why);
 }
 
-/* The tip along a direction while turning about one, to the first place that it cannot reach. */
+/* Move the tip along one direction while it turns about another, up to the first place out of
+ * reach. */
 static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
                                  const double velocity[3], const double turn[3], double way,
                                  struct robot_move *move, struct robot_refusal *why)
@@ -85,11 +86,11 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
     return status;
 }
 
-/* The same jog as that under way goes on. */
+/* Whether the jog asked for is the one under way. */
 static bool same(const struct robot *r, enum robot_frame frame, const double direction[6])
 {
     return r->jogging && r->jog_held && r->jog_frame == frame
-           && memcmp(r->jog_way, direction, sizeof r->jog_way) == 0;
+           && memcmp(r->jog_direction, direction, sizeof r->jog_direction) == 0;
 }
 
 enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
@@ -114,7 +115,7 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
     if (same(r, frame, direction)) {
         return ROBOT_OK;
     }
-    if (!robot_idle(r) || r->mover.abort || r->mover.hold) {
+    if (!robot_idle(r) || r->trajectory.abort || r->trajectory.hold) {
         return ROBOT_BUSY;
     }
     robot_settle(r, c);
@@ -130,7 +131,7 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
                                          : jog_tip(r, c, velocity, turn, way, &move, why);
     r->jogging = r->jog_held = status == ROBOT_OK;
     r->jog_frame = frame;
-    memcpy(r->jog_way, direction, sizeof r->jog_way);
+    memcpy(r->jog_direction, direction, sizeof r->jog_direction);
     return status;
 }
 

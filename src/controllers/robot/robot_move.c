@@ -1,4 +1,5 @@
-/* robot_move - a move becomes a way: where it leads, what it may, why it is refused. */
+/* robot_move - a move becomes a path of the tool: where it leads, how fast it may be, why it is
+ * refused. */
 #include "robot.h"
 
 #include "robot_plan.h"
@@ -11,16 +12,16 @@
 
 static const double TURN = 6.283185307179586;
 
-/* Corners between pieces of one path are none, whatever the tolerance. [mm] */
+/* Corners between segments of one path are none, whatever the tolerance. [mm] */
 static const double WIDE = 1e9;
 
 /* Two attitudes that are the same; joints on a branch that is not certain. [rad] */
 static const double SAME = 1e-12, DOUBTFUL = 1e-9;
 
-/* A way of the tip shorter than this share of its turning is none. */
+/* A path of the tip shorter than this share of its turning counts as none. */
 static const double STILL = 1e-3;
 
-/* A way this short is rounding. [mm] */
+/* A path this short is rounding. [mm] */
 static const double NOWHERE = 1e-9;
 
 /* Sine of joint 5 from which on its direction is certain; how far joint 4 may jump. [rad] */
@@ -39,7 +40,7 @@ static bool all_sound(const double *x, int n)
     return good;
 }
 
-/* The axis of the base that a unit vector is, -1 none. */
+/* Index of the axis of the base that a unit vector is; -1: it is none. */
 static int axis_of(const double v[3])
 {
     for (int i = 0; i < 3; i++) {
@@ -77,17 +78,17 @@ static void wind(struct path *p, int axis, double rise)
     p->length = el_hypot(p->length, rise);
 }
 
-/* Path of the tip; U V W go on to where those of the latest move of the course end. */
+/* Path of the tip; U V W go on to where those of the latest move of the arm end. */
 static enum robot_status draw(struct robot *r, const struct robot_move *move,
                               const double target[3])
 {
-    const int axis = course_axis(&r->course);
-    struct path *p = &r->way.path;
+    const int axis = arm_moves_axis(&r->moves);
+    struct path *p = &r->tool_path.path;
     double end[AXES], middle[3], normal[3], sweep = move->sweep;
 
     memcpy(end, r->rear, sizeof end);
     memcpy(end, target, 3 * sizeof *target);
-    end[axis] = r->course.at[axis - 3];
+    end[axis] = r->moves.at[axis - 3];
     if (move->kind == ROBOT_LINE) {
         path_line(p, r->rear, end);
         return ROBOT_OK;
@@ -108,23 +109,23 @@ static enum robot_status draw(struct robot *r, const struct robot_move *move,
     return ROBOT_OK;
 }
 
-/* Attitude at the rear. */
+/* Attitude at the end of the latest move. */
 static void rear_turn(const struct robot *r, const struct manipulator *arm, double turn[4])
 {
-    const struct course_geometry g = { arm, &r->course };
+    const struct arm_geometry g = { arm, &r->moves };
     struct pose rear;
 
-    course_pose(&g, r->rear, r->rear_joint, &rear);
+    arm_moves_pose(&g, r->rear, r->rear_joint, &rear);
     memcpy(turn, rear.turn, sizeof rear.turn);
 }
 
-/* The move of the course from the rear to a pose, turned by a vector [rad]. */
+/* The move of the arm from the rear to a pose, turned by a vector [rad]. */
 static enum robot_status enter(struct robot *r, const struct manipulator *arm,
                                const struct robot_move *move, const struct pose *pose,
                                const double by[3])
 {
-    struct course_move m = { .kind = COURSE_POSE };
-    double way = COURSE_LEVER * sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    struct arm_move m = { .kind = ARM_MOVE_POSE };
+    double way = ARM_MOVES_LEVER * sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
 
     rear_turn(r, arm, m.turn);
     if (move->singular == ROBOT_WRIST) {
@@ -133,22 +134,23 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
         if (!manipulator_joints(arm, pose, end)) {
             return ROBOT_FAR;
         }
-        m.kind = COURSE_WRIST;
+        m.kind = ARM_MOVE_WRIST;
         memcpy(m.turn, pose->turn, sizeof m.turn);
         way = 1.0; /* its coordinate moves in any case */
         for (int i = 0; i < OPW_JOINTS; i++) {
             m.joint[i] = r->rear_joint[i];
             m.step[i] = end[i] - r->rear_joint[i];
-            way = i > 2 ? el_max(way, COURSE_LEVER * fabs(m.step[i])) : way;
+            way = i > 2 ? el_max(way, ARM_MOVES_LEVER * fabs(m.step[i])) : way;
         }
-    } else if (way > COURSE_LEVER * SAME) {
+    } else if (way > ARM_MOVES_LEVER * SAME) {
         memcpy(m.by, by, sizeof m.by);
     } else {
         way = 0.0;
     }
-    course_add(&r->course, &m, way);
+    arm_moves_add(&r->moves, &m, way);
     const enum robot_status status = draw(r, move, pose->at);
-    r->way.path.length = r->way.path.length < STILL * way ? way : r->way.path.length;
+    r->tool_path.path.length =
+        r->tool_path.path.length < STILL * way ? way : r->tool_path.path.length;
     return status;
 }
 
@@ -157,7 +159,7 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
 static bool turns_first(const struct robot *r, const struct manipulator *arm,
                         const struct pose *rear, double joint[OPW_JOINTS])
 {
-    const struct course_geometry g = { arm, &r->course };
+    const struct arm_geometry g = { arm, &r->moves };
     double place[AXES], slope[AXES], q[OPW_JOINTS], factor[3];
 
     opw_factors(&arm->opw, r->rear_joint, factor);
@@ -165,9 +167,9 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
         return false;
     }
     for (double part = 0x1p-44; part <= 1.0; part *= 2.0) {
-        path_at(&r->way.path, part * r->way.path.length, place, slope);
+        path_at(&r->tool_path.path, part * r->tool_path.path.length, place, slope);
         memcpy(q, r->rear_joint, sizeof q);
-        if (!course_kinematics().joints(&g, place, q)) {
+        if (!arm_moves_kinematics().joints(&g, place, q)) {
             return false;
         }
         opw_factors(&arm->opw, q, factor);
@@ -212,22 +214,22 @@ static enum robot_status check_end(const struct manipulator *arm, const struct r
     return ROBOT_OK;
 }
 
-static enum robot_status told(const struct manipulator *arm, enum way_status status,
-                              const struct way_fault *fault, struct robot_refusal *why)
+static enum robot_status told(const struct manipulator *arm, enum tool_path_status status,
+                              const struct tool_path_fault *fault, struct robot_refusal *why)
 {
     const struct manipulator_joint *j = &arm->joint[fault->which];
 
     why->part = fault->part;
     why->which = fault->which;
     switch (status) {
-    case WAY_OK: return ROBOT_OK;
-    case WAY_OUTSIDE:
+    case TOOL_PATH_OK: return ROBOT_OK;
+    case TOOL_PATH_OUTSIDE:
         why->value = fault->joint[fault->which];
         why->limit = why->value > j->high ? j->high : j->low;
         return ROBOT_OUTSIDE;
     default:
         why->which = manipulator_factor(arm, fault->joint, &why->value);
-        return status == WAY_FAR ? ROBOT_FAR : ROBOT_SINGULAR;
+        return status == TOOL_PATH_FAR ? ROBOT_FAR : ROBOT_SINGULAR;
     }
 }
 
@@ -238,13 +240,13 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
     const double angle = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
     const double feed = move->feed > 0.0 ? el_min(move->feed, c->feed) : c->feed;
     const double spin = move->spin > 0.0 ? el_min(move->spin, c->spin) : c->spin;
-    const double length = r->way.path.length;
+    const double length = r->tool_path.path.length;
 
     if (!(angle > SAME) || move->singular == ROBOT_WRIST) {
         return feed;
     }
     const double turning = spin * length / angle;
-    return length == COURSE_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
+    return length == ARM_MOVES_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
 }
 
 /* CCN 20: a move that turns first is two moves, which are accepted together or refused together; at
@@ -254,27 +256,27 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
                                const double by[3], struct robot_refusal *why)
 {
     struct manipulator arm = c->arm;
-    const struct course_geometry g = robot_geometry(r, &arm);
-    struct way_limits l = { .acc = c->acc,
-                            .smooth = c->smooth,
-                            .refuse = move->singular == ROBOT_REFUSE };
+    const struct arm_geometry g = robot_geometry(r, &arm);
+    struct tool_path_limits l = { .acc = c->acc,
+                                  .smooth = c->smooth,
+                                  .refuse = move->singular == ROBOT_REFUSE };
     struct command first = { .index = 0 };
     double joint[OPW_JOINTS];
-    struct way_fault fault = { 0 };
+    struct tool_path_fault fault = { 0 };
     struct pose rear;
 
     memcpy(rear.at, r->rear, sizeof rear.at);
     rear_turn(r, &arm, rear.turn);
     bool chained =
-        r->rear_kind == COURSE_POSE && r->rear_zone > 0.0 && move->singular != ROBOT_WRIST;
+        r->rear_kind == ARM_MOVE_POSE && r->rear_zone > 0.0 && move->singular != ROBOT_WRIST;
     enum robot_status status = enter(r, &arm, move, pose, by);
-    if (status == ROBOT_OK && r->way.path.length >= NOWHERE && move->singular != ROBOT_WRIST
+    if (status == ROBOT_OK && r->tool_path.path.length >= NOWHERE && move->singular != ROBOT_WRIST
         && turns_first(r, &arm, &rear, joint)) {
-        course_drop(&r->course);
+        arm_moves_drop(&r->moves);
         robot_plan_joints(r, c, joint, 1.0);
         first = r->command;
-        way_piece_path(&r->way, &first.path);
-        first.feed = first.cap = r->way.piece[0].cap;
+        tool_path_next(&r->tool_path, &first.path);
+        first.feed = first.cap = r->tool_path.segment[0].cap;
         first.index = r->index + 1;
         first.line = move->line;
         chained = false;
@@ -283,9 +285,9 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     if (status != ROBOT_OK) {
         return status;
     }
-    r->way.count = r->way.next = 0;
-    if (r->way.path.length < NOWHERE) {
-        course_drop(&r->course);
+    r->tool_path.count = r->tool_path.next = 0;
+    if (r->tool_path.path.length < NOWHERE) {
+        arm_moves_drop(&r->moves);
         return check_end(&arm, &move->target, r->rear_joint, why);
     }
     l.feed = feed_of(r, c, move, by);
@@ -296,14 +298,14 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         l.turn[i] = c->arm.joint[i].acc;
     }
     memcpy(joint, r->rear_joint, sizeof joint);
-    status = told(&arm, way_plan(&r->way, &g, &l, joint, &fault), &fault, why);
+    status = told(&arm, tool_path_plan(&r->tool_path, &g, &l, joint, &fault), &fault, why);
     if (status == ROBOT_OK && !r->jogging) {
         why->part = 1.0;
         status = check_end(&arm, &move->target, joint, why);
     }
     if (status != ROBOT_OK) {
         double slope[AXES], place[AXES];
-        path_at(&r->way.path, why->part * r->way.path.length, place, slope);
+        path_at(&r->tool_path.path, why->part * r->tool_path.path.length, place, slope);
         memcpy(why->place, place, sizeof why->place);
         return status;
     }
@@ -312,15 +314,15 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         r->index++;
     }
     memset(&r->command, 0, sizeof r->command);
-    r->command.type = r->way.path.arc ? COMMAND_CCW_ARC : COMMAND_LINE;
+    r->command.type = r->tool_path.path.arc ? COMMAND_CCW_ARC : COMMAND_LINE;
     r->command.blend = true;
     r->command.tolerance = WIDE;
-    r->command.smooth = r->way.smooth;
-    r->stop = !chained || r->way.stop[0];
-    memcpy(r->rear, r->way.path.end, sizeof r->rear);
+    r->command.smooth = r->tool_path.smooth;
+    r->stop = !chained || r->tool_path.stop[0];
+    memcpy(r->rear, r->tool_path.path.end, sizeof r->rear);
     memcpy(r->rear_joint, joint, sizeof joint);
-    r->rear_kind = move->singular == ROBOT_WRIST ? COURSE_WRIST : COURSE_POSE;
-    r->rear_zone = r->way.stop[1] ? 0.0 : move->zone;
+    r->rear_kind = move->singular == ROBOT_WRIST ? ARM_MOVE_WRIST : ARM_MOVE_POSE;
+    r->rear_zone = r->tool_path.stop[1] ? 0.0 : move->zone;
     return ROBOT_OK;
 }
 
@@ -344,7 +346,7 @@ static enum robot_status round_arc(const struct robot *r, const struct robot_mov
     return fabs(height) <= PLANE ? ROBOT_OK : ROBOT_OFF_PLANE;
 }
 
-/* Pose at the end of a path. */
+/* Pose of the tip at the end of a move's path. */
 static enum robot_status aim(const struct robot *r, const struct manipulator *arm,
                              const struct robot_move *move, struct pose *pose,
                              struct robot_refusal *why)
@@ -391,17 +393,17 @@ static enum robot_status along_path(struct robot *r, const struct robot_config *
 
 struct rear {
     double place[AXES], joint[OPW_JOINTS], at[3];
-    enum course_kind kind;
+    enum arm_move_kind kind;
     double zone;
     int32_t count;
 };
 
 static struct rear keep(const struct robot *r)
 {
-    struct rear k = { .kind = r->rear_kind, .zone = r->rear_zone, .count = r->course.count };
+    struct rear k = { .kind = r->rear_kind, .zone = r->rear_zone, .count = r->moves.count };
     memcpy(k.place, r->rear, sizeof k.place);
     memcpy(k.joint, r->rear_joint, sizeof k.joint);
-    memcpy(k.at, r->course.at, sizeof k.at);
+    memcpy(k.at, r->moves.at, sizeof k.at);
     return k;
 }
 
@@ -409,11 +411,11 @@ static void put_back(struct robot *r, const struct rear *k)
 {
     r->rear_kind = k->kind;
     r->rear_zone = k->zone;
-    r->course.count = k->count;
-    r->way.count = r->way.next = 0;
+    r->moves.count = k->count;
+    r->tool_path.count = r->tool_path.next = 0;
     memcpy(r->rear, k->place, sizeof k->place);
     memcpy(r->rear_joint, k->joint, sizeof k->joint);
-    memcpy(r->course.at, k->at, sizeof k->at);
+    memcpy(r->moves.at, k->at, sizeof k->at);
 }
 
 enum robot_status robot_plan(struct robot *r, const struct robot_config *c,

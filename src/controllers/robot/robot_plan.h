@@ -1,19 +1,20 @@
-/* robot_plan - how moves and jogs are planned; of robot only. */
+/* robot_plan - how moves and jogs are planned, for the files of the robot core alone. */
 #ifndef ROBOT_PLAN_H
 #define ROBOT_PLAN_H
 
 #include "robot.h"
 
-/* Commands that a move needs beside its pieces: an exact stop, a turn of joint 4 before it. */
+/* Commands that a move needs beside its segments: an exact stop, a turn of joint 4 before it. */
 enum { ROBOT_ROOM = 4 };
 
-/* Geometry of the moves; *arm becomes the config's with the tool in force. */
-struct course_geometry robot_geometry(const struct robot *r, struct manipulator *arm);
+/* What the kinematics of the moves need; *arm becomes the config's arm with the tool in force. */
+struct arm_geometry robot_geometry(const struct robot *r, struct manipulator *arm);
 
-/* Nothing being under way, moves begin where the arm is. */
+/* While nothing is under way: let the next move begin where the arm is. */
 void robot_settle(struct robot *r, const struct robot_config *c);
 
-/* Plan a move; along a path to a pose, turned by a vector [rad], if there is a pose. */
+/* Plan a move. If there is a pose, it leads along a path to it, turned by the rotation vector `by`
+ * [rad]. */
 enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
                              const struct robot_move *move, const struct pose *pose,
                              const double by[3], struct robot_refusal *why);
@@ -22,7 +23,7 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
 double robot_joint_speed(const struct robot_config *c, int joint);
 
 /* A move of the joints to target angles [rad], at a share 0..1 of their limits, becomes the latest
- * of the course, and its command. */
+ * of the arm, and its command. */
 void robot_plan_joints(struct robot *r, const struct robot_config *c,
                        const double target[OPW_JOINTS], double share);
 
@@ -30,10 +31,10 @@ void robot_plan_joints(struct robot *r, const struct robot_config *c,
 enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
                                   const struct robot_move *move, struct robot_refusal *why);
 
-/* Branches that a target allows, a bit each. */
+/* Branches of the inverse kinematics that a target allows, a bit each. */
 uint32_t robot_branches(const struct robot_target *t);
 
-/* Commands into the ring. */
+/* Put commands of the latest move into the ring, as many as it has room for. */
 void robot_feed(struct robot *r);
 
 #endif

@@ -9,9 +9,9 @@
 
 enum { TIP_POSES = 16 };
 
-/* Tip t in the flange's frame [mm] and what is left: root of the mean square distance of the
- * touches from their mean point [mm]. Three poses at least, of which attitudes differ about two
- * axes; returns 0, or 1: they do not tell the tip. */
+/* Find the tip t in the flange's frame [mm] and *rms, the root of the mean square distance of the
+ * touches from their mean point [mm]. It takes three poses at least, whose attitudes differ about
+ * two axes. Returns 0; 1: the poses do not tell the tip. */
 int tip_solve(const struct pose *flange, int count, double tip[3], double *rms);
 
 #endif

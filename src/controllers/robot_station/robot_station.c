@@ -8,36 +8,36 @@ static const double DEGREE = 0.017453292519943295;
 struct robot_station_config robot_station_defaults(void)
 {
     return (struct robot_station_config){
-        .soft = soft_defaults(),
+        .controller = controller_defaults(),
         .card = { .irq_every = 4000, .alarm_stops = true, .stop_servo_off = true }
     };
 }
 
 bool robot_station_start(struct robot_station *s, const struct robot_station_config *config,
-                         struct soft_wrong *wrong)
+                         struct controller_wrong *wrong)
 {
     struct fpga_config card = config->card;
 
-    if (!soft_settings_good(&config->soft, wrong)) {
+    if (!controller_settings_good(&config->controller, wrong)) {
         return false;
     }
-    card.slot_clocks = config->soft.slot_clocks;
-    card.format = (enum fpga_format)config->soft.pulse_format;
+    card.slot_clocks = config->controller.slot_clocks;
+    card.format = (enum fpga_format)config->controller.pulse_format;
     if (card.irq_every < 1 || card.irq_every > INT32_MAX || card.irq_every % card.slot_clocks) {
         const double slot = (double)card.slot_clocks / FPGA_CLOCK_HZ; /* [s], as it is given */
-        *wrong = (struct soft_wrong){ .name = "irq_every",
-                                      .why = "not a whole number of slots",
-                                      .value = (double)card.irq_every / FPGA_CLOCK_HZ,
-                                      .low = slot,
-                                      .high = slot };
+        *wrong = (struct controller_wrong){ .name = "irq_every",
+                                            .why = "not a whole number of slots",
+                                            .value = (double)card.irq_every / FPGA_CLOCK_HZ,
+                                            .low = slot,
+                                            .high = slot };
         return false;
     }
     memset(s, 0, sizeof *s);
-    soft_configure(&config->soft, &s->config);
+    controller_configure(&config->controller, &s->config);
     s->config.start = INT64_MAX; /* by its key only */
-    s->panel = (struct soft_panel){ .override = 1.0, .jog_speed = 0.1 };
+    s->panel = (struct controller_panel){ .override = 1.0, .jog_speed = 0.1 };
     s->tool = s->config.robot.arm.tool;
-    soft_start(&s->soft, &s->config);
+    controller_start(&s->controller, &s->config);
     fpga_reset(&s->card, &card);
     return true;
 }
@@ -65,7 +65,7 @@ static void pins(struct robot_station *s)
 /* A jog by an increment has come to its end. */
 static void end_jog(struct robot_station *s)
 {
-    if (s->panel.jog_way > 0.0 && robot_idle(&s->soft.robot)) {
+    if (s->panel.jog_way > 0.0 && robot_idle(&s->controller.robot)) {
         memset(s->panel.jog, 0, sizeof s->panel.jog);
     }
 }
@@ -78,10 +78,11 @@ static void instant(struct robot_station *s, const struct orders_text *program)
     struct fpga_shown shown;
 
     fpga_show(&s->card, &shown);
-    soft_post(&s->soft, &s->config, &s->host);
+    controller_post(&s->controller, &s->config, &s->host);
     fpga_take(&s->taken, &s->card, &s->host);
     pins(s);
-    soft_instant(&s->soft, &s->config, program ? program : &NONE, &shown, &s->panel, s->instant);
+    controller_instant(&s->controller, &s->config, program ? program : &NONE, &shown, &s->panel,
+                       s->instant);
     end_jog(s);
     s->instant += s->config.bus;
 }
@@ -107,7 +108,7 @@ void robot_station_pose(const struct pose *pose, double value[6])
 
 void robot_station_read(const struct robot_station *s, struct robot_station_reading *r)
 {
-    const struct soft *soft = &s->soft;
+    const struct controller *controller = &s->controller;
     struct manipulator arm = s->config.robot.arm;
     double joint[OPW_JOINTS];
     int32_t due = 0;
@@ -115,33 +116,36 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     memset(r, 0, sizeof *r);
     fpga_pulses(&s->card, r->pulses);
     for (int i = 0; i < OPW_JOINTS; i++) {
-        const double scale = s->config.robot.scale[i], at = soft->origin[i];
+        const double scale = s->config.robot.scale[i], at = controller->origin[i];
         joint[i] = (at + (double)r->pulses[i]) / scale;
         r->joint[i] = joint[i] / DEGREE;
-        r->joint_command[i] = soft->joint[i] / DEGREE;
-        due += (double)llround(soft->joint[i] * scale) != at + (double)r->pulses[i];
+        r->joint_command[i] = controller->joint[i] / DEGREE;
+        due += (double)llround(controller->joint[i] * scale) != at + (double)r->pulses[i];
     }
-    arm.tool = soft->robot.tool;
+    arm.tool = controller->robot.tool;
     const struct pose pose = manipulator_pose(&arm, joint);
     robot_station_pose(&pose, r->pose);
-    robot_station_pose(&soft->robot.pose, r->pose_command);
+    robot_station_pose(&controller->robot.pose, r->pose_command);
     opw_factors(&arm.opw, joint, r->factors);
     r->factors[0] *= 1e3;
     r->configuration = opw_branch(&arm.opw, joint);
-    r->status = soft_status(soft, &s->panel);
-    r->line = soft->robot.line > 0 ? soft->move_line[soft->robot.line % SOFT_MOVES] : 0;
-    r->done = soft_done(soft);
-    r->rests = soft->stopped
-               || (!soft_running(soft) && soft->replaying < 0 && !soft->jogs && !soft->output_count
-                   && !soft->start.pressed && robot_idle(&soft->robot) && due == 0);
+    r->status = controller_status(controller, &s->panel);
+    r->line = controller->robot.line > 0
+                  ? controller->move_line[controller->robot.line % CONTROLLER_MOVES]
+                  : 0;
+    r->done = controller_done(controller);
+    r->rests = controller->stopped
+               || (!controller_running(controller) && controller->replaying < 0 && !controller->jogs
+                   && !controller->output_count && !controller->start.pressed
+                   && robot_idle(&controller->robot) && due == 0);
 }
 
 void robot_station_rehearse(const struct robot_station *s, const struct orders_text *program,
-                            struct soft *trial)
+                            struct controller *trial)
 {
-    struct soft_config c = s->config;
+    struct controller_config c = s->config;
 
-    memcpy(c.zero, s->soft.robot.joint, sizeof c.zero);
-    soft_start(trial, &c);
-    soft_rehearse(trial, &c, program);
+    memcpy(c.zero, s->controller.robot.joint, sizeof c.zero);
+    controller_start(trial, &c);
+    controller_rehearse(trial, &c, program);
 }

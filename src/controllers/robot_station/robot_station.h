@@ -1,10 +1,10 @@
-/* robot_station - a whole robot control on one clock: PC with its soft controller, FPGA card, an
+/* robot_station - a whole robot control on one clock: PC with its robot controller, FPGA card, an
  * arm whose joints stand where the pulses are.
  *
  *     struct robot_station_config config = robot_station_defaults();
  *     struct robot_station *s = ...;                   one struct without pointers
  *     robot_station_start(s, &config, &wrong);
- *     soft_move(&s->soft, &s->config, &move, &s->tool, &why);      any call, between two runs
+ *     controller_move(&s->controller, &s->config, &move, &s->tool, &why);    any call, between runs
  *     robot_station_run(s, s->clock + FPGA_CLOCK_HZ, NULL);        one second
  *     robot_station_read(s, &reading);
  *
@@ -16,19 +16,19 @@
 #define ROBOT_STATION_H
 
 #include "fpga_wires.h"
-#include "soft_calls.h"
-#include "soft_settings.h"
+#include "controller_calls.h"
+#include "controller_settings.h"
 
 struct robot_station_config {
-    struct soft_settings soft;
-    struct fpga_config card; /* slot_clocks and format are those of soft */
+    struct controller_settings controller;
+    struct fpga_config card; /* slot_clocks and format are those of the controller */
 };
 
 struct robot_station {
-    struct soft soft;
-    struct soft_config config;
-    struct soft_panel panel; /* hold, override and single as you like; a key is pressed by
-                              * soft.start.pressed, .abort, .reset, .teach, .replay */
+    struct controller controller;
+    struct controller_config config;
+    struct controller_panel panel; /* hold, override and single as you like; a key is pressed by
+                              * controller.start.pressed, .abort, .reset, .teach, .replay */
     struct fpga card;
     struct fpga_host host; /* as published last */
     struct fpga_taken taken;
@@ -52,22 +52,22 @@ struct robot_station_reading {
     double pose_command[6];
     int32_t configuration; /* sum of enum opw_flag */
     double factors[3];     /* from singular: [mm], 1, 1 */
-    int32_t status;        /* enum soft_status */
+    int32_t status;        /* enum controller_status */
     int32_t line;          /* of the program, that moves; 0 none */
     bool done;             /* the program has ended and the arm rests */
     bool rests;            /* nothing is left to do and every pulse is out */
 };
 
-/* Settings of the soft controller; the card interrupts every 100 us at rest, an alarm of a drive
+/* Settings of the robot controller; the card interrupts every 100 us at rest, an alarm of a drive
  * stops, a stop switches the drives off. */
 struct robot_station_config robot_station_defaults(void);
 
 /* Power on at clock 0, at rest. False: refused, nothing has changed, *wrong says why. */
 bool robot_station_start(struct robot_station *s, const struct robot_station_config *config,
-                         struct soft_wrong *wrong);
+                         struct controller_wrong *wrong);
 
 /* Run up to and including clock `until`; nothing if that has passed. The program begins, or goes on
- * behind a pause, once soft.start.pressed. */
+ * behind a pause, once controller.start.pressed. */
 void robot_station_run(struct robot_station *s, int64_t until, const struct orders_text *program);
 
 void robot_station_read(const struct robot_station *s, struct robot_station_reading *r);
@@ -75,7 +75,7 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
 /* Plan each move of a part program from where the arm is: *trial is room, its trouble says which is
  * refused. */
 void robot_station_rehearse(const struct robot_station *s, const struct orders_text *program,
-                            struct soft *trial);
+                            struct controller *trial);
 
 /* X Y Z A B C [mm], [deg] of a pose. */
 void robot_station_pose(const struct pose *pose, double value[6]);

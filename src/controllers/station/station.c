@@ -47,7 +47,7 @@ struct station_config station_defaults(void)
     return c;
 }
 
-/* As pc_start will find. */
+/* Whether pc_start will find that the axis can be homed so. */
 static bool can_home(const struct machine_axis *a, const struct home_config *h)
 {
     return home_valid(h) && el_max(h->high_speed, h->low_speed) <= machine_axis_speed(a);
@@ -128,7 +128,7 @@ enum station_status station_start(struct station *s, const struct station_config
     return STATION_OK;
 }
 
-/* What the PC sees of the card and of the machine. */
+/* What the PC sees of the card and of the machine at this instant. */
 static void look(const struct station *s, struct pcl_card *seen, struct pc_panel *panel)
 {
     struct link_card link;
@@ -145,7 +145,7 @@ static double speed(const struct machine_axis *a, double volts)
     return a->ppr * a->rpm / 60.0 * volts / 10.0;
 }
 
-/* The motors up to this instant; what they do from here on. */
+/* Move the motors up to this instant, and set the speed at which they go on. */
 static void move(struct station *s)
 {
     int64_t pulses[AXES];
@@ -218,7 +218,7 @@ enum station_status station_run(struct station *s, int64_t until, const struct s
     return STATION_OK;
 }
 
-/* No pulse is under way or in stock. */
+/* Whether no pulse is under way or in stock. */
 static bool card_rests(const struct epcio *card)
 {
     int32_t due = 0;

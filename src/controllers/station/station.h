@@ -50,13 +50,13 @@ struct station {
                                * of the spare encoders 6 .. 8 as you like */
     double software_gain[AXES];
     double motor[AXES];   /* [counts] at the latest instant */
-    double volts[AXES];   /* [V] since then */
+    double volts[AXES];   /* [V] on the drives since then */
     int64_t clock;        /* [25 ns] everything up to here has happened */
     int64_t instant;      /* [clock] next instant of the bus grid */
     struct mailbox taken; /* what the card has taken of the PC */
 };
 
-/* What there is to see at the station's clock. */
+/* What a station shows at its clock. */
 struct station_reading {
     int64_t clock;            /* [25 ns] */
     int64_t pulses[AXES];     /* [pulses] put out */

@@ -12,9 +12,9 @@
 /* Between a curve and the commands made of it, and that within which these follow each other
  * without a rest. [mm] */
 static const double AWAY = 1e-4, JOINED = 1e-3;
-static const double SHORTEST = 1.0 / 4096.0; /* of a span: shorter pieces are as they are */
+static const double SHORTEST = 1.0 / 4096.0; /* of a span: shorter segments are as they are */
 
-enum { PROBES = 5 }; /* places at which a piece is held against the curve */
+enum { PROBES = 5 }; /* places at which a segment is held against the curve */
 
 /* Knot of a number: 0 for the first ones, then whole numbers, the last ones at the end. */
 static double knot(const struct nurbs *n, int32_t j)
@@ -53,8 +53,8 @@ static void curve(const struct nurbs *n, int32_t span, double t, double point[3]
     }
 }
 
-/* A piece of a span: its end and inner points, and how far it is away from the curve. */
-static double piece(const struct nurbs *n, double to, double end[3], double inner[2][3])
+/* A segment of a span: its end and inner points, and how far it is away from the curve. */
+static double segment(const struct nurbs *n, double to, double end[3], double inner[2][3])
 {
     const double size = to - n->from;
     double begin[3], first[3], last[3], most = 0.0;
@@ -79,7 +79,7 @@ static double piece(const struct nurbs *n, double to, double end[3], double inne
     return most;
 }
 
-/* Whether a piece is a line, however it is run through. */
+/* Whether a segment is a line, however it is run through. */
 static bool straight(const double begin[3], const double end[3], const double inner[2][3])
 {
     double chord[3], length = 0.0;
@@ -101,7 +101,7 @@ static bool straight(const double begin[3], const double end[3], const double in
     return true;
 }
 
-/* The command of a piece from where the tool is; *to comes down until it fits. Where points fall
+/* The command of a segment from where the tool is; *to comes down until it fits. Where points fall
  * together, a curve stands still by its parameter: there it is a line. */
 static enum fault make(struct interpreter *in, const struct program *p, double *to,
                        struct fault_report *r)
@@ -111,7 +111,7 @@ static enum fault make(struct interpreter *in, const struct program *p, double *
 
     memcpy(end, in->point, sizeof end);
     for (;;) {
-        const double away = piece(n, *to, end, inner);
+        const double away = segment(n, *to, end, inner);
         const bool shortest = *to - n->from <= SHORTEST;
         if (away <= AWAY || shortest) {
             const bool line = straight(in->point, end, (const double(*)[3])inner);

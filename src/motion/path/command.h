@@ -40,7 +40,7 @@ struct command {
     int32_t line;     /* line of the part program; 0 for a call of the API */
     bool blend;       /* continuous path: the next command may start in the deceleration */
     double tolerance; /* [mm] tolerance of corners with its neighbours; 0: no look-ahead */
-    bool curve;       /* its look-ahead is the one of curve.h, not of track.h */
+    bool curve;       /* its look-ahead is the one of curve.h, not of lookahead.h */
     double merge;     /* [mm] tolerance of runs of short ones that become one curve; 0 none do */
     double smooth;    /* [s] time of the mean that makes a chain's ramps S-shaped */
     double feed;      /* [mm/s] programmed */

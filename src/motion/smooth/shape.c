@@ -42,7 +42,7 @@ static void settle_loose(struct shape *s)
     s->marks_loose = 0;
 }
 
-/* The long command that waited becomes a piece, up to a length; a corner before it is rounded. */
+/* The long command that waited becomes a segment, up to a length; a corner before it is rounded. */
 static void push_whole(struct shape *s, double to)
 {
     if (to < s->whole.length) {
@@ -89,7 +89,7 @@ static void push_chords(struct shape *s, const struct path *p, double from, doub
     s->run.vertex[s->run.vertices - 1].joint = true;
 }
 
-/* A run begins at the end of the pieces, or on the long command before it. */
+/* A run begins at the end of the segments, or on the long command before it. */
 static void open_run(struct shape *s, const double start[AXES], double tolerance)
 {
     struct shape_run *r = &s->run;
@@ -109,10 +109,10 @@ static void open_run(struct shape *s, const double start[AXES], double tolerance
     }
     const double at = s->whole.length - shape_grab(&s->whole, s->whole_tolerance);
     const struct path path = shape_whole_path(&s->whole);
-    const double offset = s->whole.kind == PIECE_LINE ? 0.0 : s->whole.from;
+    const double offset = s->whole.kind == SEGMENT_LINE ? 0.0 : s->whole.from;
     const struct shape_law newest = s->law;
     s->law = (struct shape_law){ s->whole.feed, s->whole.cap, s->whole.ramp };
-    piece_at(&s->whole, at, &r->begin);
+    segment_at(&s->whole, at, &r->begin);
     push_vertex(s, r->begin.point, 0.0, tolerance)->u = s->u + at;
     push_chords(s, &path, offset + at, offset + s->whole.length, s->whole_tolerance);
     s->law = newest;
@@ -127,20 +127,20 @@ static bool full(const struct shape_run *r)
     return r->vertices + 3 * SHAPE_CHORDS > SHAPE_VERTICES;
 }
 
-/* The first n spans of the fit become pieces. */
+/* The first n spans of the fit become segments. */
 static void commit(struct shape *s, int32_t n)
 {
     struct shape_run *r = &s->run;
     int32_t vertex = 0;
-    struct piece p;
+    struct segment p;
 
     if (s->grabbed > 0) {
         push_whole(s, r->vertex[0].u - s->u);
-        s->stretch = s->made;
+        s->cut_from = s->made;
         s->grabbed = 0;
     }
     for (int32_t k = 0; k < n; k++) {
-        shape_run_piece(r, k, &vertex, &p);
+        shape_run_segment(r, k, &vertex, &p);
         shape_push(s, &p);
     }
     if (s->corner) {
@@ -191,17 +191,17 @@ static void restart(struct shape *s, int32_t v)
     }
 }
 
-/* The first chord becomes a piece by itself, a line. */
+/* The first chord becomes a segment by itself, a line. */
 static void push_chord(struct shape *s)
 {
     const struct shape_vertex *v = s->run.vertex;
-    struct piece p = shape_blank(&v[1].law);
+    struct segment p = shape_blank(&v[1].law);
     struct path path;
     double at[AXES];
 
     path_line(&path, v[0].point, v[1].point);
     if (path.length > 0.0) {
-        p.kind = PIECE_LINE;
+        p.kind = SEGMENT_LINE;
         p.length = path.length;
         path_at(&path, 0.0, at, p.slope);
         memcpy(p.start, path.start, sizeof p.start);
@@ -229,12 +229,12 @@ static void begin_again(struct shape *s)
         restart(s, v);
         return;
     }
-    /* it begins where the pieces end, near a chord */
+    /* it begins where the segments end, near a chord */
     double way = 0.0, along = 0.0, off = 0.0;
-    struct piece_state at;
+    struct segment_state at;
     struct shape_vertex *v = r->vertex;
-    const struct piece *p = shape_made(s, s->made - 1);
-    piece_at(p, p->length, &at);
+    const struct segment *p = shape_made(s, s->made - 1);
+    segment_at(p, p->length, &at);
     for (int i = 0; i < AXES; i++) {
         way += (v[1].point[i] - v[0].point[i]) * (v[1].point[i] - v[0].point[i]);
         along += (v[1].point[i] - v[0].point[i]) * (at.point[i] - v[0].point[i]);
@@ -272,7 +272,7 @@ static void break_up(struct shape *s, int32_t end, int32_t worst)
     s->looked = 0;
 }
 
-/* Fit a window of the run, and make pieces of its first part. */
+/* Fit a window of the run, and make segments of its first part. */
 static void pass_window(struct shape *s, int32_t end)
 {
     struct shape_run *r = &s->run;
@@ -296,18 +296,18 @@ static void pass_window(struct shape *s, int32_t end)
     forget(s, shape_run_drop(r, n));
 }
 
-/* Fit the run, or its part before a corner, up to a vertex, and make pieces of it. */
+/* Fit the run, or its part before a corner, up to a vertex, and make segments of it. */
 static void finish(struct shape *s, int32_t end, bool stop)
 {
     struct shape_run *r = &s->run;
-    struct piece_state at;
+    struct segment_state at;
 
     if (end == 1 && !r->begun && !r->bound && !stop) {
         push_chord(s);
         return;
     }
     if (stop) {
-        piece_at(&s->next, s->next_from, &at);
+        segment_at(&s->next, s->next_from, &at);
     }
     const int32_t bad = shape_run_fit(r, end, true, stop ? &at : NULL);
     if (bad == -2) {
@@ -320,19 +320,19 @@ static void finish(struct shape *s, int32_t end, bool stop)
     }
     commit(s, r->spans);
     if (stop) {
-        s->stretch = s->made;
+        s->cut_from = s->made;
     } else {
         shape_corner_begin(s, end, 0.0);
     }
     restart(s, end);
 }
 
-/* Make all pieces that can be made now. */
+/* Make all segments that can be made now. */
 static void pump(struct shape *s)
 {
     struct shape_run *r = &s->run;
 
-    while (s->running && s->made - s->gone + ROOM <= SHAPE_PIECES) {
+    while (s->running && s->made - s->gone + ROOM <= SHAPE_SEGMENTS) {
         const bool open = s->closing == SHAPE_OPEN;
         const int32_t corner = shape_turn_next(r, &s->looked, open && !full(r), open);
         const double reach = r->vertex[s->looked].s - r->vertex[0].s;
@@ -347,13 +347,13 @@ static void pump(struct shape *s)
             return;
         }
     }
-    if (s->ended && !s->running && s->made - s->gone + 2 <= SHAPE_PIECES) {
+    if (s->ended && !s->running && s->made - s->gone + 2 <= SHAPE_SEGMENTS) {
         if (s->exact) {
             push_whole(s, s->whole.length);
         }
         settle_loose(s);
         s->corner = false;
-        s->stretch = s->made + SHAPE_HELD; /* all are finished */
+        s->cut_from = s->made + SHAPE_HELD; /* all are finished */
         if (s->made > s->gone) {
             shape_made(s, s->made - 1)->rest = true;
         }
@@ -362,7 +362,7 @@ static void pump(struct shape *s)
 
 static bool room(const struct shape *s)
 {
-    return s->made - s->gone + ROOM <= SHAPE_PIECES && s->marks - s->marks_gone < SHAPE_MARKS
+    return s->made - s->gone + ROOM <= SHAPE_SEGMENTS && s->marks - s->marks_gone < SHAPE_MARKS
            && (!s->running || (s->closing == SHAPE_OPEN && !full(&s->run)));
 }
 
@@ -375,7 +375,7 @@ static void push_mark(struct shape *s, const struct command *c)
 
 static void take_long(struct shape *s, const struct path *path, double tolerance)
 {
-    const struct piece p = shape_whole(path, &s->law);
+    const struct segment p = shape_whole(path, &s->law);
 
     if (s->running) {
         struct shape_run *r = &s->run;

@@ -40,12 +40,12 @@ static const double SAGITTA = 0.05;
 /* A corner cuts no more of an arc or a cubic than this angle, by the curvature at its end. [rad] */
 static const double ARC = 0.5;
 
-struct piece *shape_made(struct shape *s, int64_t number)
+struct segment *shape_made(struct shape *s, int64_t number)
 {
-    return &s->piece[number % SHAPE_PIECES];
+    return &s->segment[number % SHAPE_SEGMENTS];
 }
 
-void shape_push(struct shape *s, const struct piece *p)
+void shape_push(struct shape *s, const struct segment *p)
 {
     *shape_made(s, s->made) = *p;
     s->made++;
@@ -58,9 +58,9 @@ void shape_corner_begin(struct shape *s, int32_t end, double tolerance)
 
     s->corner = true;
     s->corner_made = s->made;
-    s->corner_stretch = s->stretch;
+    s->corner_cut_from = s->cut_from;
     s->corner_tolerance = tolerance;
-    s->stretch = s->made;
+    s->cut_from = s->made;
     s->tail_points = n;
     for (int32_t k = 0; k < n; k++) {
         const struct shape_vertex *v = &s->run.vertex[end + 1 - n + k];
@@ -78,19 +78,19 @@ static void add(struct shape_way *w, const double point[AXES], double u, double 
     w->points++;
 }
 
-/* Chords of a long piece at a corner: one of a line; of an arc equal ones over `half` and one more.
- * *left is the tolerance that they leave. Their number; 0: they leave none. */
-static int32_t chords(const struct piece *p, double half, double tolerance, double *step,
+/* Chords of a long segment at a corner: one of a line; of an arc equal ones over `half` and one
+ * more. *left is the tolerance that they leave. Their number; 0: they leave none. */
+static int32_t chords(const struct segment *p, double half, double tolerance, double *step,
                       double *left)
 {
-    struct piece_bounds b;
+    struct segment_bounds b;
 
     *step = p->length;
     *left = tolerance;
-    if (p->kind == PIECE_LINE) {
+    if (p->kind == SEGMENT_LINE) {
         return 1;
     }
-    piece_bounds(p, 0.0, p->length, &b);
+    segment_bounds(p, 0.0, p->length, &b);
     const double most = sqrt(8.0 * SAGITTA * tolerance / b.most[1]);
     const int32_t n = (int32_t)el_min(20.0, ceil(half / most));
     *step = half / n;
@@ -100,11 +100,11 @@ static int32_t chords(const struct piece *p, double half, double tolerance, doub
 
 static bool way_before(struct shape *s, double half, struct shape_way *w)
 {
-    const struct piece *p = shape_made(s, s->corner_made - 1);
-    struct piece_state at;
+    const struct segment *p = shape_made(s, s->corner_made - 1);
+    struct segment_state at;
     double step, left;
 
-    if (p->kind == PIECE_CURVE) {
+    if (p->kind == SEGMENT_CURVE) {
         int32_t k = s->tail_points - 2;
         while (k > 0 && s->tail_u[k] > -half) {
             k--;
@@ -119,7 +119,7 @@ static bool way_before(struct shape *s, double half, struct shape_way *w)
     }
     const int32_t n = chords(p, half, s->corner_tolerance, &step, &left);
     for (int32_t k = n; k >= 0; k--) {
-        piece_at(p, el_max(0.0, p->length - k * step), &at);
+        segment_at(p, el_max(0.0, p->length - k * step), &at);
         add(w, at.point, half - k * step, left);
     }
     return n > 0;
@@ -128,11 +128,11 @@ static bool way_before(struct shape *s, double half, struct shape_way *w)
 static bool way_behind(struct shape *s, double before, double half, double tolerance,
                        struct shape_way *w)
 {
-    const struct piece *p = shape_made(s, s->corner_made);
-    struct piece_state at;
+    const struct segment *p = shape_made(s, s->corner_made);
+    struct segment_state at;
     double step, left;
 
-    if (p->kind == PIECE_CURVE) {
+    if (p->kind == SEGMENT_CURVE) {
         for (int32_t k = 1; k < s->run.vertices && w->points < SHAPE_WAY; k++) {
             const struct shape_vertex *v = &s->run.vertex[k];
             add(w, v->point, before + v->u - s->run.vertex[0].u, v->tolerance);
@@ -144,7 +144,7 @@ static bool way_behind(struct shape *s, double before, double half, double toler
     }
     const int32_t n = chords(p, half, tolerance, &step, &left);
     for (int32_t k = 1; k <= n && w->points < SHAPE_WAY; k++) {
-        piece_at(p, el_min(p->length, k * step), &at);
+        segment_at(p, el_min(p->length, k * step), &at);
         add(w, at.point, before + k * step, left);
     }
     return n > 0;
@@ -154,8 +154,8 @@ static bool way_behind(struct shape *s, double before, double half, double toler
  * turn off the vertex. Between lines r' along the bisector is constant, as in one quintic, so that
  * all else is along the normal and the same for each turn. Returns how far off it is. [mm]
  */
-static double middle(const struct piece_state *in, const struct piece_state *out, double half,
-                     double part, struct piece_state *m)
+static double middle(const struct segment_state *in, const struct segment_state *out, double half,
+                     double part, struct segment_state *m)
 {
     const double bend = (BEND + MORE_BEND * (2.0 * CUT - part)) / half;
     double square = 0.0;
@@ -170,9 +170,9 @@ static double middle(const struct piece_state *in, const struct piece_state *out
     return part * half * sqrt(square);
 }
 
-/* Where a corner cuts: in which piece before and behind it, and where in these. [mm] */
+/* Where a corner cuts: in which segment before and behind it, and where in these. [mm] */
 struct cut {
-    int64_t piece[2];
+    int64_t segment[2];
     double at[2];
 };
 
@@ -180,37 +180,37 @@ struct cut {
  * length times half the turn off the vertex, else one. Their number; 0: not within the tolerance.
  */
 static int32_t attempt(struct shape *s, double half, double part, double tolerance,
-                       struct piece p[2], struct cut *c)
+                       struct segment p[2], struct cut *c)
 {
     struct shape_way way = { .points = 0 };
-    struct piece_state a, b, in, out, m;
+    struct segment_state a, b, in, out, m;
 
-    c->piece[0] = s->corner_made - 1;
-    c->piece[1] = s->corner_made;
-    piece_at(shape_made(s, c->piece[0]), shape_made(s, c->piece[0])->length, &in);
-    piece_at(shape_made(s, c->piece[1]), 0.0, &out);
-    c->at[0] = shape_made(s, c->piece[0])->length - half;
+    c->segment[0] = s->corner_made - 1;
+    c->segment[1] = s->corner_made;
+    segment_at(shape_made(s, c->segment[0]), shape_made(s, c->segment[0])->length, &in);
+    segment_at(shape_made(s, c->segment[1]), 0.0, &out);
+    c->at[0] = shape_made(s, c->segment[0])->length - half;
     while (c->at[0] < 0.0) {
-        c->piece[0]--;
-        c->at[0] += shape_made(s, c->piece[0])->length;
+        c->segment[0]--;
+        c->at[0] += shape_made(s, c->segment[0])->length;
     }
     c->at[1] = half;
-    while (c->at[1] > shape_made(s, c->piece[1])->length) {
-        c->at[1] -= shape_made(s, c->piece[1])->length;
-        c->piece[1]++;
+    while (c->at[1] > shape_made(s, c->segment[1])->length) {
+        c->at[1] -= shape_made(s, c->segment[1])->length;
+        c->segment[1]++;
     }
-    const struct piece *x = shape_made(s, c->piece[0]), *y = shape_made(s, c->piece[1]);
-    const double more = x->kind == PIECE_CURVE ? el_max(0.0, SLIVER * x->length - c->at[0]) : 0.0;
+    const struct segment *x = shape_made(s, c->segment[0]), *y = shape_made(s, c->segment[1]);
+    const double more = x->kind == SEGMENT_CURVE ? el_max(0.0, SLIVER * x->length - c->at[0]) : 0.0;
     const double less =
-        y->kind == PIECE_CURVE ? el_max(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
+        y->kind == SEGMENT_CURVE ? el_max(0.0, c->at[1] - (1.0 - SLIVER) * y->length) : 0.0;
     c->at[0] += more;
     c->at[1] -= less;
     const double before = half - more, behind = half - less;
     if (!(before > 0.0 && behind > 0.0) || !way_before(s, before, &way)) {
         return 0;
     }
-    piece_at(x, c->at[0], &a);
-    piece_at(y, c->at[1], &b);
+    segment_at(x, c->at[0], &a);
+    segment_at(y, c->at[1], &b);
     if (part <= 0.0) {
         return way_behind(s, before, behind, tolerance, &way)
                && shape_join(&p[0], &a, &b, before + behind, &way);
@@ -227,13 +227,13 @@ static int32_t attempt(struct shape *s, double half, double part, double toleran
                : 0;
 }
 
-/* Puts n pieces in the place of what they cut off. */
-static void insert(struct shape *s, const struct piece *p, int32_t pieces, const struct cut *c)
+/* Puts n segments in the place of what they cut off. */
+static void insert(struct shape *s, const struct segment *p, int32_t segments, const struct cut *c)
 {
-    struct piece behind[SHAPE_SPANS];
+    struct segment behind[SHAPE_SPANS];
     int32_t n = 0;
 
-    for (int64_t k = c->piece[1]; k < s->made; k++) {
+    for (int64_t k = c->segment[1]; k < s->made; k++) {
         behind[n++] = *shape_made(s, k);
     }
     const double length = behind[0].length;
@@ -241,32 +241,32 @@ static void insert(struct shape *s, const struct piece *p, int32_t pieces, const
     if (left) {
         shape_cut(&behind[0], c->at[1], length);
     }
-    s->made = c->piece[0];
+    s->made = c->segment[0];
     if (c->at[0] > 0.0) {
-        shape_cut(shape_made(s, c->piece[0]), 0.0, c->at[0]);
+        shape_cut(shape_made(s, c->segment[0]), 0.0, c->at[0]);
         s->made++;
     }
-    for (int32_t k = 0; k < pieces; k++) {
+    for (int32_t k = 0; k < segments; k++) {
         *shape_made(s, s->made) = p[k];
         s->made++;
     }
-    s->stretch = s->made;
+    s->cut_from = s->made;
     for (int32_t k = left ? 0 : 1; k < n; k++) {
         *shape_made(s, s->made) = behind[k];
         s->made++;
     }
 }
 
-static bool is_arc(const struct piece *p)
+static bool is_arc(const struct segment *p)
 {
-    return p->kind != PIECE_LINE && p->kind != PIECE_CURVE;
+    return p->kind != SEGMENT_LINE && p->kind != SEGMENT_CURVE;
 }
 
 /* Rounds the corner by such an attempt; false, and not done: it is not within the tolerance. */
 static bool rounded(struct shape *s, double half, double part, double tolerance)
 {
-    const struct piece *a = shape_made(s, s->corner_made - 1);
-    struct piece curve[2] = { { .feed = a->feed, .cap = a->cap, .ramp = a->ramp } };
+    const struct segment *a = shape_made(s, s->corner_made - 1);
+    struct segment curve[2] = { { .feed = a->feed, .cap = a->cap, .ramp = a->ramp } };
     struct cut c;
 
     curve[1] = curve[0];
@@ -274,8 +274,8 @@ static bool rounded(struct shape *s, double half, double part, double tolerance)
     if (n == 0) {
         return false;
     }
-    for (int64_t k = c.piece[0]; k <= c.piece[1]; k++) {
-        const struct piece *x = shape_made(s, k);
+    for (int64_t k = c.segment[0]; k <= c.segment[1]; k++) {
+        const struct segment *x = shape_made(s, k);
         for (int32_t i = 0; i < n; i++) {
             shape_obey(&curve[i], x->feed, x->cap, &x->ramp);
         }
@@ -287,16 +287,16 @@ static bool rounded(struct shape *s, double half, double part, double tolerance)
 /* CCN 24: a corner is none, cannot be rounded, or is tried with ever shorter curves. */
 void shape_corner_round(struct shape *s, double tolerance)
 {
-    struct piece *a = shape_made(s, s->corner_made - 1), *b = shape_made(s, s->corner_made);
-    struct piece_state in, out;
+    struct segment *a = shape_made(s, s->corner_made - 1), *b = shape_made(s, s->corner_made);
+    struct segment_state in, out;
     double turn = 0.0, bend = 0.0, before = 0.0, behind = 0.0, kin = 0.0, kout = 0.0;
 
     s->corner = false;
     if (s->corner_made == 0) {
         return; /* nothing before it: the chain begins here */
     }
-    piece_at(a, a->length, &in);
-    piece_at(b, 0.0, &out);
+    segment_at(a, a->length, &in);
+    segment_at(b, 0.0, &out);
     for (int i = 0; i < AXES; i++) {
         turn += (out.slope[i] - in.slope[i]) * (out.slope[i] - in.slope[i]);
         bend += (out.bend[i] - in.bend[i]) * (out.bend[i] - in.bend[i]);
@@ -307,20 +307,20 @@ void shape_corner_round(struct shape *s, double tolerance)
     kin = sqrt(kin);
     kout = sqrt(kout);
     if (turn <= SAME && sqrt(bend) <= SAME) {
-        s->stretch = s->corner_stretch;
+        s->cut_from = s->corner_cut_from;
         return;
     }
-    for (int64_t k = s->corner_made - 1; k >= s->corner_stretch && k >= s->corner_made - SHAPE_HELD;
-         k--) {
+    for (int64_t k = s->corner_made - 1;
+         k >= s->corner_cut_from && k >= s->corner_made - SHAPE_HELD; k--) {
         before += shape_made(s, k)->length;
     }
     for (int64_t k = s->corner_made; k < s->made && k < s->corner_made + SHAPE_HELD; k++) {
         behind += 0.5 * shape_made(s, k)->length;
     }
-    const double of_a = a->kind == PIECE_CURVE && s->tail_points > 0
+    const double of_a = a->kind == SEGMENT_CURVE && s->tail_points > 0
                             ? s->tail_tolerance[s->tail_points - 1]
                             : s->corner_tolerance;
-    const double of_b = b->kind == PIECE_CURVE ? s->run.vertex[1].tolerance : tolerance;
+    const double of_b = b->kind == SEGMENT_CURVE ? s->run.vertex[1].tolerance : tolerance;
     const double p = CUT * turn, q = CUT_CURVED * (kin + kout), most = el_min(of_a, of_b);
     const double plain = 2.0 * most / (p + sqrt(p * p + 4.0 * q * most));
     double room = el_min(before * (1.0 - 1e-9), behind);

@@ -55,7 +55,7 @@ static void put_bend(struct shape_fit *f)
 }
 
 /* The three control points of a state at a clamped end; h, h2: signed lengths of its spans. */
-static void of_state(const struct shape_run *r, const struct piece_state *s, double h, double h2,
+static void of_state(const struct shape_run *r, const struct segment_state *s, double h, double h2,
                      double *c0, double *c1, double *c2)
 {
     for (int i = 0; i < AXES; i++) {

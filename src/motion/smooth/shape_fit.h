@@ -21,7 +21,7 @@ struct shape_fit {
     int32_t spans, end;
     bool last;
     int32_t left, known_right; /* numbers of known control points at both ends */
-    const struct piece_state *stop;
+    const struct segment_state *stop;
     int axis[AXES], axes;                    /* axes that move, an even number */
     double extract[SHAPE_SPANS][4][4];       /* [Bernstein value][control point] */
     int32_t first[SHAPE_SPANS + 1];          /* vertices first[k] .. first[k + 1] - 1 are in

@@ -28,22 +28,22 @@ static double off_chord(const double x[AXES], const double a[AXES], const double
 }
 
 /* True if the part t0 .. t1 of the curve is within a distance of a chord. */
-static bool within(const struct piece *p, double t0, double t1, const double a[AXES],
+static bool within(const struct segment *p, double t0, double t1, const double a[AXES],
                    const double b[AXES], double square, int halvings)
 {
-    double c[AXES][PIECE_POINTS];
+    double c[AXES][SEGMENT_POINTS];
     bool inside = true;
 
     for (int i = 0; i < AXES; i++) {
-        for (int k = 0; k < PIECE_POINTS; k++) {
+        for (int k = 0; k < SEGMENT_POINTS; k++) {
             c[i][k] = p->origin[i] + p->control[k][i];
         }
-        bernstein_part(c[i], PIECE_POINTS - 1, t0, t1);
+        bernstein_part(c[i], SEGMENT_POINTS - 1, t0, t1);
     }
-    for (int k = 0; k < PIECE_POINTS; k++) {
+    for (int k = 0; k < SEGMENT_POINTS; k++) {
         const double x[AXES] = { c[0][k], c[1][k], c[2][k], c[3][k], c[4][k], c[5][k] };
         const bool in = off_chord(x, a, b) <= square;
-        if (!in && (k == 0 || k == PIECE_POINTS - 1)) {
+        if (!in && (k == 0 || k == SEGMENT_POINTS - 1)) {
             return false;
         }
         inside = inside && in;
@@ -57,15 +57,15 @@ static bool within(const struct piece *p, double t0, double t1, const double a[A
 }
 
 /* *t becomes where the curve is nearest to a point, not before `least`. Squared distance. [mm^2] */
-static double foot(const struct piece *p, const double x[AXES], double least, double *t)
+static double foot(const struct segment *p, const double x[AXES], double least, double *t)
 {
-    struct piece_state s;
+    struct segment_state s;
     double square = 0.0;
 
     for (int step = 0; step <= STEPS; step++) {
         double along = 0.0, ss = 0.0;
         *t = *t < least ? least : *t > 1.0 ? 1.0 : *t;
-        piece_at(p, *t * p->length, &s);
+        segment_at(p, *t * p->length, &s);
         square = 0.0;
         for (int i = 0; i < AXES; i++) {
             const double d = x[i] - s.point[i];
@@ -80,13 +80,13 @@ static double foot(const struct piece *p, const double x[AXES], double least, do
     return square;
 }
 
-bool shape_join(struct piece *p, const struct piece_state *a, const struct piece_state *b,
+bool shape_join(struct segment *p, const struct segment_state *a, const struct segment_state *b,
                 double length, const struct shape_way *way)
 {
     const double fifth = length / 5.0, second = length * length / 20.0;
     double before = 0.0;
 
-    p->kind = PIECE_CURVE;
+    p->kind = SEGMENT_CURVE;
     p->length = length;
     for (int i = 0; i < AXES; i++) {
         const double chord = b->point[i] - a->point[i];
@@ -118,23 +118,23 @@ bool shape_join(struct piece *p, const struct piece_state *a, const struct piece
     return true;
 }
 
-void shape_cut(struct piece *p, double from, double to)
+void shape_cut(struct segment *p, double from, double to)
 {
-    if (p->kind == PIECE_LINE) {
+    if (p->kind == SEGMENT_LINE) {
         for (int i = 0; i < AXES; i++) {
             p->start[i] += p->slope[i] * from;
         }
-    } else if (p->kind != PIECE_CURVE) {
+    } else if (p->kind != SEGMENT_CURVE) {
         p->from += from;
     } else {
         for (int i = 0; i < AXES; i++) {
-            double c[PIECE_POINTS];
-            for (int k = 0; k < PIECE_POINTS; k++) {
+            double c[SEGMENT_POINTS];
+            for (int k = 0; k < SEGMENT_POINTS; k++) {
                 c[k] = p->control[k][i];
             }
-            bernstein_part(c, PIECE_POINTS - 1, from / p->length, to / p->length);
+            bernstein_part(c, SEGMENT_POINTS - 1, from / p->length, to / p->length);
             p->origin[i] += c[0];
-            for (int k = 0; k < PIECE_POINTS; k++) {
+            for (int k = 0; k < SEGMENT_POINTS; k++) {
                 p->control[k][i] = c[k] - c[0];
             }
         }

@@ -1,4 +1,4 @@
-/* shape_join - two stretches of a path joined by a quintic that stays within a tolerance.
+/* shape_join - two segments of a path joined by a quintic that stays within a tolerance.
  *
  * It has the place, r' and r'' of both where it leaves them. Between two lines it is the curve with
  * r'' ~ x (1 - x), 0.1875 of its half length times the change of direction off the corner; a corner
@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#include "piece.h"
+#include "segment.h"
 
 enum { SHAPE_WAY = 48 };
 
@@ -24,10 +24,10 @@ struct shape_way {
 
 /* Join two states by a quintic: sets kind, length, origin, control. False: it is not within the
  * tolerance, or cannot be seen to be. */
-bool shape_join(struct piece *p, const struct piece_state *a, const struct piece_state *b,
+bool shape_join(struct segment *p, const struct segment_state *a, const struct segment_state *b,
                 double length, const struct shape_way *way);
 
-/* Leaves the part from .. to of a piece. */
-void shape_cut(struct piece *p, double from, double to);
+/* Leaves the part from .. to of a segment. */
+void shape_cut(struct segment *p, double from, double to);
 
 #endif

@@ -2,16 +2,16 @@
 
 int32_t shape_count(const struct shape *s)
 {
-    const int64_t stretch = s->corner ? s->corner_stretch : s->stretch;
+    const int64_t cut_from = s->corner ? s->corner_cut_from : s->cut_from;
     const int64_t end = s->corner ? s->corner_made : s->made;
-    const int64_t held = end - SHAPE_HELD > stretch ? end - SHAPE_HELD : stretch;
+    const int64_t held = end - SHAPE_HELD > cut_from ? end - SHAPE_HELD : cut_from;
 
     return (int32_t)((held < s->made ? held : s->made) - s->gone);
 }
 
-const struct piece *shape_piece(const struct shape *s, int32_t i)
+const struct segment *shape_segment(const struct shape *s, int32_t i)
 {
-    return &s->piece[(s->gone + i) % SHAPE_PIECES];
+    return &s->segment[(s->gone + i) % SHAPE_SEGMENTS];
 }
 
 int32_t shape_marks(const struct shape *s)

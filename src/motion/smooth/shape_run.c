@@ -21,8 +21,8 @@ enum { UNSETTLED = 2 };
 enum { ROUNDS = 24, FOLLOWS = 2, SPLIT = 2, LATE = 5 };
 static const double LONGER = 1.5, LONGER_LATE = 0.7;
 
-/* Most squared distance, in tolerance^2, of vertices that are not made into pieces yet: in the next
- * half of them, and in the rest. */
+/* Most squared distance, in tolerance^2, of vertices that are not made into segments yet: in the
+ * next half of them, and in the rest. */
 static const double NEARLY = 1.2, FAR = 4.0;
 
 double shape_spacing(double tolerance)
@@ -75,7 +75,7 @@ static void put_weights(struct shape_fit *f)
     }
 }
 
-/* How many spans become pieces once a fit is good: the rest depends on what comes. */
+/* How many spans become segments once a fit is good: the rest depends on what comes. */
 static int32_t sure(const struct shape_fit *f)
 {
     const int32_t rest = f->spans / 6 > 2 ? f->spans / 6 : 2;
@@ -110,7 +110,7 @@ void shape_run_afresh(struct shape_run *r)
     }
 }
 
-int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop)
+int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct segment_state *stop)
 {
     struct shape_fit f; /* large: each part is set where it is made */
 
@@ -163,7 +163,7 @@ static double least_jerk(double a, double b)
     return a > 0.0 && b > 0.0 ? least(a, b) : a + b;
 }
 
-void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limits *r)
+void shape_obey(struct segment *p, double feed, double cap, const struct ramp_limits *r)
 {
     p->feed = least(p->feed, feed);
     p->cap = least(p->cap, cap);
@@ -173,13 +173,13 @@ void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limi
     p->ramp.dec_jerk = least_jerk(p->ramp.dec_jerk, r->dec_jerk);
 }
 
-void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, struct piece *p)
+void shape_run_segment(const struct shape_run *r, int32_t k, int32_t *vertex, struct segment *p)
 {
     const double *t = r->knot + k;
     double m[4][4];
 
     memset(p, 0, sizeof *p);
-    p->kind = PIECE_CURVE;
+    p->kind = SEGMENT_CURVE;
     p->length = t[4] - t[3];
     shape_extract(t, m);
     for (int i = 0; i < AXES; i++) { /* from the first control point, so differences are small */

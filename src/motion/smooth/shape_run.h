@@ -2,12 +2,13 @@
  *
  * Control points are those of least  integral |r'''|^2 + sum of weight |r(u_i) - vertex_i|^2  over
  * a window; weights grow and knots come closer where the curve leaves the tolerance. Five sixths
- * of the window are then made into pieces, what they share with the rest holds in the next one.
+ * of the window are then made into segments, what they share with the rest holds in the next one.
  *
- * What holds of each piece that is made: a place u_i of the curve belongs to each vertex, in order;
- * (1) r(u_i) is within the tolerance of its vertex, and (2) the control points of the curve's parts
- * between u_i and u_i+1 are within the tolerance of the chord between the vertices. Then
- * - the curve is within the tolerance of the path: what lies around a chord is convex, so it holds
+ * What holds of each segment that is made: a place u_i of the curve belongs to each vertex, in
+ * order; (1) r(u_i) is within the tolerance of its vertex, and (2) the control points of the
+ * curve's parts between u_i and u_i+1 are within the tolerance of the chord between the vertices.
+ * Then - the curve is within the tolerance of the path: what lies around a chord is convex, so it
+ * holds
  *   the hull of the control points;
  * - the path is within the tolerance of the curve: a point of the chord has the foot of some point
  *   of its part of the curve, by continuity, and (2) bounds their distance; or it lies before the
@@ -20,7 +21,7 @@
 
 #include <stdint.h>
 
-#include "piece.h"
+#include "segment.h"
 
 enum {
     SHAPE_SPANS = 64,    /* most spans of a window */
@@ -49,9 +50,9 @@ struct shape_vertex {
 
 struct shape_run {
     int32_t vertices, placed; /* number of vertices; how many of them have a u */
-    bool begun;               /* pieces of it exist: knots and control points hold at the left */
+    bool begun;               /* segments of it exist: knots and control points hold at the left */
     bool bound;               /* it begins with the state `begin`, else with r'' = 0 */
-    struct piece_state begin;
+    struct segment_state begin;
     int32_t spans, fitted;        /* spans of the last fit; its last vertex */
     int32_t proved;               /* so many of its first spans keep the tolerance */
     int32_t kept;                 /* knots up to this one are good for the next window, too */
@@ -61,8 +62,8 @@ struct shape_run {
     struct shape_vertex vertex[SHAPE_VERTICES];
 };
 
-/* Lower the limits of a piece to those of a law, too. */
-void shape_obey(struct piece *p, double feed, double cap, const struct ramp_limits *r);
+/* Lower the limits of a segment to those of a law, too. */
+void shape_obey(struct segment *p, double feed, double cap, const struct ramp_limits *r);
 
 /* Distance of two points in six coordinates. [mm] */
 double shape_distance(const double a[AXES], const double b[AXES]);
@@ -74,17 +75,18 @@ double shape_spacing(double tolerance);
  * goes on behind, and less than all of it may be fitted. Returns -1 if
  * every chord of the spans that are proved is within its tolerance, -2 if the run is too long for
  * one window, else the vertex that is farthest out. */
-int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last, const struct piece_state *stop);
+int32_t shape_run_fit(struct shape_run *r, int32_t end, bool last,
+                      const struct segment_state *stop);
 
 /* After a fit that failed: places and weights as before it, but where knots hold. */
 void shape_run_afresh(struct shape_run *r);
 
-/* The span k of the fit as a piece, with the least of its chords' laws. *vertex: one before it or
+/* The span k of the fit as a segment, with the least of its chords' laws. *vertex: one before it or
  * the first in it; goes on to the latter. */
-void shape_run_piece(const struct shape_run *r, int32_t k, int32_t *vertex, struct piece *p);
+void shape_run_segment(const struct shape_run *r, int32_t k, int32_t *vertex, struct segment *p);
 
-/* The first n spans have been made into pieces. Returns how many vertices went with them: one that
- * lies before the first span left stays. */
+/* The first n spans have been made into segments. Returns how many vertices went with them: one
+ * that lies before the first span left stays. */
 int32_t shape_run_drop(struct shape_run *r, int32_t n);
 
 #endif

@@ -11,34 +11,34 @@ static const double SHARE = 1.0 / 3.0, GRAB = 60.0;
 
 enum { HALVINGS = 60 };
 
-struct piece shape_blank(const struct shape_law *l)
+struct segment shape_blank(const struct shape_law *l)
 {
-    return (struct piece){ .feed = l->feed, .cap = l->cap, .ramp = l->ramp };
+    return (struct segment){ .feed = l->feed, .cap = l->cap, .ramp = l->ramp };
 }
 
-struct piece shape_whole(const struct path *path, const struct shape_law *law)
+struct segment shape_whole(const struct path *path, const struct shape_law *law)
 {
-    struct piece p = shape_blank(law);
+    struct segment p = shape_blank(law);
     double at[AXES];
 
     p.length = path->length;
     if (path->arc || path->cubic) {
-        p.kind = path->arc ? PIECE_ARC : PIECE_CUBIC;
+        p.kind = path->arc ? SEGMENT_ARC : SEGMENT_CUBIC;
         p.path = *path;
         return p;
     }
-    p.kind = PIECE_LINE;
+    p.kind = SEGMENT_LINE;
     path_at(path, 0.0, at, p.slope);
     memcpy(p.start, path->start, sizeof p.start);
     return p;
 }
 
-struct path shape_whole_path(const struct piece *p)
+struct path shape_whole_path(const struct segment *p)
 {
     struct path path;
     double end[AXES];
 
-    if (p->kind != PIECE_LINE) {
+    if (p->kind != SEGMENT_LINE) {
         return p->path;
     }
     for (int i = 0; i < AXES; i++) {
@@ -68,7 +68,7 @@ int32_t shape_chords(const struct path *p, double length, double tolerance)
     return n <= SHAPE_CHORDS ? (int32_t)el_max(1.0, n) : 0;
 }
 
-double shape_grab(const struct piece *p, double tolerance)
+double shape_grab(const struct segment *p, double tolerance)
 {
     const struct path path = shape_whole_path(p);
     double way = el_min(SHARE * p->length, GRAB * tolerance);

@@ -32,7 +32,7 @@ static double period(const struct net_plan *p)
 /* Begin a line at the latest vertex. */
 static void begin_line(struct net_plan *p)
 {
-    struct pace_limits l;
+    struct speed_limits l;
     double place[AXES] = { 0.0 };
 
     for (int i = 0; i < AXES; i++) {

@@ -10,7 +10,7 @@
 static const double ANY = 1.0;
 
 void plan_chain_start(struct plan_chain *c, const double place[AXES], double tolerance,
-                      const struct pace_limits *l)
+                      const struct speed_limits *l)
 {
     c->open = true;
     c->full = false;
@@ -22,7 +22,7 @@ void plan_chain_start(struct plan_chain *c, const double place[AXES], double tol
     memcpy(c->end, place, sizeof c->end);
     memcpy(c->place, place, sizeof c->place);
     shape_start(&c->shape, tolerance);
-    pace_start(&c->pace, l);
+    speed_profile_start(&c->profile, l);
 }
 
 bool plan_chain_line(struct plan_chain *c, const double place[AXES], double feed)
@@ -56,53 +56,53 @@ bool plan_chain_ready(const struct plan_chain *c)
     return c->full || !c->open;
 }
 
-/* Give finished pieces of the shape to the pace, up to one with a rest at its end. */
+/* Give finished segments of the shape to the speed profile, up to one with a rest at its end. */
 static void join(struct plan_chain *c)
 {
-    while (!c->pace.closed && c->joined < shape_count(&c->shape)) {
-        const struct piece *p = shape_piece(&c->shape, c->joined);
-        if (!pace_join(&c->pace, p)) {
+    while (!c->profile.closed && c->joined < shape_count(&c->shape)) {
+        const struct segment *p = shape_segment(&c->shape, c->joined);
+        if (!speed_profile_join(&c->profile, p)) {
             return;
         }
-        c->pace.closed = p->rest;
+        c->profile.closed = p->rest;
         c->joined++;
     }
 }
 
-/* Compute the position of the motion and drop the pieces that it has passed. */
+/* Compute the position of the motion and drop the segments that it has passed. */
 static void look(struct plan_chain *c)
 {
-    const double way = c->pace.at.way;
-    struct piece_state s;
+    const double way = c->profile.at.way;
+    struct segment_state s;
     int32_t passed = 0;
 
     if (c->joined == 0) {
         return;
     }
-    while (passed + 1 < c->joined && way >= c->base + shape_piece(&c->shape, passed)->length) {
-        c->base += shape_piece(&c->shape, passed)->length;
+    while (passed + 1 < c->joined && way >= c->base + shape_segment(&c->shape, passed)->length) {
+        c->base += shape_segment(&c->shape, passed)->length;
         passed++;
     }
-    const struct piece *p = shape_piece(&c->shape, passed);
-    piece_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
+    const struct segment *p = shape_segment(&c->shape, passed);
+    segment_at(p, el_min(el_max(way - c->base, 0.0), p->length), &s);
     memcpy(c->place, s.point, sizeof s.point);
     c->joined -= passed;
     shape_drop(&c->shape, passed);
     shape_drop_marks(&c->shape, shape_marks(&c->shape));
 }
 
-/* Whether the motion rests at the end of a piece with a rest, or at the end of the chain. */
+/* Whether the motion rests at the end of a segment with a rest, or at the end of the chain. */
 static bool rests(const struct plan_chain *c)
 {
-    return c->pace.closed && pace_at_end(&c->pace);
+    return c->profile.closed && speed_profile_at_end(&c->profile);
 }
 
 double plan_chain_advance(struct plan_chain *c, double dt)
 {
     join(c);
-    dt = pace_advance(&c->pace, 1.0, dt);
+    dt = speed_profile_advance(&c->profile, 1.0, dt);
     look(c);
-    while (rests(c)) { /* the next piece begins at rest */
+    while (rests(c)) { /* the next segment begins at rest */
         shape_drop(&c->shape, c->joined);
         c->joined = 0;
         c->base = 0.0;
@@ -110,10 +110,10 @@ double plan_chain_advance(struct plan_chain *c, double dt)
             return dt;
         }
         c->stops++;
-        pace_start(&c->pace, &c->limits);
+        speed_profile_start(&c->profile, &c->limits);
         join(c);
         if (dt > 0.0) {
-            dt = pace_advance(&c->pace, 1.0, dt);
+            dt = speed_profile_advance(&c->profile, 1.0, dt);
             look(c);
         }
     }

@@ -188,7 +188,7 @@ static void anything(bool smooth)
             } else if (die < 0.0401 && i % 5 == 0 && MCC_motion_abort(&m) == 0) {
                 aborted = true;
             }
-            const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0;
+            const int chain = m.trajectory.motion == TRAJECTORY_CHAIN ? chain_number() : 0;
             if (!point(&r)) {
                 if (MCC_check_stop(&m)) {
                     break;
@@ -196,7 +196,7 @@ static void anything(bool smooth)
                 memset(v0, 0, sizeof v0);
                 continue;
             }
-            if (chain && m.mover.motion == MOVER_CHAIN && chain == chain_number()) {
+            if (chain && m.trajectory.motion == TRAJECTORY_CHAIN && chain == chain_number()) {
                 look(&x, way_of_tool(), &l);
             } else {
                 x.n = 0;
@@ -231,7 +231,7 @@ static void tolerance(void)
     send_zigzag(side);
     while (point(&r)) {
         CHECK(off_zigzag(side, &r) <= 0.1 * (1.0 + 1e-9));
-        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.mover.track.v) : slowest;
+        slowest = r.n > 100 && r.n < 2000 ? fmin(slowest, m.trajectory.lookahead.v) : slowest;
     }
     const double half = 0.1 / (0.1875 * sqrt(2.0));
     const double turn = sqrt(500.0 * half / (0.75 * sqrt(2.0)));

@@ -182,7 +182,7 @@ static void program(void)
     REFUSED(task_start(&m), MCC_COMMAND_NOTACCEPTED);
     REFUSED(task_set_origin(&m, 2, origin), MCC_COMMAND_NOTFINISHED);
     task_run(&m, &source);
-    CHECK_NEAR(m.ring.count + m.mover.mix.count, 2, 0.0);
+    CHECK_NEAR(m.ring.count + m.trajectory.mix.count, 2, 0.0);
     while (!MCC_check_stop(&m)) {
         m.written = *queue_peek(&m.queue, 0);
         queue_drop(&m.queue, 1);

@@ -86,13 +86,13 @@ static inline void smooth_ramps(bool on)
 
 static inline double way_of_tool(void)
 {
-    return m.mover.track.out_base + m.mover.track.out_s;
+    return m.trajectory.lookahead.out_base + m.trajectory.lookahead.out_s;
 }
 
 /* A number that is different for each chain: the index of its first command. */
 static inline int chain_number(void)
 {
-    return m.mover.track.started;
+    return m.trajectory.lookahead.started;
 }
 
 struct limits {

@@ -45,12 +45,12 @@ static double filled(int keep, bool smooth)
         for (; sent < COUNT && m.ring.count < keep; sent++) {
             send(&seed, sent, at, &side[sent]);
         }
-        const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0;
+        const int chain = m.trajectory.motion == TRAJECTORY_CHAIN ? chain_number() : 0;
         if (!point(&r)) {
             break;
         }
-        x.n = chain && m.mover.motion == MOVER_CHAIN && chain == chain_number() ? x.n : 0;
-        if (m.mover.motion == MOVER_CHAIN) {
+        x.n = chain && m.trajectory.motion == TRAJECTORY_CHAIN && chain == chain_number() ? x.n : 0;
+        if (m.trajectory.motion == TRAJECTORY_CHAIN) {
             look(&x, way_of_tool(), &l);
         }
         double change = 0.0, d = INFINITY;
@@ -113,18 +113,19 @@ static void feeds(bool smooth)
                 const double b = check_real(&seed, -0.1, 0.1) * size;
                 CHECK(MCC_line(&m, (double[AXES]){ a, b }) > 0);
             }
-            const int chain = m.mover.motion == MOVER_CHAIN ? chain_number() : 0;
+            const int chain = m.trajectory.motion == TRAJECTORY_CHAIN ? chain_number() : 0;
             const int was = r.last.command;
             if (!point(&r)) {
                 break;
             }
-            x.n = chain && m.mover.motion == MOVER_CHAIN && chain == chain_number() ? x.n : 0;
-            if (m.mover.motion == MOVER_CHAIN) {
+            x.n = chain && m.trajectory.motion == TRAJECTORY_CHAIN && chain == chain_number() ? x.n
+                                                                                              : 0;
+            if (m.trajectory.motion == TRAJECTORY_CHAIN) {
                 look(&x, way_of_tool(), &l);
                 /* S: the mean speed of a DDA time, part of which may lie in the one before. */
                 const double most = fmax(feed[r.last.command], smooth ? feed[was] : 0.0);
-                CHECK(m.mover.track.out_v <= most * (1.0 + 1e-6));
-                fastest += m.mover.track.out_v > 0.99 * most;
+                CHECK(m.trajectory.lookahead.out_v <= most * (1.0 + 1e-6));
+                fastest += m.trajectory.lookahead.out_v > 0.99 * most;
             }
         }
         CHECK(sent == COUNT && MCC_check_stop(&m));

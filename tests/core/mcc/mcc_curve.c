@@ -167,7 +167,7 @@ static void zigzag(void)
     send_zigzag(side);
     while (point(&r)) {
         CHECK(off_zigzag(side, &r) <= 0.1 * (1.0 + 1e-9));
-        slowest = r.n > 100 && r.n < 1800 ? fmin(slowest, m.mover.curve.place.rate) : slowest;
+        slowest = r.n > 100 && r.n < 1800 ? fmin(slowest, m.trajectory.curve.place.rate) : slowest;
     }
     const double half = 0.1 / (0.1875 * sqrt(2.0)), turn = sqrt(500.0 * half / 0.75);
     CHECK(slowest > 0.9 * turn);

@@ -64,7 +64,7 @@ static void dry_equals_wet(void)
     MCC_get_cpos(&pc.mcc, place);
     MCC_get_ppos(&pc.mcc, pulses);
     CHECK(place[0] == -3.0 && place[1] == 0.0 && place[2] == 0.0);
-    CHECK(memcmp(pc.mcc.mover.rest, place, sizeof place) == 0);
+    CHECK(memcmp(pc.mcc.trajectory.rest, place, sizeof place) == 0);
     CHECK(pulses[0] == -3000 && pulses[1] == 0 && pulses[2] == 0);
     CHECK_EQ(task_start(&pc.mcc), 0);
     wait(&c, at, 20000, text);

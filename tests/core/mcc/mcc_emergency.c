@@ -172,7 +172,7 @@ static void emergency_stop(void)
         b.lines.local.stop = true;
         periods(&b, part, 3 + 11); /* seen after two periods; a DDA time is 10.24 of them */
         CHECK_EQ(MCC_get_errcode(&pc.mcc), MCC_ERROR_STOP);
-        CHECK_EQ(pc.mcc.queue.count + pc.mcc.ring.count + pc.mcc.mover.mix.count, 0);
+        CHECK_EQ(pc.mcc.queue.count + pc.mcc.ring.count + pc.mcc.trajectory.mix.count, 0);
         CHECK_EQ(b.card.fifo[0].stock, 0);
         CHECK(pc.mcc.written.outputs.spindle == 0.0);
         const int32_t x = b.panel.signals.pulses[0];
@@ -438,8 +438,8 @@ static void in_position(double lag)
         const int32_t pulses = b.panel.signals.pulses[0], error = b.panel.signals.err[0];
         put_out = !put_out && pulses == 10000 ? b.now : put_out;
         within = put_out && !within && abs(error) <= 5 ? b.now : within;
-        freed = waits && !freed && !pc.mcc.mover.confirming ? b.now : freed;
-        waits = pc.mcc.mover.confirming;
+        freed = waits && !freed && !pc.mcc.trajectory.confirming ? b.now : freed;
+        waits = pc.mcc.trajectory.confirming;
         back = put_out && pulses < 10000 ? b.now : 0;
     }
     CHECK(put_out && (lag == 1.0 || within > put_out + 100 * BUS));

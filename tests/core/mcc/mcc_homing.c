@@ -145,7 +145,7 @@ static void same_place(void)
             CHECK(MCC_check_stop(&pc.mcc) && pc_done(&pc));
             CHECK(MCC_get_cpos(&pc.mcc, place) == 0 && place[0] == 0.0);
             CHECK(MCC_get_ppos(&pc.mcc, pulses) == 0 && pulses[0] == 0);
-            CHECK(pc.mcc.end[0] == 0.0 && pc.mcc.mover.rest[0] == 0.0);
+            CHECK(pc.mcc.end[0] == 0.0 && pc.mcc.trajectory.rest[0] == 0.0);
             CHECK_EQ(room.card.underflows, 0);
         }
     }

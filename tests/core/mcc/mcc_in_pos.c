@@ -19,7 +19,7 @@ static int wait_for_position(int mode, double settle, double timeout, double lef
     m.signals.err[1] = 1000;
     run(&r);
     CHECK_EQ(r.sum[1], 4000);
-    CHECK(m.mover.confirming && !MCC_check_stop(&m));
+    CHECK(m.trajectory.confirming && !MCC_check_stop(&m));
     do {
         m.signals.err[1] = (int32_t)left;
         left *= fade;
@@ -72,7 +72,7 @@ static void in_position_of_a_path(double tolerance)
     CHECK(MCC_line_x(&m, 5.0) > 0);
     CHECK(MCC_line_y(&m, 5.0) > 0);
     run(&r);
-    CHECK(r.sum[1] == 5000 && m.mover.confirming);
+    CHECK(r.sum[1] == 5000 && m.trajectory.confirming);
     CHECK_EQ(MCC_motion_abort(&m), 0); /* nothing is waited for any more */
     CHECK(MCC_check_stop(&m));
     CHECK(MCC_motion_delay(&m, 10.0) > 0);

@@ -237,7 +237,7 @@ static void overrides(void)
         run(30.0);
         CHECK(pc_done(&pc));
         CHECK_NEAR((double)room.at / CLOCK_HZ, rows[i].time + 0.5, 0.25);
-        CHECK_EQ(pc.mcc.mover.overrides, 0);
+        CHECK_EQ(pc.mcc.trajectory.overrides, 0);
     }
 }
 

@@ -104,14 +104,14 @@ static void cross_coupling(void)
         CHECK_NEAR(volts[0], 0.0, 1e-15);
     }
     /* the path turns left: the normal to the left is now -X */
-    look.foot = (struct trail_foot){ { 0.0 }, { 0.0, 1.0, 0.0 } };
+    look.foot = (struct commanded_path_foot){ { 0.0 }, { 0.0, 1.0, 0.0 } };
     law_tick(&c, &s, &look, 10.0, volts);
     CHECK_NEAR(volts[0], -2e-5 * 1000.0 * 400.0 * 0.02 * 100 * 1e-4, 1e-12);
     CHECK_NEAR(volts[1], 0.0, 1e-15);
     /* round a circle in a thousand steps the integral keeps its size */
     for (int n = 1; n <= 1000; n++) {
         const double a = acos(-1.0) * (0.5 + n * 2e-3);
-        look.foot = (struct trail_foot){ { 0.0 }, { cos(a), sin(a), 0.0 } };
+        look.foot = (struct commanded_path_foot){ { 0.0 }, { cos(a), sin(a), 0.0 } };
         law_tick(&c, &s, &look, 10.0, volts);
     }
     CHECK_NEAR(s.sum[0], -0.02 * 100 * 1e-4, 1e-15);

@@ -332,7 +332,7 @@ static void jog_steps(void)
         run(&r);
         pulses += n;
         CHECK_EQ(r.sum[0], pulses);
-        CHECK_EQ(m.mover.pulses[0], pulses);
+        CHECK_EQ(m.trajectory.pulses[0], pulses);
     }
     CHECK(MCC_check_stop(&m));
 }
@@ -449,7 +449,8 @@ static void range(void)
         task_run(&m, NULL);
         queue_drop(&m.queue, m.queue.count);
     }
-    CHECK(MCC_check_stop(&m) && m.mover.pulses[0] < -700000000 && m.mover.pulses[0] > -730000000);
+    CHECK(MCC_check_stop(&m) && m.trajectory.pulses[0] < -700000000
+          && m.trajectory.pulses[0] > -730000000);
     (void)r;
 }
 

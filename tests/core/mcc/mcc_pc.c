@@ -342,7 +342,7 @@ static void conservation(void)
         MCC_get_ppos(&pc.mcc, ppos);
         for (int k = 0; k < 2; k++) {
             CHECK_EQ(c.sum[k], ppos[k]);
-            CHECK_EQ(c.sum[k], pc.mcc.mover.pulses[k]);
+            CHECK_EQ(c.sum[k], pc.mcc.trajectory.pulses[k]);
             CHECK(aborts || c.sum[k] == (int32_t)lround(end[k] * 1000.0));
         }
     }

@@ -32,7 +32,7 @@ static void arcs(void)
         begin(mcc_machine());
         CHECK_EQ(arc[plane](&m, 5.0 * side, 5.0, 0.0, 10.0), 1);
         CHECK_NEAR(sweep(plane, 5.0), side * acos(-1.0), 1e-9);
-        CHECK_NEAR(m.mover.rest[SECOND[plane]], 10.0, 1e-12);
+        CHECK_NEAR(m.trajectory.rest[SECOND[plane]], 10.0, 1e-12);
     }
 }
 
@@ -45,7 +45,8 @@ static void circles(void)
         begin(mcc_machine());
         CHECK_EQ(circle[plane](&m, 0.0, -3.0, k % 2), 1);
         CHECK_NEAR(sweep(plane, -3.0), (k % 2 ? 2.0 : -2.0) * acos(-1.0), 1e-9);
-        CHECK(m.mover.rest[0] == 0.0 && m.mover.rest[1] == 0.0 && m.mover.rest[2] == 0.0);
+        CHECK(m.trajectory.rest[0] == 0.0 && m.trajectory.rest[1] == 0.0
+              && m.trajectory.rest[2] == 0.0);
     }
 }
 

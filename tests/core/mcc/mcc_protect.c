@@ -439,11 +439,11 @@ static void overflow(void)
         reaction_look(&m, &l);
         CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_TRACK + 1);
         CHECK_EQ(m.queue.count, flying);
-        CHECK_EQ(m.mover.pulses[1], y);
-        CHECK_NEAR(m.mover.rest[1], y / 1000.0, 0.0005001);
+        CHECK_EQ(m.trajectory.pulses[1], y);
+        CHECK_NEAR(m.trajectory.rest[1], y / 1000.0, 0.0005001);
         task_run(&m, NULL);
         CHECK_EQ(m.queue.count, flying);
-        CHECK_NEAR(m.end[1], m.mover.rest[1], 0.0);
+        CHECK_NEAR(m.end[1], m.trajectory.rest[1], 0.0);
         CHECK_EQ(MCC_clear_error(&m), flying ? MCC_COMMAND_NOTFINISHED : 0);
     }
 }

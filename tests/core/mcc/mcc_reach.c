@@ -10,16 +10,16 @@ static void drive_ramp(int32_t low[AXES], int32_t high[AXES])
 {
     const struct mechanism machine = machine_mechanism(&m.machine);
     const double dda = machine_dda_time(&m.machine);
-    const struct mover_beside beside = mcc_beside(&before);
+    const struct trajectory_beside beside = mcc_beside(&before);
     struct point p;
 
     before = m;
-    memcpy(low, before.mover.pulses, sizeof before.mover.pulses);
-    memcpy(high, before.mover.pulses, sizeof before.mover.pulses);
-    mover_abort(&before.mover, &before.ring);
-    while (!mover_resting(&before.mover, &before.ring)) {
-        mover_advance(&before.mover, &beside, dda);
-        mover_point(&before.mover, &beside, &machine, dda, &p);
+    memcpy(low, before.trajectory.pulses, sizeof before.trajectory.pulses);
+    memcpy(high, before.trajectory.pulses, sizeof before.trajectory.pulses);
+    trajectory_abort(&before.trajectory, &before.ring);
+    while (!trajectory_resting(&before.trajectory, &before.ring)) {
+        trajectory_advance(&before.trajectory, &beside, dda);
+        trajectory_point(&before.trajectory, &beside, &machine, dda, &p);
         for (int k = 0; k < AXES; k++) {
             low[k] = p.pulses[k] < low[k] ? p.pulses[k] : low[k];
             high[k] = p.pulses[k] > high[k] ? p.pulses[k] : high[k];
@@ -41,8 +41,8 @@ static int judged(int axis, bool upper, int32_t limit)
     }
     before = m;
     const struct mechanism mechanism = machine_mechanism(&machine);
-    const struct mover_beside beside = mcc_beside(&before);
-    return reach_beyond(&before.mover, &beside, &mechanism, machine_dda_time(&machine));
+    const struct trajectory_beside beside = mcc_beside(&before);
+    return reach_beyond(&before.trajectory, &beside, &mechanism, machine_dda_time(&machine));
 }
 
 /* A limit on the farthest point holds, one a pulse nearer does not. Points may miss the top of an
@@ -54,12 +54,12 @@ static int compared(bool arcs)
 
     drive_ramp(low, high);
     for (int k = 0; k < 2; k++) {
-        if (high[k] > m.mover.pulses[k] + 1) {
+        if (high[k] > m.trajectory.pulses[k] + 1) {
             CHECK_EQ(judged(k, true, high[k] + arcs), -1);
             CHECK_EQ(judged(k, true, high[k] - 1), k);
             n++;
         }
-        if (low[k] < m.mover.pulses[k] - 1) {
+        if (low[k] < m.trajectory.pulses[k] - 1) {
             CHECK_EQ(judged(k, false, low[k] - arcs), -1);
             CHECK_EQ(judged(k, false, low[k] + 1), k);
             n++;

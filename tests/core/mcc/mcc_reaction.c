@@ -129,7 +129,7 @@ static void pulse_limit_in_a_chain(char type)
         }
         run(&r);
         CHECK_EQ(MCC_get_errcode(&m), MCC_ERROR_SPEED);
-        CHECK_EQ(lround(m.end[0] * 1000.0), m.mover.pulses[0]);
+        CHECK_EQ(lround(m.end[0] * 1000.0), m.trajectory.pulses[0]);
         at_once += r.last.feed > 0.0; /* the first frame of the ramp was too large too */
         if (type == 'T' && r.last.feed == 0.0) {
             const double v = n / 1.024; /* [mm/s] up and down at 5 m/s^2, to three DDA times */

@@ -103,7 +103,7 @@ static void override_at_the_end(void)
             instants += MCC_check_stop(&m);
         }
         points_to_rest(4000);
-        CHECK(MCC_check_stop(&m) && m.ring.count == 0 && !m.mover.abort);
+        CHECK(MCC_check_stop(&m) && m.ring.count == 0 && !m.trajectory.abort);
     }
     CHECK(instants > 100);
 }

@@ -38,19 +38,19 @@ static bool planned(struct robot_config *c, int n)
     m.centre[1] = at[1] + radius * z[0];
     m.centre[2] = at[2];
     m.sweep = check_real(&seed, -20.0, 20.0);
-    return robot_move(&robot, c, &m, &why) == ROBOT_OK && robot.way.path.length > 1.0;
+    return robot_move(&robot, c, &m, &why) == ROBOT_OK && robot.tool_path.path.length > 1.0;
 }
 
-static void joints_at(const struct course_geometry *g, double part, double joint[OPW_JOINTS])
+static void joints_at(const struct arm_geometry *g, double part, double joint[OPW_JOINTS])
 {
     double place[AXES], slope[AXES];
 
-    path_at(&robot.way.path, part * robot.way.path.length, place, slope);
-    CHECK(course_kinematics().joints(g, place, joint));
+    path_at(&robot.tool_path.path, part * robot.tool_path.path.length, place, slope);
+    CHECK(arm_moves_kinematics().joints(g, place, joint));
 }
 
 /* Differences of the joints at a part of the path, over 2 h of the way. */
-static void differences(const struct course_geometry *g, double part, double h,
+static void differences(const struct arm_geometry *g, double part, double h,
                         const double near[OPW_JOINTS], double slope[OPW_JOINTS],
                         double bend[OPW_JOINTS])
 {
@@ -58,7 +58,7 @@ static void differences(const struct course_geometry *g, double part, double h,
 
     for (int k = 0; k < 3; k++) {
         memcpy(q[k], near, sizeof q[k]);
-        joints_at(g, part + (k - 1) * h / robot.way.path.length, q[k]);
+        joints_at(g, part + (k - 1) * h / robot.tool_path.path.length, q[k]);
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         slope[i] = (q[2][i] - q[0][i]) / (2.0 * h);
@@ -76,10 +76,10 @@ int main(void)
             continue;
         }
         struct manipulator arm = c.arm;
-        const struct course_geometry g = { &arm, &robot.course };
+        const struct arm_geometry g = { &arm, &robot.moves };
         const double size = pow(2.0, -floor(check_real(&seed, 2.0, 9.0)));
         const double from = size * floor(check_real(&seed, 0.0, 1.0 / size));
-        const double length = robot.way.path.length, h = 0.02;
+        const double length = robot.tool_path.path.length, h = 0.02;
         double middle[OPW_JOINTS], slope[OPW_JOINTS], bend[OPW_JOINTS];
         struct bounds b;
         moves++;
@@ -88,7 +88,7 @@ int main(void)
         for (int k = 1; k <= 4096; k++) {
             joints_at(&g, (from + 0.5 * size) * k / 4096, middle);
         }
-        if (!bounds_of(&g, &robot.way.path, from, from + size, middle, &b)) {
+        if (!bounds_of(&g, &robot.tool_path.path, from, from + size, middle, &b)) {
             continue;
         }
         known++;
@@ -103,7 +103,8 @@ int main(void)
         }
         /* On a part of 0.02 mm hardly anything is given away. */
         const double at = from + 0.5 * size, half = fmin(at, 0.01 / length);
-        if (at + half <= 1.0 && bounds_of(&g, &robot.way.path, at - half, at + half, middle, &b)) {
+        if (at + half <= 1.0
+            && bounds_of(&g, &robot.tool_path.path, at - half, at + half, middle, &b)) {
             differences(&g, at, h, middle, slope, bend);
             bool close = true;
             for (int i = 0; i < OPW_JOINTS; i++) {

@@ -23,13 +23,13 @@ static struct rig_watch line(const struct robot_config *c, const double a[3], co
     return w;
 }
 
-/* Far from singular places: one piece, ramps as the closed form has them, all of it at the feed. */
+/* Far from singular places: one segment, ramps as the closed form has them, else the feed. */
 static void plain(const struct robot_config *c)
 {
     const double a[3] = { 1100, -450, 350 }, b[3] = { 1100, 450, 350 };
     for (double feed = 30.0; feed < 400.0; feed *= 3.0) {
         const struct rig_watch w = line(c, a, b, DOWN, feed, 0.0);
-        CHECK_EQ(robot.way.count, 1);
+        CHECK_EQ(robot.tool_path.count, 1);
         CHECK_NEAR(w.slowest, feed, 1e-6 * feed);
         CHECK_NEAR(w.time, 900.0 / feed + feed / c->acc + c->smooth, 2.0 * CYCLE);
         CHECK_NEAR(robot.length, 900.0, 1e-6);
@@ -57,17 +57,17 @@ static void wrist(struct robot_config c)
         const double a[3] = { p.at[0], -100, p.at[2] + beside[k] };
         const double b[3] = { p.at[0], 100, p.at[2] + beside[k] };
         const struct rig_watch w = line(&c, a, b, AHEAD, 100, k ? 0.0 : NOISE);
-        printf("%g mm beside the wrist's singular place: %.3f s, %d pieces, path %.1e mm, joints"
+        printf("%g mm beside the wrist's singular place: %.3f s, %d segments, path %.1e mm, joints"
                " %.3f of their speeds, %.3f of their accelerations, slowest %.2g mm/s\n",
-               beside[k], w.time, robot.way.count, w.path, w.speed, w.acc, w.slowest);
+               beside[k], w.time, robot.tool_path.count, w.path, w.speed, w.acc, w.slowest);
         if (k == 0) {
-            CHECK_EQ(robot.way.count, 1);
+            CHECK_EQ(robot.tool_path.count, 1);
             CHECK_NEAR(w.slowest, 100.0, 1e-3);
             CHECK_EQ(opw_branch(&c.arm.opw, robot.joint) & OPW_FLIP, OPW_FLIP);
             all = w.time;
         } else {
             CHECK_EQ(opw_branch(&c.arm.opw, robot.joint) & OPW_FLIP, 0);
-            CHECK(w.time > all && w.time < all + 3.0 && robot.way.count < 200);
+            CHECK(w.time > all && w.time < all + 3.0 && robot.tool_path.count < 200);
             CHECK(k == 1 || (w.slowest > 0.0 && w.slowest < beside[k] * 7.6));
             CHECK(w.acc > 0.5);
         }
@@ -85,7 +85,7 @@ static void wrist(struct robot_config c)
     CHECK_NEAR(why.place[2], a[2], 1e-9);
     CHECK_NEAR(why.place[1], -100.0 + 200.0 * why.part, 1e-9);
     CHECK(robot_idle(&robot) && memcmp(&before.rear, &robot.rear, sizeof robot.rear) == 0
-          && before.course.count == robot.course.count);
+          && before.moves.count == robot.moves.count);
     m.feed = 0.5; /* the joints can follow that */
     CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
 

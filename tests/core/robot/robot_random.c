@@ -416,7 +416,8 @@ static bool whole(const struct jog *j, const double from[OPW_JOINTS], const stru
 {
     const bool turns = norm3(j->velocity) == 0.0;
     const double far = j->far > 0.0 ? j->far : turns ? TURNS : INFINITY;
-    double went = turns ? robot.way.path.length / COURSE_LEVER : apart(robot.rear, start->at);
+    double went =
+        turns ? robot.tool_path.path.length / ARM_MOVES_LEVER : apart(robot.rear, start->at);
 
     for (int i = 0; i < OPW_JOINTS && j->frame == ROBOT_IN_JOINTS; i++) {
         went = fmax(i > 0 ? went : 0.0, fabs(robot.rear_joint[i] - from[i]));

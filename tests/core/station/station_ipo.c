@@ -48,7 +48,7 @@ static void motion(bool event)
     CHECK_EQ(MCC_line_x(&s.pc.mcc, 12.5), 1);
     while (!reading().stopped && s.clock < 10 * (int64_t)STATION_HZ) {
         CHECK_EQ(station_run(&s, s.clock + c.pc.bus, NULL), STATION_OK);
-        dry += mover_moving(&s.pc.mcc.mover) && reading().queue == 0;
+        dry += trajectory_moving(&s.pc.mcc.trajectory) && reading().queue == 0;
     }
     const struct station_reading r = reading();
     const double seconds = (double)r.clock / STATION_HZ, frames = 1.35 / 1.024e-3;

@@ -1,6 +1,7 @@
 """A robot's soft controller, its card and its kinematics, from Python.
 
-The same C code as in the FMUs; see src/controllers: soft/README.md and robot_station/README.md.
+The same C code as in the FMUs; see robot_controller/README.md and robot_station/README.md in
+src/controllers.
 Lengths are mm and angles deg, as in programs; joints are numbered from 0. Poses are X Y Z A B C
 with R = Rz(C) Ry(B) Rx(A), or 4x4 matrices.
 """

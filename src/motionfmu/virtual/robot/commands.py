@@ -174,7 +174,7 @@ class Commands:
         texts.tell()
         if refused:
             raise RobotError(words.value.decode(), "PROGRAM")
-        trial = Struct("robot_soft")
+        trial = Struct("robot_controller")
         name = text(job)
         refused = c.binding_robot_start(
             self._state.pointer, read.pointer, name, trial.pointer, words

@@ -66,7 +66,7 @@ class RobotReading(Reading):
         line's way to its first slot [s]; the longest are irq_wait_most, cycle_time_most,
         line_latency_most.
     ... :
-        All names: ``dir(reading)``; meanings in src/controllers/soft/soft.h
+        All names: ``dir(reading)``; meanings in src/controllers/robot_controller/controller.h
         and src/devices/fpga/fpga.h.
     """
 

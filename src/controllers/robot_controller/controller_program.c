@@ -1,0 +1,237 @@
+#include "controller_parts.h"
+
+#include <math.h>
+
+void controller_program_start(struct controller *s, const struct controller_config *c,
+                              const struct orders_text *t)
+{
+    controller_program_drop(s);
+    s->trouble = (struct controller_trouble){ 0 };
+    s->first = s->given;
+    struct orders_config now = c->orders;
+    now.start.out = s->out;
+    orders_start(&s->orders, &now, t, &s->robot.pose);
+    s->program = s->orders.on ? PROGRAM_RUNS : PROGRAM_DROPPED;
+}
+
+void controller_program_drop(struct controller *s)
+{
+    s->orders.on = false;
+    s->program = controller_running(s) ? PROGRAM_DROPPED : s->program;
+    s->heads = s->count = s->output_count = 0;
+    s->next.kind = ORDER_NONE;
+    s->delay = 0;
+}
+
+/* End the program with what has gone wrong; moves that were given before run to their end. */
+static bool fail(struct controller *s, enum controller_error error, const struct order *order)
+{
+    s->trouble.error = error;
+    s->trouble.line = order->line;
+    s->trouble.fault = s->orders.job.fault;
+    controller_program_drop(s);
+    return true;
+}
+
+static bool other_tool(const struct pose *a, const struct pose *b)
+{
+    return memcmp(a, b, sizeof *a) != 0;
+}
+
+bool controller_program_ready(struct controller *s, const struct controller_config *c,
+                              const struct pose *tool)
+{
+    return robot_ready(&s->robot)
+           && (!other_tool(tool, &s->robot.tool)
+               || robot_tool(&s->robot, &c->robot, tool) == ROBOT_OK);
+}
+
+enum robot_status controller_program_give(struct controller *s, const struct controller_config *c,
+                                          struct robot_move *move, int32_t line,
+                                          struct robot_refusal *why)
+{
+    move->line = (int32_t)(s->given + 1);
+    const enum robot_status status = robot_move(&s->robot, &c->robot, move, why);
+    if (status == ROBOT_OK) {
+        s->given++;
+        s->move_line[s->given % CONTROLLER_MOVES] = line;
+    }
+    return status;
+}
+
+bool controller_program_move(struct controller *s, const struct controller_config *c,
+                             struct order *order)
+{
+    const struct pose *tool = order->plain ? &c->robot.arm.tool : &order->tool;
+    struct robot_move *m = &order->move;
+
+    if (!controller_program_ready(s, c, tool)) {
+        return false;
+    }
+    if (m->kind == ROBOT_CIRCLE) {
+        struct manipulator arm = c->robot.arm;
+        arm.tool = *tool;
+        const struct pose via =
+            order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
+        memcpy(m->via, via.at, sizeof m->via);
+    }
+    const enum robot_status status =
+        controller_program_give(s, c, m, order->line, &s->trouble.refusal);
+    if (status != ROBOT_OK && status != ROBOT_BUSY) {
+        s->trouble.status = status;
+        return fail(s, CONTROLLER_MOVE, order);
+    }
+    return status == ROBOT_OK;
+}
+
+bool controller_program_put(struct controller *s, const struct order *o)
+{
+    if (s->output_count == CONTROLLER_OUTPUTS) {
+        return false;
+    }
+    s->output[s->output_count++] = (struct controller_output){ .after = s->first + o->after,
+                                                               .analog = o->kind == ORDER_ANALOG,
+                                                               .mask = o->mask,
+                                                               .value = o->value,
+                                                               .index = o->index,
+                                                               .volt = o->amount };
+    return true;
+}
+
+/* Give the arm a move of the program; in single steps the start key lets each one go. */
+static bool carry_out_move(struct controller *s, const struct controller_config *c,
+                           const struct controller_panel *panel, struct order *o)
+{
+    const bool held = panel->single && !(robot_idle(&s->robot) && s->leave);
+
+    if (held || !controller_program_move(s, c, o)) {
+        return false;
+    }
+    s->leave = false;
+    return true;
+}
+
+/* End the program, once the arm rests and all outputs are put out. False: not yet. */
+static bool end(struct controller *s)
+{
+    if (!robot_idle(&s->robot) || s->output_count) {
+        return false;
+    }
+    controller_program_drop(s);
+    s->program = PROGRAM_ENDED;
+    return true;
+}
+
+/* Carry out an order. False: it cannot be done yet. */
+static bool carry_out(struct controller *s, const struct controller_config *c,
+                      const struct controller_panel *panel, struct order *o)
+{
+    const bool idle = robot_idle(&s->robot);
+
+    switch (o->kind) {
+    case ORDER_MOVE:   return carry_out_move(s, c, panel, o);
+    case ORDER_OUT:
+    case ORDER_ANALOG: return controller_program_put(s, o);
+    case ORDER_DELAY:  s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0; return idle;
+    case ORDER_PAUSE:
+        s->program = idle && !controller_key_take(&s->start) ? PROGRAM_PAUSED : PROGRAM_RUNS;
+        return idle && s->program == PROGRAM_RUNS;
+    case ORDER_END: return end(s);
+    default:        return fail(s, CONTROLLER_PROGRAM, o);
+    }
+}
+
+/* Whether a pause is the last order known; what stands behind it may look at inputs. */
+static bool pause_ahead(const struct controller *s)
+{
+    const int32_t last = (s->heads + s->count + CONTROLLER_QUEUE - 1) % CONTROLLER_QUEUE;
+    return (s->count > 0 ? &s->queue[last] : &s->next)->kind == ORDER_PAUSE;
+}
+
+void controller_program_poll(struct controller *s, const struct controller_config *c,
+                             const struct orders_text *t, const struct robot_job_inputs *in,
+                             int64_t clock)
+{
+    while (s->orders.on && s->count < c->depth) {
+        struct order *o = &s->queue[(s->heads + s->count) % CONTROLLER_QUEUE];
+        if (pause_ahead(s)) {
+            return;
+        }
+        orders_next(&s->orders, &c->orders, t, in, o);
+        if (o->kind == ORDER_NONE) {
+            return;
+        }
+        o->known = clock;
+        s->count++;
+    }
+}
+
+static bool fetch(struct controller *s, const struct controller_config *c,
+                  const struct orders_text *t, const struct robot_job_inputs *in)
+{
+    if (c->user) {
+        if (s->count == 0) {
+            s->report.starved += s->orders.on && robot_idle(&s->robot);
+            return false;
+        }
+        s->next = s->queue[s->heads];
+        s->heads = (s->heads + 1) % CONTROLLER_QUEUE;
+        s->count--;
+        return true;
+    }
+    orders_next(&s->orders, &c->orders, t, in, &s->next);
+    s->next.known = in->now / FPGA_CLOCK_NS;
+    return s->next.kind != ORDER_NONE;
+}
+
+/* What the program does until the next run; a delay goes on while inputs behind it are asked. */
+static void look_what_is_next(struct controller *s)
+{
+    if (controller_running(s) && s->program != PROGRAM_PAUSED) {
+        s->program = s->delay > 0                      ? PROGRAM_DELAYS
+                     : s->orders.on && s->orders.waits ? PROGRAM_WAITS
+                                                       : PROGRAM_RUNS;
+    }
+}
+
+int32_t controller_program_run(struct controller *s, const struct controller_config *c,
+                               const struct orders_text *t, const struct controller_panel *panel,
+                               const struct robot_job_inputs *in)
+{
+    int32_t done = 0;
+
+    s->delay -= s->delay > 0 ? c->slots * c->slot : 0;
+    while (controller_running(s) && done < c->lines && s->delay <= 0) {
+        if (s->next.kind == ORDER_NONE && !fetch(s, c, t, in)) {
+            break;
+        }
+        const struct order order = { .kind = s->next.kind, .known = s->next.known };
+        if (!carry_out(s, c, panel, &s->next)) {
+            break;
+        }
+        done++;
+        if (order.kind == ORDER_MOVE && s->known < 0) {
+            s->known = order.known;
+        }
+        s->next.kind = ORDER_NONE;
+    }
+    look_what_is_next(s);
+    return done;
+}
+
+void controller_program_outputs(struct controller *s, int64_t done)
+{
+    int32_t n = 0;
+
+    for (; n < s->output_count && s->output[n].after <= s->reached; n++) {
+        const struct controller_output *o = &s->output[n];
+        outbox_put(&s->outbox, done, o->mask, o->value);
+        s->out = (s->out & ~o->mask) | o->value;
+        if (o->analog) {
+            s->volt[o->index] = o->volt;
+            s->posts_ao = true;
+        }
+    }
+    s->output_count -= n;
+    memmove(s->output, s->output + n, (size_t)s->output_count * sizeof s->output[0]);
+}

@@ -1,0 +1,90 @@
+/* orders_job - the requests of a job as orders. */
+#include "orders_parts.h"
+
+static const double DEGREE = 0.017453292519943295;
+/* Flags of the inverse kinematics for BACK, DOWN, FLIP of a configuration. */
+static const int FLAG[3] = { OPW_BACK, OPW_ELBOW, OPW_FLIP };
+
+static struct pose frame_pose(const struct robot_job_frame *f)
+{
+    return pose_of(f->value, f->value + 3);
+}
+
+/* A point becomes a target. What its configuration leaves open is what is nearest, or on a path
+ * what the path leads to. */
+static void target_of(struct robot_target *t, const struct robot_job_point *p,
+                      const struct robot_job_frame *user)
+{
+    static const int TURNED[3] = { 0, 3, 5 };
+    const int32_t said[3] = { p->shoulder, p->elbow, p->wrist };
+
+    t->by_joints = p->kind == ROBOT_JOB_JOINTS;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        t->joint[i] = p->value[i] * DEGREE;
+        t->turn[i] = ROBOT_ANY_TURN;
+    }
+    const struct pose frame = frame_pose(user), there = pose_of(p->value, p->value + 3);
+    t->pose = pose_product(&frame, &there);
+    for (int i = 0; i < 3; i++) {
+        t->open |= said[i] == ROBOT_JOB_ANY ? FLAG[i] : 0;
+        t->branch |= said[i] == 1 ? FLAG[i] : 0;
+        if (p->turn[i] != ROBOT_JOB_ANY_TURN) {
+            t->turned = true;
+            t->turn[TURNED[i]] = p->turn[i];
+        }
+    }
+}
+
+static void job_move(struct order *order, const struct orders_config *c,
+                     const struct orders_text *t, const struct robot_job_request *r)
+{
+    struct robot_move *m = &order->move;
+
+    *m = (struct robot_move){ .line = r->line, .singular = c->singular, .share = 1.0 };
+    m->kind = r->path == ROBOT_JOB_JOINT  ? ROBOT_JOINTS
+              : r->path == ROBOT_JOB_LINE ? ROBOT_LINE
+                                          : ROBOT_CIRCLE;
+    m->share = r->tag == ROBOT_JOB_VJ ? r->speed / 100.0 : 1.0;
+    m->feed = r->tag == ROBOT_JOB_V ? r->speed : 0.0;
+    m->spin = r->tag == ROBOT_JOB_VR ? r->speed * DEGREE : 0.0;
+    m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
+    target_of(&m->target, &t->points->point[r->point], &t->points->user[r->user]);
+    order->plain = r->tool == 0;
+    order->tool = frame_pose(&t->points->tool[r->tool]);
+    if (m->kind == ROBOT_CIRCLE) {
+        target_of(&order->via, &t->points->point[r->via], &t->points->user[r->user]);
+    }
+}
+
+void orders_job_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                     const struct robot_job_inputs *in, struct order *order)
+{
+    struct robot_job_request r;
+
+    robot_job_next(&o->job, t->job, t->points, in, c->lines, &r);
+    order->line = r.line;
+    order->after = o->moves = o->job.moves;
+    o->waits = r.answer == ROBOT_JOB_WAIT;
+    switch (r.answer) {
+    case ROBOT_JOB_MOVE:
+        order->kind = ORDER_MOVE;
+        job_move(order, c, t, &r);
+        break;
+    case ROBOT_JOB_DOUT:
+        order->kind = ORDER_OUT;
+        order->mask = 1u << r.index;
+        order->value = r.on ? order->mask : 0;
+        order->after = r.after;
+        break;
+    case ROBOT_JOB_AOUT:
+        order->kind = ORDER_ANALOG;
+        order->index = r.index;
+        order->amount = r.volt;
+        order->after = r.after;
+        break;
+    case ROBOT_JOB_PAUSE: order->kind = ORDER_PAUSE; break;
+    case ROBOT_JOB_END:   order->kind = ORDER_END; break;
+    case ROBOT_JOB_FAULT: order->kind = ORDER_FAULT; break;
+    default:              order->kind = ORDER_NONE;
+    }
+}

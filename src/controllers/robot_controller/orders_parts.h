@@ -1,0 +1,17 @@
+/* orders_parts - the languages of orders, one file each. */
+#ifndef ORDERS_PARTS_H
+#define ORDERS_PARTS_H
+
+#include "orders.h"
+
+/* A part program: begin it at a pose of the tip; give its next order. */
+void orders_gcode_start(struct interpreter *in, const struct orders_config *c,
+                        const struct pose *at);
+void orders_gcode_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                       const struct robot_job_inputs *in, struct order *order);
+
+/* A job: give its next order. */
+void orders_job_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
+                     const struct robot_job_inputs *in, struct order *order);
+
+#endif

@@ -1,0 +1,187 @@
+#include "robot_job.h"
+
+#include <float.h>
+#include <string.h>
+
+#include "robot_job_reading.h"
+
+/* End the job that is being read. */
+static int end_job(struct robot_job_reading *in)
+{
+    if (in->p->jobs == 0) {
+        return 0;
+    }
+    in->s.line = in->last;
+    if (robot_job_move_arc_over(in) || robot_job_block_all_closed(in)) {
+        return -1;
+    }
+    return in->end_line > 0 || robot_job_reading_add(in, ROBOT_JOB_OP_RET) ? 0 : -1;
+}
+
+static int begin_job(struct robot_job_reading *in, const char *name, int32_t length)
+{
+    struct robot_job_program *p = in->p;
+    if (p->jobs == ROBOT_JOB_JOBS) {
+        in->s.r->high = ROBOT_JOB_JOBS;
+        return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_TOO_MANY);
+    }
+    struct robot_job *job = &p->job[p->jobs++];
+    memset(job, 0, sizeof *job);
+    memcpy(job->name, name, (size_t)length);
+    job->start = p->count;
+    job->line = in->last = in->s.line;
+    in->end_line = 0;
+    return 0;
+}
+
+static int32_t job_of(const struct robot_job_program *p, const char *name, int32_t length)
+{
+    for (int32_t i = 0; i < p->jobs; i++) {
+        int32_t n = 0;
+        while (n < length && p->job[i].name[n] == name[n]) {
+            n++;
+        }
+        if (n == length && p->job[i].name[n] == '\0') {
+            return i;
+        }
+    }
+    return -1;
+}
+
+/* Read JOB NAME or //NAME NAME. 1: it has been read, 0: the line is something else. */
+static int header(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_span name;
+    if (!s->name && !robot_job_scan_is(s, robot_job_scan_word(s), "JOB")) {
+        s->at = s->begin;
+        return 0;
+    }
+    const int32_t line = s->line, at = s->at;
+    if (end_job(in)) {
+        return -1;
+    }
+    s->line = line;
+    s->at = at;
+    if (robot_job_scan_name(s, ROBOT_JOB_NAME_MAX, &name)) {
+        return -1;
+    }
+    if (!robot_job_scan_over(s)) {
+        return robot_job_scan_unexpected(s);
+    }
+    const int32_t other = job_of(in->p, s->text + name.at, name.length);
+    if (other >= 0) {
+        s->r->other = in->p->job[other].line;
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_JOB_TWICE, name);
+    }
+    return begin_job(in, s->text + name.at, name.length) ? -1 : 1;
+}
+
+double robot_job_low(enum robot_job_operand_kind kind)
+{
+    return kind == ROBOT_JOB_B   ? 0.0
+           : kind == ROBOT_JOB_I ? INT16_MIN
+           : kind == ROBOT_JOB_D ? INT32_MIN
+                                 : -DBL_MAX;
+}
+
+double robot_job_high(enum robot_job_operand_kind kind)
+{
+    return kind == ROBOT_JOB_B   ? UINT8_MAX
+           : kind == ROBOT_JOB_I ? INT16_MAX
+           : kind == ROBOT_JOB_D ? INT32_MAX
+                                 : DBL_MAX;
+}
+
+int32_t robot_job_find(const struct robot_job_program *p, const char *name)
+{
+    int32_t length = 0;
+    while (length <= ROBOT_JOB_NAME_MAX && name[length] != '\0') {
+        length++;
+    }
+    return length <= ROBOT_JOB_NAME_MAX ? job_of(p, name, length) : -1;
+}
+
+/* Find the label of a jump, which must stand in the jump's own LOOP or in one around it. */
+static int find_label(struct robot_job_reading *in, struct robot_job_instruction *c, int32_t job)
+{
+    struct robot_job_program *p = in->p;
+    const struct robot_job_span name = { c->to, c->via };
+    for (int32_t i = 0; i < p->labels; i++) {
+        const struct robot_job_label *l = &p->label[i];
+        const struct robot_job_span other = { l->offset, l->length };
+        if (l->job != job || !robot_job_scan_same(in->s.text, other, name)) {
+            continue;
+        }
+        for (int32_t loop = c->inside; loop != l->inside; loop = p->instruction[loop].inside) {
+            if (loop < 0) {
+                in->s.r->other = p->instruction[l->inside].line;
+                return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_INTO_LOOP, name);
+            }
+        }
+        c->to = l->to;
+        return 0;
+    }
+    return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_LABEL, name);
+}
+
+/* Jumps and calls get the numbers of the instructions that their labels and jobs stand for. */
+static int find_names(struct robot_job_reading *in)
+{
+    struct robot_job_program *p = in->p;
+    int32_t job = -1;
+    for (int32_t i = 0; i < p->count; i++) {
+        struct robot_job_instruction *c = &p->instruction[i];
+        while (job + 1 < p->jobs && p->job[job + 1].start <= i) {
+            job++;
+        }
+        if (c->level == ROBOT_JOB_ANY
+            || (c->op != ROBOT_JOB_OP_JUMP && c->op != ROBOT_JOB_OP_CALL)) {
+            continue;
+        }
+        in->s.line = c->line;
+        if (c->level == 0) {
+            if (find_label(in, c, job)) {
+                return -1;
+            }
+        } else {
+            const int32_t there = job_of(p, in->s.text + c->to, c->via);
+            if (there < 0) {
+                return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_JOB,
+                                            (struct robot_job_span){ c->to, c->via });
+            }
+            c->to = p->job[there].start;
+        }
+        c->via = 0;
+    }
+    return 0;
+}
+
+int robot_job_read(struct robot_job_program *p, const struct robot_job_points *points,
+                   const char *text, int64_t length, struct robot_job_report *r)
+{
+    struct robot_job_reading in = { .p = p, .points = points };
+    int status;
+
+    p->count = p->jobs = p->labels = 0;
+    if (robot_job_scan_begin(&in.s, text, length, r)) {
+        return -1;
+    }
+    while ((status = robot_job_scan_line(&in.s)) > 0) {
+        status = header(&in);
+        if (status == 0 && p->jobs == 0) {
+            status = begin_job(&in, "MAIN", 4);
+        }
+        if (status < 0 || (status == 0 && robot_job_words(&in))) {
+            return -1;
+        }
+        in.last = in.s.line;
+    }
+    if (status < 0 || end_job(&in)) {
+        return -1;
+    }
+    if (p->jobs == 0) {
+        return robot_job_scan_fault(&in.s, ROBOT_JOB_BAD_EMPTY, (struct robot_job_span){ 0, 0 });
+    }
+    return find_names(&in);
+}

@@ -1,0 +1,137 @@
+/* robot_job - a robot's jobs in the words of INFORM: their text becomes instructions, and every
+ * fault is found before anything runs.
+ *
+ * The compiled program stays as it is while it runs (robot_job_run), so it is no part of a state.
+ */
+#ifndef ROBOT_JOB_H
+#define ROBOT_JOB_H
+
+#include "robot_job_points.h"
+
+enum {
+    ROBOT_JOB_INSTRUCTIONS = 4096, /* instructions */
+    ROBOT_JOB_JOBS = 64,
+    ROBOT_JOB_LABELS = 1024,   /* of all jobs */
+    ROBOT_JOB_NAME_MAX = 32,   /* [characters] of a job or label */
+    ROBOT_JOB_BLOCKS = 16,     /* IF, LOOP, WHILE inside each other */
+    ROBOT_JOB_LOOPS = 8,       /* of them LOOP */
+    ROBOT_JOB_CALLS = 12,      /* CALL inside each other, as the maker's job stack */
+    ROBOT_JOB_VARIABLES = 100, /* of each kind */
+    ROBOT_JOB_SIGNALS = 32,    /* IN#(1) .. IN#(32), OT#(1) .. OT#(32) */
+    ROBOT_JOB_ANALOGS = 8,     /* AI#(1) .. AI#(8), AO#(1) .. AO#(8) */
+    ROBOT_JOB_LEVELS = 8       /* PL=0 .. PL=8 */
+};
+
+#define ROBOT_JOB_VOLT_MAX 10.0 /* [V] of analog outputs, either sign */
+
+/* Kind of an operand: a constant, a variable (B 0 .. 255, I 16 bit, D 32 bit, R a double), a signal
+ * or an analog channel. Signals and channels count from 0 here. */
+enum robot_job_operand_kind {
+    ROBOT_JOB_NOTHING,
+    ROBOT_JOB_CONSTANT,
+    ROBOT_JOB_B,
+    ROBOT_JOB_I,
+    ROBOT_JOB_D,
+    ROBOT_JOB_R,
+    ROBOT_JOB_IN,
+    ROBOT_JOB_OT,
+    ROBOT_JOB_AI
+};
+
+struct robot_job_operand {
+    enum robot_job_operand_kind kind;
+    int32_t index;
+    double number; /* value of a CONSTANT: ON is 1, OFF 0 */
+};
+
+enum robot_job_relation {
+    ROBOT_JOB_ALWAYS,
+    ROBOT_JOB_EQUAL,
+    ROBOT_JOB_NOT_EQUAL,
+    ROBOT_JOB_LESS,
+    ROBOT_JOB_MORE,
+    ROBOT_JOB_AT_MOST,
+    ROBOT_JOB_AT_LEAST
+};
+
+enum robot_job_path { ROBOT_JOB_JOINT, ROBOT_JOB_LINE, ROBOT_JOB_CIRCLE };
+
+/* What the speed of a move counts: VJ [% of the joints' highest speeds], V [mm/s] or VR [deg/s] of
+ * the tool; DEFAULT: the speed in force. */
+enum robot_job_speed { ROBOT_JOB_DEFAULT, ROBOT_JOB_VJ, ROBOT_JOB_V, ROBOT_JOB_VR };
+
+enum robot_job_op {
+    ROBOT_JOB_OP_MOVE,
+    ROBOT_JOB_OP_SPEED,
+    ROBOT_JOB_OP_LEVEL,
+    ROBOT_JOB_OP_TOOL,
+    ROBOT_JOB_OP_USER,
+    ROBOT_JOB_OP_DOUT,
+    ROBOT_JOB_OP_AOUT,
+    ROBOT_JOB_OP_SET,
+    ROBOT_JOB_OP_ADD,
+    ROBOT_JOB_OP_SUB,
+    ROBOT_JOB_OP_MUL,
+    ROBOT_JOB_OP_DIV,
+    ROBOT_JOB_OP_WAIT,
+    ROBOT_JOB_OP_TIMER,
+    ROBOT_JOB_OP_JUMP,
+    ROBOT_JOB_OP_UNLESS,
+    ROBOT_JOB_OP_CALL,
+    ROBOT_JOB_OP_RET,
+    ROBOT_JOB_OP_LOOP,
+    ROBOT_JOB_OP_ENDLOOP,
+    ROBOT_JOB_OP_PAUSE,
+    ROBOT_JOB_OP_NOP
+};
+
+/* One instruction. Its condition decides whether it is done; for WAIT, whether the wait is over;
+ * for UNLESS (the beginning of IF, ELSEIF, WHILE), whether it does not jump. */
+struct robot_job_instruction {
+    enum robot_job_op op;
+    int32_t line;
+    enum robot_job_relation relation;
+    struct robot_job_operand left, right; /* compared; in SET .. DIV what changes, and by what */
+    int32_t to;  /* point; instruction; tool, user frame; level; signal, channel */
+    int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth */
+    enum robot_job_path path;
+    enum robot_job_speed tag;
+    int32_t inside; /* the LOOP it stands in, -1: none */
+    double speed;   /* in the unit of the tag */
+    int32_t level;  /* PL; ROBOT_JOB_ANY: the level in force */
+    double corner;  /* CR [mm]; 0: the level decides */
+    int64_t time;   /* [ns] length of a TIMER or WAIT; -1: without end */
+};
+
+struct robot_job {
+    char name[ROBOT_JOB_NAME_MAX + 1];
+    int32_t start; /* its first instruction */
+    int32_t line;
+};
+
+struct robot_job_label {
+    int32_t offset, length; /* [byte] place of its name in the text */
+    int32_t job, to, line;
+    int32_t inside; /* the LOOP it stands in, -1: none */
+};
+
+struct robot_job_program {
+    int32_t count, jobs, labels;
+    struct robot_job_instruction instruction[ROBOT_JOB_INSTRUCTIONS];
+    struct robot_job job[ROBOT_JOB_JOBS];
+    struct robot_job_label label[ROBOT_JOB_LABELS];
+};
+
+/* Read a program that may go to these points. -1: it is refused, the report says why, and *p is
+ * undefined. */
+int robot_job_read(struct robot_job_program *p, const struct robot_job_points *points,
+                   const char *text, int64_t length, struct robot_job_report *r);
+
+/* Least and greatest value of a variable of a kind: B, I, D; R takes anything finite. */
+double robot_job_low(enum robot_job_operand_kind kind);
+double robot_job_high(enum robot_job_operand_kind kind);
+
+/* Number of the job that has this name; -1: none has. */
+int32_t robot_job_find(const struct robot_job_program *p, const char *name);
+
+#endif

@@ -1,0 +1,186 @@
+#include "robot_job_reading.h"
+
+/* Ranges of what a program may ask for; a controller may do less. */
+#define V_MIN      0.1     /* [mm/s] */
+#define V_MAX      10000.0 /* [mm/s] */
+#define VR_MIN     0.1     /* [deg/s] */
+#define VR_MAX     1000.0  /* [deg/s] */
+#define VJ_MIN     0.01    /* [%] */
+#define VJ_MAX     100.0   /* [%] */
+#define CORNER_MIN 0.1     /* [mm] */
+#define CORNER_MAX 6553.5  /* [mm] as in the maker's language */
+
+/* Take VJ, V or VR and its value. 1: taken, 0: there is none. */
+static int speed_tag(struct robot_job_scan *s, struct robot_job_span w, enum robot_job_speed *tag,
+                     double *value)
+{
+    *tag = robot_job_scan_is(s, w, "VJ")   ? ROBOT_JOB_VJ
+           : robot_job_scan_is(s, w, "V")  ? ROBOT_JOB_V
+           : robot_job_scan_is(s, w, "VR") ? ROBOT_JOB_VR
+                                           : ROBOT_JOB_DEFAULT;
+    if (*tag == ROBOT_JOB_DEFAULT) {
+        return 0;
+    }
+    if (!robot_job_scan_take(s, '=')) {
+        return robot_job_scan_unexpected(s);
+    }
+    const double low = *tag == ROBOT_JOB_VJ ? VJ_MIN : *tag == ROBOT_JOB_V ? V_MIN : VR_MIN;
+    const double high = *tag == ROBOT_JOB_VJ ? VJ_MAX : *tag == ROBOT_JOB_V ? V_MAX : VR_MAX;
+    return robot_job_scan_number(s, low, high, value) ? -1 : 1;
+}
+
+/* Take P and the number of a point that is in the points file. 1: taken, 0: something else stands
+ * here. */
+static int take_point(struct robot_job_reading *in, int32_t *point)
+{
+    struct robot_job_scan *s = &in->s;
+    robot_job_scan_over(s);
+    const int32_t at = s->at;
+    const struct robot_job_span w = robot_job_scan_word(s);
+    *point = robot_job_scan_digits(s, w);
+    if (*point < 0 || !robot_job_scan_is(s, (struct robot_job_span){ w.at, 1 }, "P")) {
+        s->at = at;
+        return 0;
+    }
+    if (*point >= ROBOT_JOB_POINTS || in->points->point[*point].kind == ROBOT_JOB_NO_POINT) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT, w);
+    }
+    return 1;
+}
+
+static int take_tag(struct robot_job_scan *s, struct robot_job_span w,
+                    struct robot_job_instruction *c)
+{
+    enum robot_job_speed tag;
+    double speed = 0.0;
+    const int status = speed_tag(s, w, &tag, &speed);
+    if (status < 0) {
+        return -1;
+    }
+    if (status > 0) {
+        if (c->tag != ROBOT_JOB_DEFAULT) {
+            return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+        }
+        c->tag = tag;
+        c->speed = speed;
+        w.length = s->at - w.at;
+        return (c->tag == ROBOT_JOB_VJ) == (c->path == ROBOT_JOB_JOINT)
+                   ? 0
+                   : robot_job_scan_fault(s, ROBOT_JOB_BAD_KIND, w);
+    }
+    const bool level = robot_job_scan_is(s, w, "PL");
+    if (!level && !robot_job_scan_is(s, w, "CR")) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_WORD, w);
+    }
+    if (c->level != ROBOT_JOB_ANY || c->corner > 0.0) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+    }
+    if (!robot_job_scan_take(s, '=')) {
+        return robot_job_scan_unexpected(s);
+    }
+    return level ? robot_job_scan_whole(s, 0, ROBOT_JOB_LEVELS, &c->level)
+                 : robot_job_scan_number(s, CORNER_MIN, CORNER_MAX, &c->corner);
+}
+
+static int same_frames(struct robot_job_reading *in, int32_t via, int32_t end)
+{
+    const struct robot_job_point *a = &in->points->point[via], *b = &in->points->point[end];
+    return a->tool == b->tool && a->user == b->user
+               ? 0
+               : robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_FRAMES);
+}
+
+int robot_job_move_arc_over(struct robot_job_reading *in)
+{
+    const bool wrong = in->arc == 1 || in->arc == 2;
+    in->arc = 0;
+    if (wrong) {
+        in->s.line = in->arc_line;
+        return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_ARC_POINTS, in->arc_at);
+    }
+    return 0;
+}
+
+/* MOVC of one point: the first of three is a line, the second is kept, the third makes the arc. */
+static int arc_point(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    const struct robot_job_scan *s = &in->s;
+    in->arc_line = s->line;
+    in->arc_at = (struct robot_job_span){ s->begin, s->end - s->begin };
+    switch (++in->arc) {
+    case 1: c->path = ROBOT_JOB_LINE; return 0;
+    case 2:
+        in->via = *c;
+        in->p->count--;
+        return 0;
+    case 3:
+        c->via = in->via.to;
+        if (c->tag != in->via.tag || c->speed != in->via.speed) {
+            in->s.r->other = in->via.line;
+            return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_SPEED);
+        }
+        return same_frames(in, c->via, c->to);
+    default: return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_POINTS);
+    }
+}
+
+int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_MOVE);
+    int second = 0;
+    if (!c) {
+        return -1;
+    }
+    c->path = path;
+    const int status = take_point(in, &c->to);
+    if (status <= 0) {
+        return status < 0 ? -1 : robot_job_scan_unexpected(s);
+    }
+    if (path == ROBOT_JOB_CIRCLE) {
+        int32_t end;
+        second = take_point(in, &end);
+        if (second < 0) {
+            return -1;
+        }
+        c->via = second ? c->to : 0;
+        c->to = second ? end : c->to;
+    }
+    while (!robot_job_scan_over(s)) {
+        const struct robot_job_span w = robot_job_scan_word(s);
+        if (w.length == 0) {
+            return robot_job_scan_unexpected(s);
+        }
+        if (take_tag(s, w, c)) {
+            return -1;
+        }
+    }
+    if (path == ROBOT_JOB_CIRCLE && !second) {
+        return arc_point(in, c);
+    }
+    return second ? same_frames(in, c->via, c->to) : 0;
+}
+
+int robot_job_move_speed(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    int32_t seen = 0;
+    do {
+        const int32_t at = s->at;
+        const struct robot_job_span w = robot_job_scan_word(s);
+        struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_SPEED);
+        if (!c) {
+            return -1;
+        }
+        const int status = speed_tag(s, w, &c->tag, &c->speed);
+        if (status <= 0) {
+            s->at = at;
+            return status < 0 ? -1 : robot_job_scan_unexpected(s);
+        }
+        if (seen & 1 << c->tag) {
+            return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+        }
+        seen |= 1 << c->tag;
+    } while (!robot_job_scan_over(s));
+    return 0;
+}

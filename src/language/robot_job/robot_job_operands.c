@@ -1,0 +1,172 @@
+#include "robot_job_reading.h"
+
+#include <math.h>
+
+#define TIME_MAX 655.35 /* [s] as in the maker's language */
+
+/* The largest number that any operand may be. */
+#define CONSTANT_MAX 1e12
+
+/* Kind and index of a variable such as B000; NOTHING if the word is none. */
+static enum robot_job_operand_kind variable(const struct robot_job_scan *s, struct robot_job_span w,
+                                            int32_t *index)
+{
+    static const char LETTERS[] = "BIDR";
+    *index = robot_job_scan_digits(s, w);
+    for (int32_t i = 0; *index >= 0 && i < 4; i++) {
+        const char letter[2] = { LETTERS[i], '\0' };
+        if (robot_job_scan_is(s, (struct robot_job_span){ w.at, 1 }, letter)) {
+            return (enum robot_job_operand_kind)(ROBOT_JOB_B + i);
+        }
+    }
+    return ROBOT_JOB_NOTHING;
+}
+
+int robot_job_operand_channel(struct robot_job_reading *in, int32_t most, int32_t *index)
+{
+    struct robot_job_scan *s = &in->s;
+    if (!robot_job_scan_take(s, '#') || !robot_job_scan_take(s, '(')) {
+        return robot_job_scan_unexpected(s);
+    }
+    if (robot_job_scan_whole(s, 1, most, index)) {
+        return -1;
+    }
+    --*index;
+    return robot_job_scan_take(s, ')') ? 0 : robot_job_scan_unexpected(s);
+}
+
+/* Read a word that is a signal, an analog input or a variable. */
+static int named(struct robot_job_reading *in, struct robot_job_span w, struct robot_job_operand *o)
+{
+    struct robot_job_scan *s = &in->s;
+    if (robot_job_scan_is(s, w, "IN") || robot_job_scan_is(s, w, "OT")) {
+        o->kind = robot_job_scan_is(s, w, "IN") ? ROBOT_JOB_IN : ROBOT_JOB_OT;
+        return robot_job_operand_channel(in, ROBOT_JOB_SIGNALS, &o->index);
+    }
+    if (robot_job_scan_is(s, w, "AI")) {
+        o->kind = ROBOT_JOB_AI;
+        return robot_job_operand_channel(in, ROBOT_JOB_ANALOGS, &o->index);
+    }
+    o->kind = variable(s, w, &o->index);
+    if (o->kind == ROBOT_JOB_NOTHING) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_WORD, w);
+    }
+    if (o->index >= ROBOT_JOB_VARIABLES) {
+        s->r->low = 0;
+        s->r->high = ROBOT_JOB_VARIABLES - 1;
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_VALUE, w);
+    }
+    return 0;
+}
+
+int robot_job_operand(struct robot_job_reading *in, uint32_t kinds, struct robot_job_operand *o)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_span w = robot_job_scan_word(s);
+    int status;
+    *o = (struct robot_job_operand){ .kind = ROBOT_JOB_CONSTANT };
+    if (w.length > 0) {
+        status = named(in, w, o);
+    } else {
+        robot_job_scan_over(s);
+        w.at = s->at;
+        status = robot_job_scan_number(s, -CONSTANT_MAX, CONSTANT_MAX, &o->number);
+    }
+    w.length = s->at - w.at;
+    if (status) {
+        return -1;
+    }
+    return kinds & 1u << o->kind ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_KIND, w);
+}
+
+static enum robot_job_relation relation(struct robot_job_scan *s)
+{
+    if (robot_job_scan_take(s, '=')) {
+        return ROBOT_JOB_EQUAL;
+    }
+    if (robot_job_scan_take(s, '<')) {
+        return s->at < s->end && s->text[s->at] == '>'   ? (s->at++, ROBOT_JOB_NOT_EQUAL)
+               : s->at < s->end && s->text[s->at] == '=' ? (s->at++, ROBOT_JOB_AT_MOST)
+                                                         : ROBOT_JOB_LESS;
+    }
+    if (robot_job_scan_take(s, '>')) {
+        return s->at < s->end && s->text[s->at] == '=' ? (s->at++, ROBOT_JOB_AT_LEAST)
+                                                       : ROBOT_JOB_MORE;
+    }
+    return ROBOT_JOB_ALWAYS;
+}
+
+/* Read ON or OFF, which a signal is compared with. */
+static int on_or_off(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    if (robot_job_scan_over(s)) {
+        return robot_job_scan_unexpected(s);
+    }
+    const struct robot_job_span w = robot_job_scan_word(s);
+    c->right = (struct robot_job_operand){ .kind = ROBOT_JOB_CONSTANT };
+    c->right.number = robot_job_scan_is(s, w, "ON");
+    if ((c->right.number == 0.0 && !robot_job_scan_is(s, w, "OFF"))
+        || c->relation > ROBOT_JOB_NOT_EQUAL) {
+        return robot_job_scan_fault_line(s, ROBOT_JOB_BAD_COMPARE);
+    }
+    return 0;
+}
+
+int robot_job_operand_condition(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    enum {
+        VARIABLES = 1u << ROBOT_JOB_B | 1u << ROBOT_JOB_I | 1u << ROBOT_JOB_D | 1u << ROBOT_JOB_R,
+        LEFT = VARIABLES | 1u << ROBOT_JOB_IN | 1u << ROBOT_JOB_OT | 1u << ROBOT_JOB_AI,
+        RIGHT = VARIABLES | 1u << ROBOT_JOB_CONSTANT
+    };
+    struct robot_job_scan *s = &in->s;
+    const bool bracket = robot_job_scan_take(s, '(');
+
+    if (robot_job_operand(in, LEFT, &c->left)) {
+        return -1;
+    }
+    c->relation = relation(s);
+    if (c->relation == ROBOT_JOB_ALWAYS) {
+        return robot_job_scan_unexpected(s);
+    }
+    if (c->left.kind == ROBOT_JOB_IN || c->left.kind == ROBOT_JOB_OT
+            ? on_or_off(in, c)
+            : robot_job_operand(in, RIGHT, &c->right)) {
+        return -1;
+    }
+    return !bracket || robot_job_scan_take(s, ')') ? 0 : robot_job_scan_unexpected(s);
+}
+
+int robot_job_operand_if(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    if (robot_job_scan_over(s)) {
+        return 0;
+    }
+    const int32_t at = s->at;
+    if (!robot_job_scan_is(s, robot_job_scan_word(s), "IF")) {
+        s->at = at;
+        return robot_job_scan_unexpected(s);
+    }
+    return robot_job_operand_condition(in, c);
+}
+
+int robot_job_operand_time(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    const int32_t at = s->at;
+    double seconds;
+    if (!robot_job_scan_is(s, robot_job_scan_word(s), "T")) {
+        s->at = at;
+        return robot_job_scan_unexpected(s);
+    }
+    if (!robot_job_scan_take(s, '=')) {
+        return robot_job_scan_unexpected(s);
+    }
+    if (robot_job_scan_number(s, 0.0, TIME_MAX, &seconds)) {
+        return -1;
+    }
+    c->time = llround(seconds * 1e9);
+    return 0;
+}

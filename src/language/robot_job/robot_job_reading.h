@@ -1,0 +1,87 @@
+/* robot_job_reading - a program while it is being read, line by line.
+ *
+ * A function that returns -1 has written the report.
+ */
+#ifndef ROBOT_JOB_READING_H
+#define ROBOT_JOB_READING_H
+
+#include "robot_job.h"
+#include "robot_job_scan.h"
+
+/* A block that is still open: IF, LOOP or WHILE. */
+struct robot_job_block {
+    enum {
+        ROBOT_JOB_BLOCK_IF,
+        ROBOT_JOB_BLOCK_ELSE,
+        ROBOT_JOB_BLOCK_LOOP,
+        ROBOT_JOB_BLOCK_WHILE
+    } kind;
+    int32_t code; /* number of its latest IF, ELSEIF, WHILE or LOOP, which jumps if not taken */
+    int32_t out;  /* latest jump to the end of an IF, whose `to` is the jump before it; -1: none */
+    int32_t else_line;
+    int32_t line;
+    struct robot_job_span begin; /* the text that opened it */
+};
+
+struct robot_job_reading {
+    struct robot_job_program *p;
+    const struct robot_job_points *points;
+    struct robot_job_scan s;
+    struct robot_job_block block[ROBOT_JOB_BLOCKS];
+    int32_t blocks;
+    int32_t end_line; /* of END of this job, or 0 */
+    int32_t last;     /* latest line of this job so far */
+    int32_t arc;      /* number of MOVC of one point in a row so far: 0 .. 3 */
+    int32_t arc_line; /* line of the latest of them */
+    struct robot_job_span arc_at;
+    struct robot_job_instruction via; /* the second of them */
+};
+
+/* Append an instruction of this line, to be filled in. NULL: there are too many. */
+struct robot_job_instruction *robot_job_reading_add(struct robot_job_reading *in,
+                                                    enum robot_job_op op);
+
+/* robot_job_operands: what instructions work with. */
+
+/* Read a variable, signal, analog input or number; `kinds` has a bit for each kind that is
+ * allowed. */
+int robot_job_operand(struct robot_job_reading *in, uint32_t kinds, struct robot_job_operand *o);
+
+/* Read #(n) behind a name; *index is n - 1. */
+int robot_job_operand_channel(struct robot_job_reading *in, int32_t most, int32_t *index);
+
+/* Read a condition, `left relation right`, in brackets or not. */
+int robot_job_operand_condition(struct robot_job_reading *in, struct robot_job_instruction *c);
+
+/* Read IF and a condition, or find the end of the line. */
+int robot_job_operand_if(struct robot_job_reading *in, struct robot_job_instruction *c);
+
+/* Read T= and a time [s]. */
+int robot_job_operand_time(struct robot_job_reading *in, struct robot_job_instruction *c);
+
+/* robot_job_moves: MOVJ MOVL MOVC SPEED. */
+int robot_job_move(struct robot_job_reading *in, enum robot_job_path path);
+int robot_job_move_speed(struct robot_job_reading *in);
+
+/* Another instruction than MOVC follows: the MOVC of one point before it must be three. */
+int robot_job_move_arc_over(struct robot_job_reading *in);
+
+/* robot_job_blocks: IF ELSEIF ELSE ENDIF, LOOP ENDLOOP, WHILE ENDWHILE. */
+int robot_job_block_if(struct robot_job_reading *in);
+int robot_job_block_else(struct robot_job_reading *in, bool condition);
+int robot_job_block_endif(struct robot_job_reading *in);
+int robot_job_block_loop(struct robot_job_reading *in);
+int robot_job_block_endloop(struct robot_job_reading *in);
+int robot_job_block_while(struct robot_job_reading *in);
+int robot_job_block_endwhile(struct robot_job_reading *in);
+
+/* The job ends here, so no block may be open. */
+int robot_job_block_all_closed(struct robot_job_reading *in);
+
+/* Number of the innermost LOOP that is open; -1: none is. */
+int32_t robot_job_block_loop_inside(const struct robot_job_reading *in);
+
+/* robot_job_words: read one line. */
+int robot_job_words(struct robot_job_reading *in);
+
+#endif

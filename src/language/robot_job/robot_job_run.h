@@ -1,0 +1,108 @@
+/* robot_job_run - a program that runs: what it requests of the robot next.
+ *
+ * The program runs ahead of the motion, so that corners can be rounded. Moves are numbered 1, 2, ..
+ * as they are requested, and the caller says how many it has reached:
+ *  - a move joins the queue of the motion;
+ *  - an output carries `after`, the number of the latest move requested before it. It changes when
+ *    that move has reached its point: at rest, or where the path passes the corner if that is
+ *    rounded; at once if reached >= after. So it costs no stop;
+ *  - what looks at inputs or at time (IF and WAIT on IN# or AI#, DIN, AIN, TIMER, PAUSE, the end)
+ *    waits until all moves before it are reached: ROBOT_JOB_REACH. The caller may count a move as
+ *    reached where its zone begins.
+ * Call until the answer is none of MOVE, DOUT, AOUT, or the queue is full; then again next cycle.
+ */
+#ifndef ROBOT_JOB_RUN_H
+#define ROBOT_JOB_RUN_H
+
+#include "robot_job.h"
+
+enum {
+    ROBOT_JOB_IDLE_MAX = 1000000 /* instructions without motion, input, output or wait */
+};
+
+/* What is in force when a program starts. */
+struct robot_job_start {
+    int32_t job;   /* number of the job to start with */
+    double vj;     /* [%] 0.01 .. 100 */
+    double v;      /* [mm/s] */
+    double vr;     /* [deg/s] */
+    int32_t level; /* PL */
+    int32_t tool, user;
+    uint32_t out; /* present digital outputs; bit 0 is OT#(1) */
+};
+
+struct robot_job_call {
+    int32_t pc;                    /* next instruction; of a caller: where it goes on afterwards */
+    int32_t loop[ROBOT_JOB_LOOPS]; /* rounds left, -1: for ever */
+};
+
+/* State of a program that runs: plain bytes without pointers. */
+struct robot_job_run {
+    int32_t depth; /* calls inside each other */
+    struct robot_job_call frame[ROBOT_JOB_CALLS + 1];
+    int32_t whole[3][ROBOT_JOB_VARIABLES]; /* B I D */
+    double real[ROBOT_JOB_VARIABLES];      /* R */
+    int64_t moves;                         /* requested so far */
+    int64_t began;                         /* [ns] start of the WAIT or TIMER under way; -1: none */
+    int32_t idle;                          /* instructions since the latest request or input */
+    uint32_t out;                          /* digital outputs as set so far, ahead of the motion */
+    double speed[4];                       /* by enum robot_job_speed; [0] is not used */
+    int32_t rotary;                        /* MOVL and MOVC without a speed take VR: 0 or 1 */
+    int32_t level, tool, user;
+    int32_t ended;              /* 1: the program is over */
+    enum robot_job_fault fault; /* that stopped it */
+};
+
+/* What a program sees of the world. */
+struct robot_job_inputs {
+    int64_t now;                  /* [ns] from 0, never less than before */
+    int64_t reached;              /* number of moves that have reached their points */
+    uint32_t di;                  /* bit 0 is IN#(1) */
+    double ai[ROBOT_JOB_ANALOGS]; /* [V] */
+};
+
+enum robot_job_answer {
+    ROBOT_JOB_MOVE,  /* go to a point */
+    ROBOT_JOB_DOUT,  /* digital output `index` becomes `on`, after a move */
+    ROBOT_JOB_AOUT,  /* analog output `index` becomes `volt`, after a move */
+    ROBOT_JOB_REACH, /* needs reached = after; ask again */
+    ROBOT_JOB_WAIT,  /* WAIT, TIMER: ask again */
+    ROBOT_JOB_BUSY,  /* so many instructions are done: ask again next cycle */
+    ROBOT_JOB_PAUSE, /* stop until the operator goes on; then ask again */
+    ROBOT_JOB_END,   /* all moves are reached, nothing follows */
+    ROBOT_JOB_FAULT  /* stopped: `fault` */
+};
+
+struct robot_job_request {
+    enum robot_job_answer answer;
+    int32_t line;  /* of the program */
+    int64_t after; /* MOVE: its own number; else the latest move before */
+    /* MOVE */
+    enum robot_job_path path;
+    int32_t point, via;       /* numbers; via of CIRCLE only */
+    enum robot_job_speed tag; /* VJ, V or VR */
+    double speed;
+    int32_t level;      /* PL; 0: stop at the point */
+    double corner;      /* CR [mm]; 0: by level */
+    int32_t tool, user; /* those of the point, or in force */
+    /* DOUT, AOUT */
+    int32_t index; /* from 0 */
+    int32_t on;
+    double volt; /* [V] -10 .. 10 */
+    /* FAULT */
+    enum robot_job_fault fault;
+};
+
+void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *p,
+                     const struct robot_job_start *start);
+
+/* Carry the program on to its next request, by at most `most` instructions. */
+void robot_job_next(struct robot_job_run *run, const struct robot_job_program *p,
+                    const struct robot_job_points *points, const struct robot_job_inputs *in,
+                    int32_t most, struct robot_job_request *r);
+
+/* Number of the job that runs, and the line of its next instruction, for display. */
+int32_t robot_job_running(const struct robot_job_run *run, const struct robot_job_program *p,
+                          int32_t *line);
+
+#endif
