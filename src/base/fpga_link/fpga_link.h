@@ -1,5 +1,5 @@
 /* fpga_link - what crosses between a driver on a PC and its FPGA card, which plays pulses and
- * exchanges inputs and outputs: each member is declared once, for both sides and their FMUs.
+ * exchanges inputs and outputs: each member is declared once, for both sides.
  *
  *     driver   slots, outputs, analog outputs, levels -----------> card     struct fpga_host
  *     driver <- interrupts with their input image, counters ------ card     struct fpga_shown

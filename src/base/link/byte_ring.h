@@ -1,4 +1,4 @@
-/* byte_ring - a byte stream through a ring of 128 words, between two FMUs that see each other's
+/* byte_ring - a byte stream through a ring of 128 words, between two ends that see each other's
  * variables only at communication points.
  *
  * Byte n of a connection is byte n % 512 of the words, counted from the low end of word 0. Counts

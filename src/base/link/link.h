@@ -1,5 +1,5 @@
 /* link - what crosses between a host and its motion card at the instants of the bus grid: each
- * member is declared once, for both sides and for the variables of their FMUs.
+ * member is declared once, for both sides and for the variables of a co-simulation.
  *
  *     host    levels, mailboxes ------------------> card      struct link_host
  *     host <- counters, interrupt pages, number --- card      struct link_card
@@ -9,8 +9,8 @@
  * what it asks for is done once for each new number. A card shows 0 for an axis that it does not
  * use.
  *
- * The lists give type, name and elements of each member. An FMU has a variable of that type for
- * each, whose name has a prefix; LINK_CARRY copies one from or to it.
+ * The lists give type, name and elements of each member. A co-simulation has a variable of that
+ * type for each, whose name has a prefix; LINK_CARRY copies one from or to it.
  */
 #ifndef LINK_H
 #define LINK_H

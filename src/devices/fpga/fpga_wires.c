@@ -11,7 +11,7 @@ static int64_t clock_of(double clock)
 static void take_write(struct fpga *f, const struct fpga_host *host)
 {
     struct fpga_write w;
-    memset(&w, 0, offsetof(struct fpga_write, words)); /* padding, too, is part of a saved state */
+    memset(&w, 0, offsetof(struct fpga_write, words)); /* padding, too: equal states, equal bytes */
     w.seq = host->write_seq;
     w.clock = clock_of(host->write_clock);
     w.memory = host->write_memory;
