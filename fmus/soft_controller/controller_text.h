@@ -1,5 +1,5 @@
-/* controller_text - files of the soft_controller FMU: it reads the program and the points, and writes the
- * points that were taught. Included after fmi_model.h. */
+/* controller_text - files of the soft_controller FMU: it reads the program and the points, and
+ * writes the points that were taught. Included after fmi_model.h. */
 #ifndef CONTROLLER_TEXT_H
 #define CONTROLLER_TEXT_H
 

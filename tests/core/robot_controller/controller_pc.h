@@ -1,5 +1,5 @@
-/* controller_pc - for the tests: the robot controller on its PC, with an ideal card that plays every
- * memory in time. */
+/* controller_pc - for the tests: the robot controller on its PC, with an ideal card that plays
+ * every memory in time. */
 #ifndef CONTROLLER_PC_H
 #define CONTROLLER_PC_H
 

@@ -1,5 +1,5 @@
-/* controller_rig - for the tests: the driver and a card, which exchange their link at the instants of a
- * common grid. */
+/* controller_rig - for the tests: the driver and a card, which exchange their link at the instants
+ * of a common grid. */
 #ifndef CONTROLLER_RIG_H
 #define CONTROLLER_RIG_H
 

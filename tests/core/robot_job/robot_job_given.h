@@ -1,5 +1,5 @@
-/* robot_job_given - the points that the tests of the robot language use, and the reading of a program
- * with them. */
+/* robot_job_given - the points that the tests of the robot language use, and the reading of a
+ * program with them. */
 #ifndef ROBOT_JOB_GIVEN_H
 #define ROBOT_JOB_GIVEN_H
 
