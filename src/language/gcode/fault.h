@@ -6,8 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Each fault with its text, which fits behind "line 12: ". From FAULT_NOTE_COMMENT on they are
- * notes. */
+/* Each fault with its text, which fits behind "line 12: ". FAULT_NOTE_COMMENT begins the notes. */
 #define FAULT_TEXTS(X) \
     X(FAULT_NONE, "no fault") \
     X(FAULT_CHARACTER, "unexpected character") /* neither letter, comment nor end of line */ \

@@ -16,9 +16,9 @@ struct tool {
     double diameter;     /* [mm] */
 };
 
-/* Tools, in no order. An open table has no file behind it: a tool that it does not list exists all
- * the same, with offset and diameter 0. All zero is an empty, open table. Tool 0 is the empty
- * spindle. */
+/* Tools in the order of their entry. An open table has no file behind it: a tool that it does not
+ * list exists all the same, with offset and diameter 0. All zero is an empty, open table. Tool 0
+ * is the empty spindle. */
 struct tool_table {
     bool closed;
     int32_t count;
@@ -39,8 +39,8 @@ struct tool_text {
 
 /* Take one line of a table, which closes it: T number, P pocket, X to W offsets and D diameter in
  * mm; a ; begins a comment. I J Q, of turning, are passed over. With angles A B C are the last
- * three axes, in degrees. Returns NULL, or what is wrong with the text at *at; then no tool is
- * added. */
+ * three axes, in degrees. Returns NULL; or, without adding a tool, what is wrong with the
+ * text at *at. */
 const char *tool_table_line(struct tool_table *t, const char *text, int32_t length, bool angles,
                             struct tool_text *at);
 

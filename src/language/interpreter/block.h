@@ -8,8 +8,7 @@
 
 #define BLOCK_DWELL_MAX 86400.0 /* [s] longest dwell, a day */
 
-/* Room for the block's next command, cleared but for its line; it counts once in->count is
- * raised. */
+/* Room for the block's next command, cleared but for its line; raising in->count counts it. */
 struct command *block_command(struct interpreter *in);
 
 /* The line of a block, with the place that r has; and f as a fault (or FAULT_NONE) of a line that
@@ -50,8 +49,8 @@ enum fault block_refusal(enum command_status s, const struct command_refusal *wh
                          struct fault_report *r);
 
 /* G28, G30: rapid to the end point of the block; then the axes that it names go on by a rapid to
- * the point that G28.1, G30.1 kept, at first machine zero. Without an axis word all go there at
- * once. */
+ * the point that G28.1, G30.1 kept, at first machine zero. Without an axis word all axes go
+ * there at once. */
 enum fault block_home(struct interpreter *in, const struct program *p, const struct block *b,
                       struct fault_report *r);
 

@@ -9,8 +9,7 @@
 #include "gcode.h"
 #include "modes.h"
 
-/* Execute a line of G5.2, which may begin a curve and add a control point, or G5.3, which ends
- * it. */
+/* Execute a line of G5.2, which begins a curve or adds a control point, or G5.3, which ends it. */
 enum fault nurbs_block(struct interpreter *in, const struct program *p, const struct block *b,
                        struct fault_report *r);
 
