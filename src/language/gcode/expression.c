@@ -140,7 +140,7 @@ static enum fault chain(struct reading *s, int least, bool bare, double *value)
 {
     const int32_t from = s->at;
     bool whole;
-    enum fault f = value_of(s, from - 1, value, &whole); /* behind [ or an operation */
+    enum fault f = value_of(s, from - 1, value, &whole); /* from the [ or operation in front */
 
     while (f == FAULT_NONE && reading_peek(s) != ']' && s->at < s->end) {
         const int32_t at = s->at;
@@ -237,7 +237,7 @@ static double of(enum function f, double x, bool fanuc)
     case ASIN: return el_asin(x) / DEGREE;
     case COS:  return el_cos(x * DEGREE);
     case EXP:  return el_exp(x);
-    case FIX: /* a zero without a sign, that ATAN would see */
+    case FIX: /* + 0.0 makes 0 of -0, which ATAN tells apart */
         return (fanuc && x < 0.0 ? ceil(x) : floor(x)) + 0.0;
     case FUP:         return (fanuc && x < 0.0 ? floor(x) : ceil(x)) + 0.0;
     case LN:          return el_log(x);

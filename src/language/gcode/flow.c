@@ -75,7 +75,7 @@ static enum fault seek_end(const struct flow_step *l, const char *label, int32_t
         }
     }
     *place = flow_behind(l->in);
-    flow_refuse(l, FAULT_O_END); /* of this line, whose text goes when others are read */
+    flow_refuse(l, FAULT_O_END); /* now: the line's text is gone when others are read */
     const char *const file = flow_file(l->in, place->file);
     enum fault g = oword_seek(l->s->program, file, label, words, stop, place, &is);
     if (g == FAULT_NONE && !is) {
@@ -174,7 +174,7 @@ static enum fault if_line(const struct flow_step *l)
         l->in->flow.opens--;
         return oword_alone(l->s);
     }
-    if (o && o->left) { /* a branch before it has run */
+    if (o && o->left) { /* a branch in front of it has run */
         return skip_to(l, l->o.label, OWORD_ENDIF, false);
     }
     enum fault f = l->o.is == OWORD_ELSE ? oword_alone(l->s) : condition(l, &value);
@@ -196,7 +196,7 @@ static enum fault loop_end(const struct flow_step *l, enum flow_kind kind, bool 
 {
     struct flow_open *o = innermost(l, kind);
 
-    l->in->flow.opens -= !more || kind == FLOW_WHILE; /* its line opens it again */
+    l->in->flow.opens -= !more || kind == FLOW_WHILE; /* the line of WHILE opens it again */
     reading_fault(l->s, FAULT_ENDLESS, l->at);
     return !more ? FAULT_NONE
                  : flow_again(l->in, kind == FLOW_WHILE ? o->here : o->behind, l->s->r);

@@ -9,8 +9,7 @@
 
 #include "oword.h"
 
-/* Lines that may be read again without a command that takes time; a fuzzer that runs slowly takes
- * fewer. */
+/* Lines that may be read again without a command that takes time. A slow fuzzer sets it lower. */
 #ifndef FLOW_AGAIN
 #define FLOW_AGAIN 1000000
 #endif

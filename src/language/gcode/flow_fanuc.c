@@ -167,7 +167,7 @@ static enum fault go_to(const struct flow_step *l)
     if (f != FAULT_NONE) {
         return f;
     }
-    flow_refuse(l, FAULT_SEQUENCE); /* of this line, whose text goes when others are read */
+    flow_refuse(l, FAULT_SEQUENCE); /* now: the line's text is gone when others are read */
     struct oword_place to = flow_behind(in);
     f = seek(l, what, -1, &to, &found);
     if (f == FAULT_NONE && !found) {

@@ -488,7 +488,7 @@ enum fault frame_change(struct interpreter *in, const struct program *p, const s
     if (turning == 690) {
         in->words.rotated = false;
     }
-    if (scaling != GCODE_ABSENT && in->words.rotated) { /* the order in which they apply */
+    if (scaling != GCODE_ABSENT && in->words.rotated) { /* scaling applies in front of rotation */
         return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_SCALING]);
     }
     if (scaling == 500) {

@@ -1,4 +1,4 @@
-/* frame - from coordinates as they are programmed to those of the machine and back.
+/* frame - turns program coordinates into machine coordinates, and back.
  *
  *     program -> scaling (G51) -> rotation (G68) -> + G52, G92 -> turn of the system (G10 L2 R)
  *             -> + origin of the system (G54 .. G59.3) and of the tool -> machine
@@ -12,7 +12,7 @@
 #include "gcode.h"
 #include "modes.h"
 
-/* Machine coordinates of program coordinates, and the other way round. [mm], [deg] */
+/* Machine coordinates [mm], [deg] of program coordinates, and the reverse. */
 void frame_machine(const struct interpreter *in, const double program[AXES], double machine[AXES]);
 void frame_program(const struct interpreter *in, const double machine[AXES], double program[AXES]);
 

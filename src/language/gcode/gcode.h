@@ -12,7 +12,7 @@
 /* Modal groups of RS-274 that have members here. */
 enum gcode_group {
     GCODE_NONMODAL,  /* G4 G10 G28 G28.1 G30 G30.1 G52 G53 G92 to G92.3 */
-    GCODE_MOTION,    /* G0 to G3 G5 to G5.3 G33.1 G73 G74 G80 to G89 */
+    GCODE_MOTION,    /* G0 to G3 G5 to G5.3 G33.1 G38.2 to G38.5 G73 G74 G80 to G89 */
     GCODE_PLANE,     /* G17 G18 G19 */
     GCODE_DISTANCE,  /* G90 G91 */
     GCODE_CENTRE,    /* G90.1 G91.1 */
@@ -26,7 +26,7 @@ enum gcode_group {
     GCODE_ROTATION,  /* G68 G69 */
     GCODE_POLAR,     /* G15 G16 */
     GCODE_RETRACT,   /* G98 G99 */
-    GCODE_STOP,      /* M0 M1 M2 M30 M60 */
+    GCODE_STOP,      /* M0 M1 M2 M30 M60 M98 M99 */
     GCODE_IO,        /* M62 .. M68 */
     GCODE_CHANGE,    /* M6 M61 */
     GCODE_SPINDLE,   /* M3 M4 M5 M19 */
@@ -35,7 +35,7 @@ enum gcode_group {
     GCODE_COOLANT,   /* M7 M8 M9 */
     GCODE_SAVING,    /* M70 .. M73 */
     GCODE_EXACT,     /* G9, of Fanuc's controls */
-    GCODE_MODAL,     /* G67, of theirs; G66 has words of its own */
+    GCODE_MODAL,     /* G67, of Fanuc's controls; G65 and G66 make a call (macro.h) */
     GCODE_USER,      /* M100 .. M199 */
     GCODE_GROUPS
 };
@@ -47,7 +47,7 @@ enum {
     GCODE_MORE_HAAS = 1540, /* G154, the same on Haas' controls */
     GCODE_USER_FIRST = 1000,
     GCODE_USER_LAST = 1990, /* M100, M199 */
-    GCODE_M_MAX = 4,        /* M words in a line */
+    GCODE_M_MAX = 4,        /* most M words in a block */
     GCODE_LETTERS = '^' - '@' + 1
 };
 
@@ -78,7 +78,7 @@ static inline bool gcode_spline(int code)
 /* The axis words in the order of the axes. */
 #define BLOCK_AXES "XYZUVW"
 
-/* One block on its way through the interpreter. */
+/* One block while it is executed. */
 struct block {
     struct tokens tokens;
     struct gcode g;

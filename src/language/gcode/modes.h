@@ -12,10 +12,10 @@
 #include "words.h"
 
 enum {
-    INTERPRETER_MADE = 24 /* commands of one block: outputs, moves, stop or end; 12 at most */
+    INTERPRETER_MADE = 24 /* room for the commands of one block, which are 12 at most */
 };
 
-/* What a program is read against; all of it constant while it runs. */
+/* What a program is read with. Nothing of it changes while the program runs. */
 struct program {
     const struct source *source;
     struct mechanism machine;

@@ -71,7 +71,7 @@ static enum fault system_of(const struct interpreter *in, const struct block *b,
     if (l->value != 2.0 && l->value != 20.0) {
         return tokens_at_word(r, FAULT_VALUE, l);
     }
-    if (b->fanuc && l->value == 20.0) { /* there it sets a system of G54.1 */
+    if (b->fanuc && l->value == 20.0) { /* L20 is of the systems of G54.1 there */
         *system = further(p);
         return *system < 0 ? tokens_at_word(r, FAULT_VALUE, p) : FAULT_NONE;
     }

@@ -179,7 +179,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
     block_delete(t, s);
     for (char c = reading_peek(s); c != '\0' && c != ';'; c = reading_peek(s)) {
         const int32_t from = s->at;
-        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s)); /* : as ISO has it */
+        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s)); /* : is O in ISO code */
         if ((c == 'O' || other) && first(t)) {
             t->flow = true;
             break;
@@ -187,7 +187,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
         const enum fault one = item(t, s, c);
         if (one != FAULT_NONE) {
             f = f == FAULT_NONE ? one : f;
-            s->r = &ignored; /* what follows the first fault is told no more */
+            s->r = &ignored; /* faults behind the first are not told */
             skip(s, from);
         }
     }

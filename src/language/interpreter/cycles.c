@@ -14,7 +14,7 @@ static const double REPEATS_MAX = 9999.0; /* highest L */
 static const double PECKS_MAX = 10000.0;  /* in one hole */
 static const double SAME = 1e-9; /* [mm] nearer places differ by rounding of offsets only */
 
-/* The steps of each cycle above its hole, and the words it needs beside R and the depth:
+/* The steps of each cycle from R on, and the words that it needs beside R and the depth:
  *
  *     d feed to the bottom         g feed one peck deeper; at the bottom go on behind the <
  *     u feed to R                  c rapid to RELIEF above what is drilled, R at most

@@ -191,7 +191,7 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
         return block_home(in, p, b, r);
     }
     if (b->g.code[GCODE_TOOL] == 431 || b->g.code[GCODE_TOOL] == 432) {
-        return FAULT_NONE; /* these have taken the axis words */
+        return FAULT_NONE; /* G43.1 and G43.2 have taken the axis words */
     }
     if (tools_measured(b)) {
         return tools_measure(in, p, b, r);

@@ -74,7 +74,7 @@ static bool take(struct check *k, struct fault_list *all, const struct fault_rep
     return !last(r->fault);
 }
 
-/* Read on until `room` faults are known. */
+/* Read the program to its end, or to the first fault if `room` is 1, or to fault room + 1. */
 static void check(struct interpreter *in, const struct program *p, int room, struct fault_list *all)
 {
     const int64_t most = p->check_again > 0 ? p->check_again : CHECK_AGAIN;
