@@ -75,10 +75,11 @@ struct flow_known_sub {
 /* Place of the end of a loop, a condition or a subprogram that has been found. */
 struct flow_known_end {
     int64_t from;        /* [byte] where the search began */
-    int32_t file, words; /* bits of oword_is, negated for the place behind the end */
+    int32_t file, words; /* of the search; bits of oword_is, negative: behind the end */
     struct oword_place place;
 };
 
+/* Where reading goes on: what is open, the calls that run, places that have been found. */
 struct flow {
     struct flow_open open[FLOW_OPEN];
     struct flow_call call[FLOW_CALLS];
@@ -86,7 +87,7 @@ struct flow {
     struct flow_modal modal;
     struct flow_known_sub sub[FLOW_KNOWN];
     struct flow_known_end end[FLOW_KNOWN];
-    int32_t subs, ends;                 /* entries of sub and end that are replaced next */
+    int32_t subs, ends; /* index of the entry of sub, of end that is replaced next */
     char file[FLOW_FILES][OWORD_LABEL]; /* names of the files called so far */
     int32_t files;
     double value;  /* #<_value>: what the latest return or endsub gave back */

@@ -87,12 +87,12 @@ struct rounding {
     struct command held; /* the motion, not yet shortened */
 };
 
-/* The NURBS that G5.2 has begun, until G5.3 ends it. */
 enum {
     NURBS_ORDER = 10,              /* highest L */
     NURBS_WINDOW = 2 * NURBS_ORDER /* control points that are kept */
 };
 
+/* The NURBS that G5.2 has begun, until G5.3 ends it. */
 struct nurbs {
     int32_t count;                 /* control points so far; 0: no curve has begun */
     int32_t order;                 /* L: one more than the degree */

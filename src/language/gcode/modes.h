@@ -98,6 +98,7 @@ struct saved_modes {
     int32_t side;        /* of cutter compensation */
 };
 
+/* The state of a part program that is read: its place in the text, modes, commands made. */
 struct interpreter {
     int64_t offset; /* [byte] of the next line in its text */
     int32_t line;   /* number of lines in front of it */
