@@ -6,10 +6,10 @@
 #include "elementary.h"
 #include "modes.h"
 
-static const double EQUAL = 1e-6; /* closer values are equal, as LinuxCNC documents it */
+static const double EQUAL = 1e-6; /* EQ: values differ by less, as LinuxCNC documents it */
 static const double DEGREE = 0.017453292519943295;
-static const double BITS_MOST = 2147483647.5; /* rounded they have 32 bits */
-enum { DEEPEST = 30 };                        /* brackets and signs within one another */
+static const double BITS_MOST = 2147483647.5; /* numbers below it, rounded, have 32 bits */
+enum { DEEPEST = 30 };                        /* brackets, signs and # within one another */
 
 enum operation {
     POWER,
@@ -35,14 +35,14 @@ static bool of_fanuc(const struct reading *s)
     return s->program && s->program->fanuc;
 }
 
-/* How firmly an operation binds. */
+/* Precedence of an operation: the higher one is applied first. */
 static int rank(enum operation o, bool fanuc)
 {
     const int logic = !fanuc ? 1 : o == AND ? 4 : 3;
     return o == POWER ? 5 : o <= MODULO ? 4 : o <= MINUS ? 3 : o <= AT_MOST ? 2 : logic;
 }
 
-/* The next operation; it is taken. */
+/* Take the next operation. */
 static enum operation operation(struct reading *s)
 {
     static const struct {
@@ -62,7 +62,7 @@ static enum operation operation(struct reading *s)
     return NO_OPERATION;
 }
 
-/* Remainder of the sign of none: from 0 to below |b|. */
+/* Remainder of a / b that is never negative: 0 <= remainder < |b|. */
 static double modulo(double a, double b)
 {
     const double rest = fmod(a, b);
@@ -93,7 +93,7 @@ static double apply(enum operation o, double a, double b)
     return 0.0;
 }
 
-/* AND, OR, XOR of the bits of two whole numbers, to the nearest; false: one is too large. */
+/* AND, OR, XOR of the bits of two values, rounded to whole numbers; false: one is too large. */
 static bool apply_bits(enum operation o, double a, double b, double *value)
 {
     if (!(fabs(a) < BITS_MOST && fabs(b) < BITS_MOST)) {
@@ -134,13 +134,13 @@ static enum fault join(struct reading *s, enum operation o, int32_t from, double
 
 static enum fault value_of(struct reading *s, int32_t from, double *value, bool *whole);
 
-/* Value, operation, value, ... as far as the operations bind at least as firmly as `least`; without
- * brackets around it (`bare`) it ends where no operation follows. */
+/* Read value, operation, value, ... up to an operation whose precedence is below `least`. Without
+ * brackets around it (`bare`) it also ends where no operation follows. */
 static enum fault chain(struct reading *s, int least, bool bare, double *value)
 {
     const int32_t from = s->at;
     bool whole;
-    enum fault f = value_of(s, from - 1, value, &whole); /* behind [ or an operation */
+    enum fault f = value_of(s, from - 1, value, &whole); /* from the [ or operation in front */
 
     while (f == FAULT_NONE && reading_peek(s) != ']' && s->at < s->end) {
         const int32_t at = s->at;
@@ -237,7 +237,7 @@ static double of(enum function f, double x, bool fanuc)
     case ASIN: return el_asin(x) / DEGREE;
     case COS:  return el_cos(x * DEGREE);
     case EXP:  return el_exp(x);
-    case FIX: /* a zero without a sign, that ATAN would see */
+    case FIX: /* + 0.0 makes 0 of -0, which ATAN tells apart */
         return (fanuc && x < 0.0 ? ceil(x) : floor(x)) + 0.0;
     case FUP:         return (fanuc && x < 0.0 ? floor(x) : ceil(x)) + 0.0;
     case LN:          return el_log(x);
@@ -327,7 +327,7 @@ enum fault expression_parameter(struct reading *s, struct parameter *which)
     return good && which->number > 0 ? FAULT_NONE : reading_fault(s, FAULT_PARAMETER, from);
 }
 
-/* A sign in front of anything but a number. */
+/* Read a sign and the value behind it, which is no number. */
 static enum fault signed_value(struct reading *s, int32_t from, double *value, bool *whole)
 {
     const bool minus = reading_peek(s) == '-';
@@ -343,7 +343,7 @@ static enum fault signed_value(struct reading *s, int32_t from, double *value, b
     return f;
 }
 
-/* What stands behind a sign is no number: the sign is one of a value. */
+/* Whether a parameter, brackets, a function or another sign stands behind the sign at s. */
 static bool sign_of_value(const struct reading *s)
 {
     int32_t i = s->at + 1;

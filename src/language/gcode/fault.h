@@ -1,12 +1,12 @@
-/* fault - why a command or a line of a part program is refused. */
+/* fault - why a block of a part program is refused, with the place and the values that a message
+ * needs; and notes, which tell of what is accepted but does nothing or something else here. */
 #ifndef FAULT_H
 #define FAULT_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Each fault with its text, which fits behind "line 12: ". The notes, which are no faults, are the
- * last. */
+/* Each fault with its text, which fits behind "line 12: ". FAULT_NOTE_COMMENT begins the notes. */
 #define FAULT_TEXTS(X) \
     X(FAULT_NONE, "no fault") \
     X(FAULT_CHARACTER, "unexpected character") /* neither letter, comment nor end of line */ \
@@ -179,11 +179,11 @@
 #define FAULT_ENTRY(name, text) name,
 enum fault { FAULT_TEXTS(FAULT_ENTRY) FAULT_COUNT };
 
-enum { FAULT_FILE = 32 }; /* [byte] of the name of a file that is called */
+enum { FAULT_FILE = 32 }; /* [byte] length of the name of a file that is called, with its 0 */
 
 enum { FAULT_LIST = 20, FAULT_NOTES = FAULT_COUNT - FAULT_NOTE_COMMENT };
 
-/* A note and where it stands, as below. */
+/* A note and its place; the members are those of struct fault_report. */
 struct fault_note {
     enum fault what;
     int32_t line, at, length;
@@ -191,23 +191,23 @@ struct fault_note {
     char file[FAULT_FILE];
 };
 
-/* Something wrong with a part program, or a note. */
+/* A fault of a part program with its place and values, and the notes of what has just been read. */
 struct fault_report {
     enum fault fault;
-    int32_t notes; /* of what has been read, each kind once */
+    int32_t notes; /* number of notes, each kind once */
     struct fault_note note[FAULT_NOTES];
-    int32_t line;                   /* source line, from 1 */
-    int64_t offset;                 /* [byte] where that line begins in the program, */
-    char file[FAULT_FILE];          /* or in a file that it calls, by its name; empty: none */
-    int32_t at, length;             /* offending text in the line */
-    int32_t other_at, other_length; /* of GROUP, SHARED: the word it does not agree with */
-    int32_t axis;                   /* of TRAVEL, SPEED: the joint */
-    double value, limit;            /* ARC_END, ARC_CHORD, TRAVEL [mm], FEED [mm/min];
-                                     * SPEED: of the joint's highest, and 1 */
-    double feed;                    /* SPEED: the largest that is possible there [mm/min] */
+    int32_t line;                   /* number of the line in its text, from 1 */
+    int64_t offset;                 /* [byte] where that line begins in its text */
+    char file[FAULT_FILE];          /* the called file that has the line; empty: the program */
+    int32_t at, length;             /* [characters] place of the offending text in the line */
+    int32_t other_at, other_length; /* GROUP, SHARED: place of the word it conflicts with */
+    int32_t axis;                   /* TRAVEL, SPEED: index of the joint */
+    double value, limit;            /* FEED [mm/min]; SPEED: share of the joint's highest speed,
+                                     * and 1; lengths of all others [mm] */
+    double feed;                    /* [mm/min] SPEED: highest feed that the joint allows */
 };
 
-/* All that is wrong with a part program, a line each, and the notes, once each. */
+/* The faults of a part program, one a line at most, and its notes, each kind once. */
 struct fault_list {
     int32_t count, notes;
     bool more; /* there are more faults than fit */
@@ -215,13 +215,13 @@ struct fault_list {
     struct fault_report note[FAULT_NOTES];
 };
 
-/* Note where the offending text stands in its line; returns f. */
+/* Set the place of the offending text in its line, without a second word; returns f. */
 enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t length);
 
-/* Note something that is no fault, in the line of *r. */
+/* Add a note on a text in the line of *r, unless *r has one of its kind already. */
 void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t length);
 
-/* What a fault means, in words; fits behind "line 12: ". */
+/* The text of a fault; empty if f is none of them. */
 const char *fault_text(enum fault f);
 
 #endif

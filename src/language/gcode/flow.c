@@ -8,7 +8,7 @@
 
 _Static_assert((int)OWORD_LABEL == (int)FAULT_FILE, "a label names a file");
 
-/* P of M98: the number has four digits, the runs stand in front of them. */
+/* P of M98 on Fanuc's controls is runs * FANUC_RUNS + number of the program. */
 enum { FANUC_RUNS = 10000 };
 
 enum fault flow_refuse(const struct flow_step *l, enum fault f)
@@ -56,8 +56,8 @@ struct oword_place flow_behind(const struct interpreter *in)
     return (struct oword_place){ in->offset, in->line, in->file };
 }
 
-/* The end of what this line begins or is in: one of some words with a label. With `past` the place
- * is the one behind it. Found ends are remembered. */
+/* Place of the end of what this line begins or is in: the next line with the label and one of some
+ * words (bits). With `past` it is the place behind that line. Ends are remembered. */
 static enum fault seek_end(const struct flow_step *l, const char *label, int32_t words, bool past,
                            struct oword_place *place)
 {
@@ -75,7 +75,7 @@ static enum fault seek_end(const struct flow_step *l, const char *label, int32_t
         }
     }
     *place = flow_behind(l->in);
-    flow_refuse(l, FAULT_O_END); /* of this line, whose text goes when others are read */
+    flow_refuse(l, FAULT_O_END); /* now: the line's text is gone when others are read */
     const char *const file = flow_file(l->in, place->file);
     enum fault g = oword_seek(l->s->program, file, label, words, stop, place, &is);
     if (g == FAULT_NONE && !is) {
@@ -97,6 +97,7 @@ static enum fault seek_end(const struct flow_step *l, const char *label, int32_t
     return g;
 }
 
+/* Go on at that end. */
 static enum fault skip_to(const struct flow_step *l, const char *label, int32_t words, bool past)
 {
     struct oword_place place;
@@ -108,7 +109,7 @@ static enum fault skip_to(const struct flow_step *l, const char *label, int32_t 
     return f;
 }
 
-/* What is open with a label in the call that runs, or NULL. */
+/* The condition or loop that is open with a label in the call that runs, or NULL. */
 static struct flow_open *opened(struct interpreter *in, const char *label)
 {
     struct flow *f = &in->flow;
@@ -122,7 +123,7 @@ static struct flow_open *opened(struct interpreter *in, const char *label)
     return NULL;
 }
 
-/* The same if it is the innermost, of this kind. */
+/* That with the label of l, if it is open innermost and of this kind; or NULL. */
 static struct flow_open *innermost(const struct flow_step *l, enum flow_kind kind)
 {
     struct flow *f = &l->in->flow;
@@ -151,7 +152,7 @@ enum fault flow_open(const struct flow_step *l, enum flow_kind kind, int32_t lef
     return FAULT_NONE;
 }
 
-/* Read [ ] and the end of the line. */
+/* Read an expression in [ ] and the end of the line. */
 static enum fault condition(const struct flow_step *l, double *value)
 {
     const enum fault f = expression_brackets(l->s, value);
@@ -160,6 +161,7 @@ static enum fault condition(const struct flow_step *l, double *value)
 
 static const int32_t BRANCHES = OWORD_ELSEIF | OWORD_ELSE | OWORD_ENDIF;
 
+/* if, elseif, else, endif */
 static enum fault if_line(const struct flow_step *l)
 {
     struct flow_open *o = l->o.is == OWORD_IF ? NULL : innermost(l, FLOW_IF);
@@ -172,7 +174,7 @@ static enum fault if_line(const struct flow_step *l)
         l->in->flow.opens--;
         return oword_alone(l->s);
     }
-    if (o && o->left) { /* a branch before it has run */
+    if (o && o->left) { /* a branch in front of it has run */
         return skip_to(l, l->o.label, OWORD_ENDIF, false);
     }
     enum fault f = l->o.is == OWORD_ELSE ? oword_alone(l->s) : condition(l, &value);
@@ -189,12 +191,12 @@ static enum fault if_line(const struct flow_step *l)
     return f;
 }
 
-/* The end of a loop: once more, or out of it. */
+/* At the end of a loop: run it once more, or go on behind it. */
 static enum fault loop_end(const struct flow_step *l, enum flow_kind kind, bool more)
 {
     struct flow_open *o = innermost(l, kind);
 
-    l->in->flow.opens -= !more || kind == FLOW_WHILE; /* its line opens it again */
+    l->in->flow.opens -= !more || kind == FLOW_WHILE; /* the line of WHILE opens it again */
     reading_fault(l->s, FAULT_ENDLESS, l->at);
     return !more ? FAULT_NONE
                  : flow_again(l->in, kind == FLOW_WHILE ? o->here : o->behind, l->s->r);
@@ -205,7 +207,7 @@ enum fault flow_loop_end(const struct flow_step *l)
     return innermost(l, FLOW_WHILE) ? loop_end(l, FLOW_WHILE, true) : flow_refuse(l, FAULT_O_PLACE);
 }
 
-/* while begins a loop, or ends one that began with do. */
+/* A while begins a loop, or ends one that began with do. */
 static enum fault while_line(const struct flow_step *l)
 {
     const bool ends = innermost(l, FLOW_DO) != NULL;
@@ -270,14 +272,15 @@ static enum fault leave_line(const struct flow_step *l)
     return skip_to(l, l->o.label, end, out);
 }
 
-/* o.. do, until its while. */
+/* do, whose loop ends with a while of its label. */
 static enum fault do_line(const struct flow_step *l)
 {
     const enum fault f = oword_alone(l->s);
     return f == FAULT_NONE ? flow_open(l, FLOW_DO, 0) : f;
 }
 
-/* The file that has the name of a subprogram, among those called; 0: there is none. */
+/* Number of the called file that has the name of a subprogram, which is added if it is new; 0:
+ * there is no such file. */
 static enum fault find_file(struct interpreter *in, const struct program *p, const char *label,
                             int32_t *file)
 {
@@ -299,8 +302,8 @@ static enum fault find_file(struct interpreter *in, const struct program *p, con
     return FAULT_NONE;
 }
 
-/* Where a subprogram begins: behind its line. It is in the text that calls it, in the program, or
- * in the file of its name.
+/* Place where a subprogram begins, behind its O word. It is in the text that calls it, in the
+ * program, or in the file of its name.
  * CCN 19: three places are searched in turn, and each step only goes on behind one without a
  * fault. */
 static enum fault find_sub(struct interpreter *in, const struct program *p, const char *label,
@@ -343,13 +346,13 @@ static enum fault find_sub(struct interpreter *in, const struct program *p, cons
     return g;
 }
 
-/* Bits of #1 .. #count in the first word of those that have been set. */
+/* Bits of #1 .. #count in parameters.given[0]. */
 static uint64_t bits(int32_t count)
 {
     return (UINT64_C(1) << count) - 1;
 }
 
-/* #1 .. of the call that runs, out of the parameters and into them. */
+/* Copy the local parameters #1 .. #count out of the parameters, and back into them. */
 static void take_locals(const struct parameters *all, int32_t count, struct flow_local *local)
 {
     local->set = all->given[0] & bits(count);
@@ -364,7 +367,7 @@ static void put_locals(struct parameters *all, int32_t count, const struct flow_
     all->given[0] = (all->given[0] & ~bits(count)) | (local->set & bits(count));
 }
 
-/* Call what begins at a place; r has the text of the call. */
+/* Call the subprogram that begins at a place; r has the place of the call in the text. */
 static enum fault call(struct interpreter *in, const struct program *p, const char *label,
                        enum flow_caller caller, int32_t runs, struct oword_place body,
                        const struct flow_local *local, struct fault_report *r)
@@ -395,7 +398,7 @@ static enum fault call(struct interpreter *in, const struct program *p, const ch
     return flow_again(in, body, r);
 }
 
-/* The subprogram that runs has reached its end. */
+/* The subprogram that runs has reached its end: run it again, or go back to its caller. */
 static enum fault leave(struct interpreter *in, struct fault_report *r)
 {
     struct flow *f = &in->flow;
@@ -417,9 +420,10 @@ static enum fault leave(struct interpreter *in, struct fault_report *r)
     return FAULT_NONE;
 }
 
+/* call, with up to 30 values in [ ] */
 static enum fault call_line(const struct flow_step *l)
 {
-    /* Those without a value are 0, as rs274 has it. */
+    /* Local parameters without a value are 0, as in rs274. */
     struct flow_local local = { .set = bits(PARAMETERS_LOCAL) };
     struct oword_place body;
     enum fault f = FAULT_NONE;
@@ -443,6 +447,7 @@ static enum fault call_line(const struct flow_step *l)
                : f;
 }
 
+/* return, endsub, with or without a value in [ ] */
 static enum fault return_line(const struct flow_step *l)
 {
     struct flow *flow = &l->in->flow;
@@ -454,7 +459,7 @@ static enum fault return_line(const struct flow_step *l)
     if (f != FAULT_NONE) {
         return f;
     }
-    /* return stands in ifs and loops, whose label it may have, as rs274 has it */
+    /* A return may have the label of a condition or loop around it, as in rs274. */
     if (!c || c->caller != FLOW_SUB
         || (l->o.is == OWORD_ENDSUB && !oword_same(c->label, l->o.label))) {
         return flow_refuse(l, FAULT_O_PLACE);
@@ -514,7 +519,7 @@ enum fault flow_end(const struct interpreter *in, const struct program *p, struc
     return g != FAULT_NONE ? g : fault_at(r, FAULT_O_END, 0, line.length);
 }
 
-/* A numbered program that is to be called: where it is, and how often. */
+/* A numbered program that is to be called, and how many times. */
 struct numbered {
     char name[OWORD_LABEL];
     int32_t times;

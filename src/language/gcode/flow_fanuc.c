@@ -4,8 +4,8 @@
 #include "flow_step.h"
 #include "modes.h"
 
-enum { LOOPS = 3 };                             /* most nested loops: their numbers are 1 to 3 */
-static const double SEQUENCE_MOST = 99999999.0; /* N */
+enum { LOOPS = 3 };                             /* number of DO and END: 1 to 3 */
+static const double SEQUENCE_MOST = 99999999.0; /* highest number N */
 
 enum fanuc_word { FANUC_NONE, FANUC_GOTO, FANUC_IF, FANUC_WHILE, FANUC_DO, FANUC_END };
 
@@ -32,13 +32,13 @@ bool flow_fanuc_begins(struct reading s)
     return s.program && s.program->fanuc && word(&s) != FANUC_NONE;
 }
 
-/* What a search looks for: N, or END with a number. */
+/* What is searched: the line with a number N, or END with a number. */
 struct sought {
     bool end;
     int32_t number;
 };
 
-/* Digits that are left, as a number; -1: there are none. */
+/* Take digits as a number; -1: there are none. */
 static double digits(struct reading *s)
 {
     double value = reading_digit(reading_peek(s)) ? 0.0 : -1.0;
@@ -50,7 +50,7 @@ static double digits(struct reading *s)
     return value;
 }
 
-/* Whether a line is the one; *other: it begins another program. */
+/* Whether a line is the one that is searched; *other: it begins another numbered program. */
 static bool match(const struct source_line *line, const struct program *p, struct sought what,
                   bool *other)
 {
@@ -73,7 +73,8 @@ static bool match(const struct source_line *line, const struct program *p, struc
     return what.end ? word(&s) == FANUC_END && digits(&s) == what.number : sequence == what.number;
 }
 
-/* From a place up to another, or to the next program if `until` is not behind it. */
+/* Search from *place on, up to the offset `until` [byte]; if that is -1, up to the next numbered
+ * program. *place becomes that of the line. */
 static enum fault seek(const struct flow_step *l, struct sought what, int64_t until,
                        struct oword_place *place, bool *found)
 {
@@ -102,8 +103,8 @@ static enum fault seek(const struct flow_step *l, struct sought what, int64_t un
     return FAULT_NONE;
 }
 
-/* The END of a loop of this number behind a place. Its text is noted before, for it goes when other
- * lines are read. */
+/* Place of the next END of a number behind *place. The place of a fault has been set before: the
+ * text of the line is gone when other lines are read. */
 static enum fault seek_end(const struct flow_step *l, int32_t number, struct oword_place *place)
 {
     bool found;
@@ -111,7 +112,7 @@ static enum fault seek_end(const struct flow_step *l, int32_t number, struct owo
     return f != FAULT_NONE ? f : found ? FAULT_NONE : FAULT_LOOP_END;
 }
 
-/* A whole number from `least` to `most`. */
+/* Read a whole number from `least` to `most`, and the end of the line. */
 static enum fault number(const struct flow_step *l, double least, double most, int32_t *value)
 {
     const int32_t from = l->s->at;
@@ -128,8 +129,8 @@ static enum fault number(const struct flow_step *l, double least, double most, i
     return oword_alone(l->s);
 }
 
-/* Loops that a jump leaves are over; it may stand in no block of O words. The text of the jump is
- * noted already, and gone. */
+/* End the loops that a jump leaves. FAULT_O_PLACE: it stands in a condition or loop of O words. The
+ * place of a fault has been set before. */
 static enum fault leave(const struct flow_step *l, struct oword_place to)
 {
     struct flow *f = &l->in->flow;
@@ -153,7 +154,8 @@ static enum fault leave(const struct flow_step *l, struct oword_place to)
     return FAULT_NONE;
 }
 
-/* GOTO n: the line with this N behind it, else from the beginning of the program on. */
+/* GOTO n: go on at the next line with N n, within the numbered program; if none follows, at the
+ * first one from the beginning of the program or subprogram that runs. */
 static enum fault go_to(const struct flow_step *l)
 {
     struct interpreter *in = l->in;
@@ -165,7 +167,7 @@ static enum fault go_to(const struct flow_step *l)
     if (f != FAULT_NONE) {
         return f;
     }
-    flow_refuse(l, FAULT_SEQUENCE); /* of this line, whose text goes when others are read */
+    flow_refuse(l, FAULT_SEQUENCE); /* now: the line's text is gone when others are read */
     struct oword_place to = flow_behind(in);
     f = seek(l, what, -1, &to, &found);
     if (f == FAULT_NONE && !found) {

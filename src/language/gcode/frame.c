@@ -9,10 +9,10 @@
 
 static const double DEGREE = 0.017453292519943295;
 
-/* Factors of G51, as Fanuc has them, either sign. */
+/* Range of the magnitude of G51's factors, as on Fanuc's controls. */
 static const double FACTOR_MIN = 0.001, FACTOR_MAX = 999.999;
 
-/* Turn two coordinates; quarter turns are exact. */
+/* Turn the vector (x, y) counter-clockwise; quarter turns are exact. */
 static void turn(double degrees, double *x, double *y)
 {
     static const double COSINE[4] = { 1.0, 0.0, -1.0, 0.0 };
@@ -27,17 +27,19 @@ static void turn(double degrees, double *x, double *y)
     *x = turned;
 }
 
+/* Turn of the coordinate system in force [deg]; those of G54.1 have none. */
 static double system_turn(const struct interpreter *in)
 {
     return in->system < INTERPRETER_SYSTEMS ? in->words.turn[in->system] : 0.0;
 }
 
+/* A program coordinate behind the scaling of G51 [mm]. */
 static double scaled(const struct words *w, int axis, double x)
 {
     return w->centre[axis] + w->factor[axis] * (x - w->centre[axis]);
 }
 
-/* Centre of the rotation behind the scaling. */
+/* Centre of G68's rotation, behind the scaling [mm]. */
 static void rotation_centre(const struct words *w, double about[2])
 {
     const int axis[2] = { path_first((enum path_plane)w->plane),
@@ -48,7 +50,7 @@ static void rotation_centre(const struct words *w, double about[2])
     }
 }
 
-/* Rotate about the centre of G68 by its angle, or back. */
+/* Rotate a point about the centre of G68 by `sign` times its angle. */
 static void rotate(const struct words *w, double sign, double point[AXES])
 {
     double *x = &point[path_first((enum path_plane)w->plane)];
@@ -137,7 +139,7 @@ bool frame_circles(const struct interpreter *in, enum path_plane plane, double *
            && (system_turn(in) == 0.0 || plane == PATH_XY);
 }
 
-/* Axes that a word of one of them moves together: bits. */
+/* Axes that a rotation couples, so that a word of one may move all of them: a bit each. */
 static int coupled(const struct interpreter *in)
 {
     const enum path_plane plane = (enum path_plane)in->words.plane;
@@ -149,7 +151,7 @@ static int coupled(const struct interpreter *in)
     return mask;
 }
 
-/* X and Y by radius and angle [deg]. */
+/* Set X and Y by a radius [mm] and an angle [deg]. */
 static void turn_to(double program[AXES], double radius, double azimuth)
 {
     program[0] = radius;
@@ -157,7 +159,8 @@ static void turn_to(double program[AXES], double radius, double azimuth)
     turn(azimuth, &program[0], &program[1]);
 }
 
-/* @ and ^: radius and angle about the zero of X and Y; what is not named stays, G91 adds. */
+/* @ and ^: radius and angle about the zero of X and Y. The one without a word stays as it is; with
+ * G91 the words are added to radius and angle of where the tool is. */
 static enum fault polar_words(const struct interpreter *in, const struct block *b,
                               double program[AXES], struct fault_report *r)
 {
@@ -178,7 +181,7 @@ static enum fault polar_words(const struct interpreter *in, const struct block *
     return FAULT_NONE;
 }
 
-/* The place of G16 in the plane, about its pole. */
+/* Set the axes of the plane by radius and angle of G16 about its pole. */
 static void polar_place(const struct interpreter *in, double program[AXES])
 {
     const int axis[2] = { path_first(in->plane), path_second(in->plane) };
@@ -192,8 +195,9 @@ static void polar_place(const struct interpreter *in, double program[AXES])
     }
 }
 
-/* G16: the plane's first word is a radius, its second an angle. With G91 a radius counts from where
- * the tool is, and an angle from the one before. */
+/* G16: the word of the plane's first axis is a radius, that of its second an angle. With G91 the
+ * pole of a radius is where the tool is, and an angle is added to the latest one. False: the block
+ * has neither. */
 static bool polar_mode(struct interpreter *in, const struct block *b, double program[AXES])
 {
     struct words *w = &in->words;
@@ -288,16 +292,16 @@ bool frame_go_on(struct interpreter *in, const struct cycle_way *way, double pla
     return true;
 }
 
-/* Where a block leads to, axis by axis. */
+/* The end point of a block while it is found, axis by axis. */
 struct ends {
-    bool machine, framed; /* G53; the program's coordinates are not only offset */
-    int together;         /* axes that a rotation couples, a bit each, */
-    int polar, moved;     /* that polar words, or words of the program's coordinates, move */
+    bool machine, framed; /* G53; program coordinates differ by more than offsets */
+    int together;         /* axes that a rotation couples, a bit each */
+    int polar, moved;     /* axes that polar words, or words in program coordinates, move: bits */
     double *end;
     double program[AXES];
 };
 
-/* Polar words, or the axis words of the plane in polar mode. */
+/* Apply @ and ^, or with G16 the axis words of the plane. */
 static enum fault polar_ends(struct interpreter *in, const struct block *b, struct ends *e,
                              struct fault_report *r)
 {
@@ -315,6 +319,7 @@ static enum fault polar_ends(struct interpreter *in, const struct block *b, stru
     return FAULT_NONE;
 }
 
+/* Apply the word of axis i. */
 static void axis_end(const struct interpreter *in, const struct block *b, int i,
                      const struct token *word, struct ends *e)
 {
@@ -335,7 +340,7 @@ static void axis_end(const struct interpreter *in, const struct block *b, int i,
     }
 }
 
-/* What the words of the program's coordinates move, as the machine has it. */
+/* Machine coordinates of the axes that words in program coordinates move. */
 static void framed_ends(const struct interpreter *in, struct ends *e)
 {
     double place[AXES];
@@ -384,7 +389,7 @@ enum fault frame_end(struct interpreter *in, const struct program *p, const stru
     return FAULT_NONE;
 }
 
-/* Centre of G51 or G68: the words, where the tool is for an axis without one. */
+/* Centre of G51 or G68 along an axis: its word, or without one where the tool is. */
 static double centre_of(const struct block *b, int axis, const double here[AXES])
 {
     const struct token *word = gcode_word(&b->g, BLOCK_AXES[axis]);
@@ -392,7 +397,7 @@ static double centre_of(const struct block *b, int axis, const double here[AXES]
     return word ? gcode_value(b, axis, word) : here[axis];
 }
 
-/* G51; Fanuc's controls count its factors in thousandths without a point. */
+/* G51. On Fanuc's controls a factor without a decimal point is in thousandths. */
 static enum fault scale(struct interpreter *in, const struct program *p, const struct block *b,
                         struct fault_report *r)
 {
@@ -423,6 +428,7 @@ static enum fault scale(struct interpreter *in, const struct program *p, const s
     return FAULT_NONE;
 }
 
+/* G68 */
 static enum fault rotation(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct token *angle = gcode_word(&b->g, 'R');
@@ -446,6 +452,7 @@ static enum fault rotation(struct interpreter *in, const struct block *b, struct
     return FAULT_NONE;
 }
 
+/* G16: radius and angle begin as those of where the tool is. */
 static void begin_polar(struct interpreter *in)
 {
     struct words *w = &in->words;
@@ -481,7 +488,7 @@ enum fault frame_change(struct interpreter *in, const struct program *p, const s
     if (turning == 690) {
         in->words.rotated = false;
     }
-    if (scaling != GCODE_ABSENT && in->words.rotated) { /* the order in which they apply */
+    if (scaling != GCODE_ABSENT && in->words.rotated) { /* scaling applies in front of rotation */
         return tokens_at_word(r, FAULT_FRAME, b->g.by[GCODE_SCALING]);
     }
     if (scaling == 500) {

@@ -4,6 +4,7 @@
 #include <stddef.h>
 #include <string.h>
 
+/* A code, ten times its number, and its modal group. */
 struct code {
     int code;
     enum gcode_group group;
@@ -92,7 +93,7 @@ static const struct code g_codes[] = {
     { 950, GCODE_FEED_MODE },
 };
 
-/* What only Fanuc's controls have, and Haas'. */
+/* G codes that only Fanuc's controls have, and Haas'. */
 static const struct code fanuc_codes[] = {
     { 90, GCODE_EXACT },
     { 670, GCODE_MODAL },
@@ -114,7 +115,7 @@ static const struct code m_codes[] = {
     { 630, GCODE_IO },       { 640, GCODE_IO },       { 650, GCODE_IO },
 };
 
-/* Codes that this machine has no use for, and why. */
+/* G codes of the language that are always refused, each with its own fault. */
 static const struct refusal {
     int code;
     enum fault why;
@@ -138,6 +139,7 @@ bool gcode_user(const struct token *w)
            && code % 10 == 0;
 }
 
+/* Enter a G or M word by its group. */
 static enum fault sort_code(struct gcode *g, const struct token *w, const struct code *codes,
                             size_t count, struct fault_report *r)
 {
@@ -148,7 +150,7 @@ static enum fault sort_code(struct gcode *g, const struct token *w, const struct
         }
         g->by[GCODE_USER] = w;
         g->groups |= (uint32_t)1 << GCODE_USER;
-        g->code[GCODE_USER] = GCODE_USER_FIRST; /* whichever: it takes the same words */
+        g->code[GCODE_USER] = GCODE_USER_FIRST; /* for all of them, as they take the same words */
         return FAULT_NONE;
     }
     for (size_t i = 0; i < count; i++) {
@@ -186,7 +188,8 @@ static enum fault sort_code(struct gcode *g, const struct token *w, const struct
      | GCODE_BIT('D') | GCODE_BIT('E') | GCODE_BIT('@') | GCODE_BIT('^') \
      | GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
 
-/* An axis that the machine does not have, at rest: posts write A0 for all machines. */
+/* The word of an axis that the machine does not have. Postprocessors write A0 for all machines, so
+ * 0 is only a note. */
 static enum fault idle(struct gcode *g, const struct token *w, bool angles, struct fault_report *r)
 {
     if (w->value != 0.0) {

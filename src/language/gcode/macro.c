@@ -4,20 +4,20 @@
 
 #include "gcode.h"
 
-/* The parameter of each letter A .. Z; 0: it has none. */
+/* Number of the local parameter of each letter A .. Z; 0: it has none. */
 static const int32_t NUMBER[26] = { 1, 2, 3, 7,  8,  9,  0,  11, 4,  5,  6,  0,  13,
                                     0, 0, 0, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26 };
 
 enum { MODAL = 660 }; /* G66 */
 
-/* I J K may come ten times: the next three numbers then. */
+/* Words of a call so far. I J K may come ten times, and each time take the next three numbers. */
 struct arguments {
-    uint32_t seen; /* letters, bits from A on */
-    int group;     /* of I J K, from 1 */
-    char latest;   /* of them */
+    uint32_t seen; /* bits of letters, from A on */
+    int group;     /* how many times I J K have begun */
+    char latest;   /* the latest of I J K */
 };
 
-/* The parameter of a word of G65 or G66; 0: it has none. */
+/* Number of the local parameter that a word of G65 or G66 sets; 0: none. */
 static enum fault number_of(struct arguments *a, const struct token *w, int32_t *number,
                             struct fault_report *r)
 {
@@ -38,7 +38,7 @@ static enum fault number_of(struct arguments *a, const struct token *w, int32_t 
     return FAULT_NONE;
 }
 
-/* The first word behind line numbers, or NULL. */
+/* The first word that is no line number, or NULL. */
 static const struct token *first(const struct tokens *t)
 {
     int i = 0;
@@ -100,7 +100,7 @@ enum fault macro_call_user(struct interpreter *in, const struct program *p, cons
                            struct oword_place here, struct fault_report *r)
 {
     const struct token *const m = macro_user(t);
-    double given[2] = { -1.0, -1.0 }; /* as LinuxCNC tells its programs */
+    double given[2] = { -1.0, -1.0 }; /* without a word, as in LinuxCNC */
 
     for (int i = 0; i < t->count; i++) {
         const char letter = t->word[i].letter;

@@ -22,7 +22,7 @@ double offsets_zero(const struct interpreter *in, int axis)
     return in->origin[in->system][axis] + offsets_shift(in, axis) + tools_length(in, axis);
 }
 
-/* System of G54.1 with a P, which may be missing; -1: there is none. */
+/* Index of the system of G54.1 with a word P, which may be NULL; -1: there is none. */
 static int further(const struct token *p)
 {
     const bool good =
@@ -59,7 +59,7 @@ bool offsets_take_axes(const struct block *b)
     return code == 100 || code == 520 || code == 920;
 }
 
-/* The system G10 speaks of, from 0, into *system; P0 is the one in force. */
+/* Index of the system that P of G10 names; P0: of that in force. */
 static enum fault system_of(const struct interpreter *in, const struct block *b, int *system,
                             struct fault_report *r)
 {
@@ -71,7 +71,7 @@ static enum fault system_of(const struct interpreter *in, const struct block *b,
     if (l->value != 2.0 && l->value != 20.0) {
         return tokens_at_word(r, FAULT_VALUE, l);
     }
-    if (b->fanuc && l->value == 20.0) { /* there it sets a system of G54.1 */
+    if (b->fanuc && l->value == 20.0) { /* L20 is of the systems of G54.1 there */
         *system = further(p);
         return *system < 0 ? tokens_at_word(r, FAULT_VALUE, p) : FAULT_NONE;
     }
@@ -82,6 +82,7 @@ static enum fault system_of(const struct interpreter *in, const struct block *b,
     return FAULT_NONE;
 }
 
+/* FAULT_AXIS if an axis word is of an axis that the machine does not have. */
 static enum fault check_axes(const struct program *p, const struct block *b, struct fault_report *r)
 {
     for (int i = 0; i < AXES; i++) {
@@ -93,8 +94,8 @@ static enum fault check_axes(const struct program *p, const struct block *b, str
     return FAULT_NONE;
 }
 
-/* G10 L2: the origin and its turn; L20: the origin that gives the place of the axes these
- * coordinates. */
+/* G10 L2 sets origin and turn of a system; L20 sets the origin so that the axes stand at the
+ * coordinates in the block. */
 static enum fault set_system(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct token *turn = gcode_word(&b->g, 'R'), *l = gcode_word(&b->g, 'L');
@@ -113,7 +114,7 @@ static enum fault set_system(struct interpreter *in, const struct block *b, stru
     }
     double now[AXES], program[AXES], place[AXES];
     const int32_t force = in->system;
-    in->system = system; /* for the coordinates in it */
+    in->system = system; /* frame_program and frame_machine use it */
     frame_here(in, now);
     frame_program(in, now, program);
     for (int i = 0; i < AXES; i++) {
@@ -194,7 +195,7 @@ int offsets_axis(bool angles, int letter)
                                                      : -1;
 }
 
-/* Origins of G54.1 as Fanuc's controls number them: the axes in their order, 20 apart. */
+/* Origins of G54.1 as Fanuc's controls number them: a system each 20 numbers, its axes in order. */
 static bool further_parameter(const struct interpreter *in, int number, double *value)
 {
     const bool all = number >= 14001;

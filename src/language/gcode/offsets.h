@@ -1,10 +1,10 @@
-/* offsets - where the zero of the program lies: G10 L2 and L20, G52, G92 to G92.3; and the points
- * of G28.1 and G30.1.
+/* offsets - where the zero of the program lies, by coordinate systems (G54 to G59.3, G10 L2, L20)
+ * and the shift of G52 and G92 to G92.3; and the points that G28.1 and G30.1 keep.
  *
  *     machine coordinate = program coordinate + origin (G54 .. G59.3) + shift (G52, G92)
  *
- * As in RS-274/NGC with G52, which LinuxCNC added, G52 and G92 set the same shift. `frame` has what
- * turns or scales beside it.
+ * G52 and G92 set the same shift, as in RS-274/NGC with the G52 that LinuxCNC added. `frame` adds
+ * scaling and rotation to this sum.
  */
 #ifndef OFFSETS_H
 #define OFFSETS_H
@@ -12,30 +12,35 @@
 #include "gcode.h"
 #include "modes.h"
 
-/* Origin of the system in force with the tool's length; shift in force; and both: the program's
- * zero of one axis in machine coordinates, if the system is not turned. [mm] */
+/* Offsets of one axis [mm], [deg]: origin of the system in force plus the tool's offset; shift in
+ * force; and the sum of both, which is the machine coordinate of the program's zero if the system
+ * is not turned. */
 double offsets_origin(const struct interpreter *in, int axis);
 double offsets_shift(const struct interpreter *in, int axis);
 double offsets_zero(const struct interpreter *in, int axis);
 
-/* Whether the block has one of the codes that change it, and whether that takes the axis words. */
+/* Whether the block has G10, G28.1, G30.1, G52 or G92 to G92.3; and whether it has one of these
+ * that takes its axis words: G10, G52, G92. */
 bool offsets_changed(const struct block *b);
 bool offsets_take_axes(const struct block *b);
 
-/* Execute that code. */
+/* Execute that code. FAULT_FRAME: G51 or G68 is in force, except for G28.1 and G30.1;
+ * FAULT_NO_AXES, FAULT_AXIS; G10: FAULT_NO_SYSTEM, FAULT_VALUE, FAULT_UNUSED (R with L20). */
 enum fault offsets_change(struct interpreter *in, const struct program *p, const struct block *b,
                           struct fault_report *r);
 
-/* The code G54 .. G59.3, or G54.1 and its P, of a block comes into force. */
+/* Bring the system of a block into force: G54 .. G59.3, or G54.1, G154 with P 1 to 99.
+ * FAULT_MISSING: no P; FAULT_VALUE: another one. */
 enum fault offsets_select(struct interpreter *in, const struct block *b, struct fault_report *r);
 
-/* X Y Z A B C U V W of a parameter's nine, from 0, as an axis; -1 if it is none of those here. */
+/* Axis of one of the nine letters X Y Z A B C U V W, numbered from 0 as parameters do; -1: the
+ * machine does not have it. */
 int offsets_axis(bool angles, int letter);
 
-/* Numbered parameters of these values in mm and degrees: 5161.. G28, 5181.. G30, 5210 whether the
- * shift is in force, 5211.. the shift, 5220 the system, 5221.. origins, 20 apart, and the turn of
- * each behind its nine; on Fanuc's controls 7001.. and 14001.. origins of G54.1. False: no such
- * parameter here. */
+/* Value of a numbered parameter, in mm and degrees: from 5161 on the point of G28, from 5181 on
+ * that of G30; 5210: the shift is in force, from 5211 on the shift; 5220: number of the system,
+ * from 5221 on the origins, 20 numbers apart, and behind the nine axes of each its turn; on Fanuc's
+ * controls from 7001 and 14001 on origins of G54.1. False: it is none of these. */
 bool offsets_parameter(const struct interpreter *in, const struct program *p, int number,
                        double *value);
 

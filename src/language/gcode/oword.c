@@ -20,6 +20,7 @@ void oword_label(char label[OWORD_LABEL], int32_t number)
     }
 }
 
+/* Take digits as a label, without leading zeros. */
 static enum fault digits(struct reading *s, int32_t from, char label[OWORD_LABEL])
 {
     int length = 0;
@@ -36,6 +37,7 @@ static enum fault digits(struct reading *s, int32_t from, char label[OWORD_LABEL
     return FAULT_NONE;
 }
 
+/* Take a value as a label. */
 static enum fault computed(struct reading *s, int32_t from, char label[OWORD_LABEL])
 {
     double value;
@@ -53,7 +55,7 @@ static enum fault computed(struct reading *s, int32_t from, char label[OWORD_LAB
     return FAULT_NONE;
 }
 
-/* The word behind the label; 0 if there is none like it. */
+/* Take the word behind the label, as oword_is; 0: it is none of these. */
 static int32_t kind(struct reading *s)
 {
     static const struct {
@@ -89,7 +91,7 @@ static int32_t kind(struct reading *s)
     return 0;
 }
 
-/* The label, if it is a written one. */
+/* Take the label, unless it is a value (o->computed), which stays. */
 static enum fault label(struct reading *s, int32_t from, struct oword *o)
 {
     const char c = reading_peek(s);
@@ -138,7 +140,8 @@ enum fault oword_alone(struct reading *s)
     return reading_fault(s, FAULT_O_BEHIND, from);
 }
 
-/* Whether a line begins with an O word of this label, and which. */
+/* The word of a line that begins with O and this label, or with O, any label and sub or endsub;
+ * else 0. */
 static int32_t match(const struct source_line *line, const struct program *p, const char *name,
                      struct oword *o)
 {

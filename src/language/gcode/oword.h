@@ -1,4 +1,4 @@
-/* oword - the O word of a line, and where in the text the line stands that has a certain one. */
+/* oword - reads the O word of a line, and searches a text for the line that has a certain one. */
 #ifndef OWORD_H
 #define OWORD_H
 
@@ -9,7 +9,7 @@
 
 enum { OWORD_LABEL = PARAMETERS_NAME };
 
-/* What an O word is; a bit each, so that one of several can be looked for. */
+/* The word behind the label; a bit each, so that a search can be for one of several. */
 enum oword_is {
     OWORD_NUMBER = 1 << 0, /* nothing behind the label: the number of a program */
     OWORD_SUB = 1 << 1,
@@ -30,37 +30,39 @@ enum oword_is {
     OWORD_EITHER_SUB = OWORD_SUB | OWORD_ENDSUB
 };
 
+/* O, label and word: o100 call, o<name> sub. */
 struct oword {
-    char label[OWORD_LABEL]; /* name or digits without leading zeros, filled up with zeros */
+    char label[OWORD_LABEL]; /* name, or digits without leading zeros; padded with bytes 0 */
     enum oword_is is;
-    bool computed; /* o#1, o[#1 + 2] */
+    bool computed; /* the label is a value: o#1, o[#1 + 2] */
 };
 
-/* A place in the text. */
+/* Place of a line. */
 struct oword_place {
-    int64_t offset; /* [byte] of a line */
-    int32_t line;   /* lines in front of it */
-    int32_t file;   /* 0 the program; of the files that it calls, from 1 */
+    int64_t offset; /* [byte] of the line in its text */
+    int32_t line;   /* number of lines in front of it */
+    int32_t file;   /* its text: 0 the program, from 1 on called files */
 };
 
-/* Whether two labels are one. */
+/* Whether two labels are the same. */
 static inline bool oword_same(const char *a, const char *b)
 {
     return memcmp(a, b, OWORD_LABEL) == 0;
 }
 
-/* Read O word and label, s at the O. */
+/* Read O, label and word, s at the O. FAULT_O_WORD: no such word; FAULT_O_LABEL: a computed label
+ * without `call`; FAULT_VALUE: a computed label that is no whole number from 0. */
 enum fault oword_read(struct reading *s, struct oword *o);
 
-/* The label that a number makes. */
+/* The label that stands for a number >= 0. */
 void oword_label(char label[OWORD_LABEL], int32_t number);
 
-/* Nothing but a comment may stand in what is left of the line. */
+/* FAULT_O_BEHIND unless what is left of the line is only comments. */
 enum fault oword_alone(struct reading *s);
 
-/* From a place on, in a file, the first line with this label and one of these words (bits); *place
- * becomes its own, and *is its word: 0 if there is none in front of one of `stop` with any
- * label. */
+/* Search a file from *place on for the first line with this label and one of `words` (bits).
+ * *place becomes that of the line, and *is its word. *is is 0 if there is none in front of the end,
+ * or of a line with a word of `stop` (sub, endsub, with any label). */
 enum fault oword_seek(const struct program *p, const char *file, const char *label, int32_t words,
                       int32_t stop, struct oword_place *place, int32_t *is);
 

@@ -10,7 +10,7 @@
 
 _Static_assert(PARAMETERS_PAGE == 64, "a bit of a word for each number");
 
-/* A coordinate of the nine X Y Z A B C U V W, from 0, in the units in force. */
+/* Coordinate of a letter, of X Y Z A B C U V W from 0, in the program's units; 0: no such axis. */
 static double coordinate(const struct interpreter *in, const struct program *p, int32_t letter,
                          const double of[AXES])
 {
@@ -19,7 +19,7 @@ static double coordinate(const struct interpreter *in, const struct program *p, 
     return axis < 0 ? 0.0 : of[axis] / unit;
 }
 
-/* Numbers with a meaning, a row each; false if it has none.
+/* Value of a number above 5000; false: it has no meaning.
  * CCN 16: each number, or range of numbers, is a row of the language's table. */
 static bool machine_value(const struct interpreter *in, const struct program *p, int32_t n,
                           double *value)
@@ -27,14 +27,14 @@ static bool machine_value(const struct interpreter *in, const struct program *p,
     double point[AXES];
 
     frame_here(in, point);
-    if (n >= 5021 && n <= 5029) { /* where the axes stand, of the machine */
+    if (n >= 5021 && n <= 5029) { /* where the axes stand, machine coordinates */
         *value = coordinate(in, p, n - 5021, point);
     } else if (p->fanuc && ((n >= 5001 && n <= 5006) || (n >= 5041 && n <= 5046))) {
         frame_program(in, point, point); /* the axes in their order */
         *value = point[(n - 1) % 20] / (in->inch && !(p->angles && (n - 1) % 20 >= 3) ? 25.4 : 1.0);
-    } else if (n == 5599) { /* (DEBUG, ) comments get a note */
+    } else if (n == 5599) { /* whether (DEBUG, ) comments get a note */
         *value = in->parameters.debug;
-    } else if (n >= 5420 && n <= 5428) { /* of the program */
+    } else if (n >= 5420 && n <= 5428) { /* where the axes stand, program coordinates */
         frame_program(in, point, point);
         *value = coordinate(in, p, n - 5420, point);
     } else {
@@ -44,7 +44,7 @@ static bool machine_value(const struct interpreter *in, const struct program *p,
     return true;
 }
 
-/* Coordinates by a name of one letter behind _ or _abs_, as numbers. */
+/* Number of the coordinate that a name _x .. _w or _abs_x .. _abs_w has; 0: it is no such name. */
 static int32_t number_of(const char *name)
 {
     static const char LETTERS[] = "xyzabcuvw";
@@ -54,14 +54,14 @@ static int32_t number_of(const char *name)
     return at ? (machine ? 5021 : 5420) + (int32_t)(at - LETTERS) : 0;
 }
 
-/* The pocket of a tool, 0 if it has none. */
+/* Pocket of a tool; 0: the table does not have the tool. */
 static int32_t pocket_of(const struct interpreter *in, int32_t number)
 {
     struct tool tool;
     return number > 0 && tool_table_find(&in->tools.table, number, &tool) ? tool.pocket : 0;
 }
 
-/* F in its units; of G93 it is that of a line alone. */
+/* F in the program's units per minute or turn; 0 with G93, where it counts for its block alone. */
 static double feed_of_program(const struct interpreter *in)
 {
     const double unit = in->inch ? 25.4 : 1.0;
@@ -69,7 +69,7 @@ static double feed_of_program(const struct interpreter *in)
     return mode == 950 ? in->words.per_turn / unit : mode == 940 ? in->feed * 60.0 / unit : 0.0;
 }
 
-/* What only a name says: names as LinuxCNC has them, in the order of modal groups there. */
+/* Values that only have a name, as LinuxCNC gives it, in the order of its modal groups. */
 #define NAMES(X) \
     X(_line, in->line) \
     X(_task, 1) \
@@ -115,13 +115,13 @@ static double feed_of_program(const struct interpreter *in)
     X(_vmajor, 2.9) \
     X(_vminor, 0)
 
-/* What LinuxCNC has of its own pins and settings. */
+/* Whether a name is that of a pin or a setting of LinuxCNC. */
 static bool foreign(const char *name)
 {
     return memcmp(name, "_hal[", 5) == 0 || memcmp(name, "_ini[", 5) == 0;
 }
 
-/* The word and the bit that say whether a number has been set. */
+/* Whether a number from 1 to PARAMETERS_NUMBERED has been set. */
 static bool given(const struct parameters *all, int32_t number)
 {
     const uint32_t i = (uint32_t)(number - 1);
@@ -148,7 +148,7 @@ static bool named_value(const struct interpreter *in, const char *name, double *
     return true;
 }
 
-/* Its place among the names in force, or their count. */
+/* Index of a name among those that are set, for the call that runs; their count: it is not set. */
 static int32_t find(const struct interpreter *in, const char *name)
 {
     const struct parameters *all = &in->parameters;

@@ -74,7 +74,7 @@ enum fault reading_number(struct reading *s, int32_t from, double *value, bool *
         }
         last = i;
     }
-    s->at = last < end ? last + 1 : end; /* where no letter is in front, none is taken */
+    s->at = last < end ? last + 1 : end; /* without digits: behind `from` */
     if (!digits) {
         return reading_fault(s, FAULT_NUMBER, from);
     }

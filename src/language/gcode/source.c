@@ -3,9 +3,9 @@
 #include <stddef.h>
 #include <string.h>
 
-enum { BOM = 3 }; /* [byte] of the mark with which some editors begin UTF-8 */
+enum { BOM = 3 }; /* [byte] length of the byte order mark that some editors write */
 
-/* Leave a line behind that is too long. */
+/* Move *offset behind a line that is too long. FAULT_LINE_LENGTH, FAULT_READ. */
 static enum fault leave(const struct source *s, const char *file, int64_t *offset,
                         struct fault_report *r)
 {

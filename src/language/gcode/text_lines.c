@@ -3,13 +3,13 @@
 #include "flow.h"
 #include "macro.h"
 
-/* What the line sets takes effect now that all of it has been read. */
+/* Set the parameters of a line, all of which has been read. */
 static enum fault set(struct interpreter *in, const struct program *p, const struct tokens *t,
                       struct fault_report *r)
 {
     for (int i = 0; i < t->settings; i++) {
         const struct setting *s = &t->setting[i];
-        if (p->fanuc && s->which.number == PARAMETERS_ALARM) { /* with its message */
+        if (p->fanuc && s->which.number == PARAMETERS_ALARM) { /* told with its message */
             return fault_at(r, FAULT_ALARM, s->at, t->at + t->length - s->at);
         }
         const enum fault f = parameters_set(in, p, &s->which, s->value);
@@ -20,7 +20,8 @@ static enum fault set(struct interpreter *in, const struct program *p, const str
     return FAULT_NONE;
 }
 
-/* Words and settings of a line that is neither passed over nor an O word's. */
+/* Settings and calls of a line that is neither passed over nor begins with an O word; f is a fault
+ * of its text. */
 static enum fault words(struct interpreter *in, const struct program *p, struct tokens *t,
                         struct oword_place here, enum fault f, struct fault_report *r)
 {
@@ -45,7 +46,7 @@ static enum fault words(struct interpreter *in, const struct program *p, struct 
     return f;
 }
 
-/* A line with IF, GOTO, WHILE, DO or END; behind THEN parameters are set, nothing else. */
+/* A line with IF, GOTO, WHILE, DO or END. Behind THEN it may only set parameters. */
 static enum fault fanuc(struct interpreter *in, const struct program *p, struct tokens *t,
                         struct reading *s, struct oword_place here)
 {
@@ -72,7 +73,7 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
 
     t->count = 0;
     if (f == FAULT_NONE && !line.text) {
-        in->ended = true; /* of a file, too: what was called has no end */
+        in->ended = true; /* of a file, too: a subprogram there lacks its end */
         return flow_end(in, p, r);
     }
     r->line = ++in->line;

@@ -5,7 +5,7 @@
 #include "expression.h"
 #include "modes.h"
 
-/* #1 = value. */
+/* Take a setting #1 = value, s at its #. */
 static enum fault setting(struct tokens *t, struct reading *s)
 {
     const int32_t from = s->at++;
@@ -32,6 +32,8 @@ static enum fault setting(struct tokens *t, struct reading *s)
     return f;
 }
 
+/* Take a word, s at its letter (of ,C and ,R behind the comma). Coordinates without a point are
+ * multiples of the program's least_increment, if that is set. */
 static enum fault word(struct tokens *t, struct reading *s, char letter)
 {
     if (t->count == TOKENS_WORDS_MAX) {
@@ -46,11 +48,11 @@ static enum fault word(struct tokens *t, struct reading *s, char letter)
         && strchr("XYZUVWABCIJKRQ[]", letter)) {
         w->value *= s->program->least_increment;
     }
-    t->count += f == FAULT_NONE && !parameters_vacant(w->value); /* else as if not there */
+    t->count += f == FAULT_NONE && !parameters_vacant(w->value); /* a vacant word is none */
     return f;
 }
 
-/* The comment is one that other controls act on. */
+/* Whether a comment is one on which other controls act. */
 static bool acts(struct reading s)
 {
     static const char words[][12] = { "PRINT,",     "DEBUG,",   "LOG,",      "LOGOPEN,",
@@ -66,6 +68,7 @@ static bool acts(struct reading s)
     return i < sizeof words / sizeof *words;
 }
 
+/* Take a comment, s at its (. */
 static enum fault comment(struct reading *s)
 {
     const int32_t from = s->at;
@@ -79,7 +82,7 @@ static enum fault comment(struct reading *s)
     return f;
 }
 
-/* Only line numbers stand in front. */
+/* Whether only line numbers stand in front. */
 static bool first(const struct tokens *t)
 {
     for (int i = 0; i < t->count; i++) {
@@ -99,7 +102,7 @@ static void block_delete(struct tokens *t, struct reading *s)
     }
 }
 
-/* ,C or ,R of Fanuc's controls. */
+/* Take ,C or ,R of Fanuc's controls, s at the comma. */
 static enum fault corner_word(struct tokens *t, struct reading *s)
 {
     const int32_t from = s->at++;
@@ -118,7 +121,7 @@ static enum fault corner_word(struct tokens *t, struct reading *s)
     return f;
 }
 
-/* The next word, setting or comment that begins with c. */
+/* Take the next word, setting or comment, which begins with c. */
 static enum fault item(struct tokens *t, struct reading *s, char c)
 {
     if ((c >= '@' && c <= 'Z') || c == '^') {
@@ -136,7 +139,7 @@ static enum fault item(struct tokens *t, struct reading *s, char c)
     return fault_at(s->r, FAULT_CHARACTER, s->at++, 1);
 }
 
-/* Behind a fault: to the next letter outside brackets. */
+/* Behind a fault: go on to the next letter or comment outside brackets. */
 static void skip(struct reading *s, int32_t from)
 {
     int depth = 0;
@@ -176,7 +179,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
     block_delete(t, s);
     for (char c = reading_peek(s); c != '\0' && c != ';'; c = reading_peek(s)) {
         const int32_t from = s->at;
-        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s)); /* : as ISO has it */
+        const bool other = fanuc && (c == ':' || flow_fanuc_begins(*s)); /* : is O in ISO code */
         if ((c == 'O' || other) && first(t)) {
             t->flow = true;
             break;
@@ -184,7 +187,7 @@ enum fault tokens_read(struct tokens *t, struct reading *s)
         const enum fault one = item(t, s, c);
         if (one != FAULT_NONE) {
             f = f == FAULT_NONE ? one : f;
-            s->r = &ignored; /* what follows the first fault is told no more */
+            s->r = &ignored; /* faults behind the first are not told */
             skip(s, from);
         }
     }

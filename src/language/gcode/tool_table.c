@@ -7,6 +7,7 @@
 #include "gcode.h"
 #include "tokens.h"
 
+/* The entry of a number, or NULL. */
 static struct tool *entry_of(struct tool_table *t, int32_t number)
 {
     for (int32_t i = 0; i < t->count; i++) {
@@ -43,12 +44,13 @@ struct tool *tool_table_entry(struct tool_table *t, int32_t number)
     return tool;
 }
 
-/* A whole number from 0; -1 if it is none. */
+/* A value as a whole number from 0 to TOOL_NUMBER_MAX; -1: it is none. */
 static int32_t whole(double x)
 {
     return x >= 0.0 && x <= TOOL_NUMBER_MAX && x == round(x) ? (int32_t)x : -1;
 }
 
+/* Take one word; returns NULL, or what is wrong with it. */
 static const char *take_word(struct tool *tool, const struct token *w, bool angles)
 {
     static const char axes[] = BLOCK_AXES, turned[] = "XYZABC", passed[] = "IJQ";
@@ -72,7 +74,7 @@ static const char *take_word(struct tool *tool, const struct token *w, bool angl
                : "no column of a tool table";
 }
 
-/* The words of a line: one tool, each letter once. */
+/* Take the words of a line, which are one tool's, each letter once. */
 static const char *take_words(struct tool *tool, const struct tokens *t, bool angles,
                               struct tool_text *at)
 {

@@ -15,7 +15,7 @@ enum fault tools_number(const struct token *w, int32_t *number, struct fault_rep
     return FAULT_NONE;
 }
 
-/* The tool of a word; 0 is the one in the spindle. */
+/* The tool whose number a word has; 0: the one in the spindle. */
 static enum fault tool_of(const struct interpreter *in, const struct token *w, struct tool *tool,
                           struct fault_report *r)
 {
@@ -29,7 +29,7 @@ static enum fault tool_of(const struct interpreter *in, const struct token *w, s
     return f;
 }
 
-/* Axis words of G43.1 and G43.2: instead of the offset in force, or added to it. */
+/* G43.1 and G43.2 with axis words: these replace the offset in force, or are added to it. */
 static enum fault by_axes(struct interpreter *in, const struct program *p, const struct block *b,
                           bool add, struct fault_report *r)
 {
@@ -45,6 +45,7 @@ static enum fault by_axes(struct interpreter *in, const struct program *p, const
     return FAULT_NONE;
 }
 
+/* G43 and G43.2 H: the offset of a tool replaces the one in force, or is added to it. */
 static enum fault by_tool(struct interpreter *in, const struct program *p, const struct block *b,
                           bool add, struct fault_report *r)
 {
@@ -137,7 +138,7 @@ bool tools_parameter(const struct interpreter *in, bool angles, int number, doub
     return true;
 }
 
-/* L of G10, 0 without. */
+/* L of G10; 0: the block has none. */
 static double level(const struct block *b)
 {
     const struct token *l = gcode_word(&b->g, 'L');
@@ -149,9 +150,9 @@ bool tools_measured(const struct block *b)
     return level(b) == 1.0 || level(b) == 10.0 || level(b) == 11.0;
 }
 
-/* Offset of an axis from program coordinates that are wanted: as they are (L1); that makes the
- * place where the axes stand these, in the frame in force (L10) or by the origin of G59.3 alone
- * (L11). */
+/* Offset of a tool along an axis [mm], [deg] from the coordinates `wanted` of G10. L1: it is these.
+ * L10: with it the place where the axes stand has these program coordinates; L11: likewise, by the
+ * origin of G59.3 alone. */
 static double measured(const struct interpreter *in, double l, int axis, const double here[AXES],
                        const double wanted[AXES])
 {

@@ -6,7 +6,7 @@
 #include "frame.h"
 #include "offsets.h"
 
-static const double WAIT_MAX = 86400.0; /* [s] a day */
+static const double WAIT_MAX = 86400.0; /* [s] longest wait, a day */
 
 void waiting_for(struct interpreter *in, enum wait_kind kind)
 {
@@ -15,7 +15,7 @@ void waiting_for(struct interpreter *in, enum wait_kind kind)
     in->wait.behind = in->count;
 }
 
-/* A whole number from 0 to `most`; -1 if it is none. */
+/* A word's value as a whole number from 0 to `most`; -1: it is none. */
 static int whole(const struct token *w, int most)
 {
     return w->value >= 0.0 && w->value <= most && w->value == round(w->value) ? (int)w->value : -1;

@@ -1,7 +1,7 @@
 /* waiting - what only the machine can tell a program: inputs (M66), where a probe touched (G38).
  *
- * Where `waits` is set, reading has stopped behind the commands so far. Who runs the program lets
- * them end, waits as `wait` says and gives the answer; then reading goes on.
+ * While struct interpreter's `waits` is set, reading has stopped behind the commands so far. The
+ * controller lets these end, waits as `wait` says and gives the answer; then reading goes on.
  */
 #ifndef WAITING_H
 #define WAITING_H
@@ -9,41 +9,43 @@
 #include "gcode.h"
 #include "modes.h"
 
-/* M66. */
+/* Execute M66 of a block: it waits for an input. FAULT_NO_INPUTS; FAULT_MISSING: no P or E, or no Q
+ * with L1 to L4; FAULT_SHARED: P and E; FAULT_VALUE. */
 enum fault waiting_input(struct interpreter *in, const struct program *p, const struct block *b,
                          struct fault_report *r);
 
-/* Note the wait behind the commands made so far. */
+/* From now on reading waits behind the commands made so far. */
 void waiting_for(struct interpreter *in, enum wait_kind kind);
 
-/* The input: 0 or 1, an analog value, -1 if it did not come in time. */
+/* The answer to M66: 0 or 1, an analog value, or -1 if it did not come in time. */
 void waiting_answer(struct interpreter *in, double value);
 
-/* Reading waits now: the commands before have been handed out. */
+/* Whether the machine is to be asked now: the commands in front of the wait are handed out. */
 static inline bool waiting_now(const struct interpreter *in)
 {
     return in->waits && in->taken == in->wait.behind;
 }
 
-/* The probe may move; from there on it is waited for. */
+/* The answer to WAIT_FREE: the probing motion may begin. Behind it comes WAIT_PROBE. */
 void waiting_free(struct interpreter *in);
 
-/* The probe: place of its contact and where the motion came to rest, machine coordinates. Without
- * contact both are where the motion ended. */
+/* The answer to WAIT_PROBE, in machine coordinates [mm], [deg]: place of the contact, and where the
+ * motion came to rest. Without contact both are the end of the motion. */
 void waiting_probed(struct interpreter *in, const double contact[AXES], const double rest[AXES],
                     bool touched);
 
-/* The answer where no machine is: inputs are 0, the probe goes to its end and touches nothing. */
+/* The answer of a check, which has no machine: inputs are 0, and a probing motion goes to its end
+ * without contact. */
 void waiting_pass(struct interpreter *in);
 
-/* Numbered parameters of the answers: 5061 .. 5069 the contact, 5070 whether there was one, 5399
- * the input. False: no such parameter here. */
+/* Value of a numbered parameter: 5061 .. 5069 place of the latest contact [mm], [deg], 5070: 1 if
+ * there was one, 5399 latest answer to M66. False: it is none of these. */
 bool waiting_parameter(const struct interpreter *in, bool angles, int number, double *value);
 
-/* Set one of them but the input: a program prepares a loop of probing. False: it is none. */
+/* Set 5061 .. 5070, as programs do in front of a loop of probing. False: it is none of these. */
 bool waiting_set(struct interpreter *in, bool angles, int number, double value);
 
-/* Whether the input has done what is waited for; *was is its value at the look before. */
+/* Whether the wait ends: `is` is the value of the input now, `was` when it was looked at before. */
 bool waiting_done(const struct waiting *w, double is, double was);
 
 #endif

@@ -10,11 +10,12 @@
 #include "spline.h"
 
 static const char CENTRE_LETTERS[] = "IJK";
-static const int TURNS_MAX = 10000; /* P of an arc */
+static const int TURNS_MAX = 10000; /* highest P of an arc */
 
-/* Start, end and centre rounded to 0.01 mm, or in inch to 0.001, as LinuxCNC allows for both. */
+/* Tolerance of the end of an arc whose start, end and centre a postprocessor has rounded to 0.01
+ * mm, or with COARSER to 0.001 inch; LinuxCNC allows as much. */
 static const struct path_tolerance POSTED = { 0.0283, 1e-3 };
-static const double COARSER = 2.54; /* the last decimal in inch against that in mm */
+static const double COARSER = 2.54; /* 0.001 inch over 0.01 mm */
 
 struct kept_line block_line(const struct interpreter *in, const struct block *b,
                             const struct fault_report *r)
@@ -43,7 +44,7 @@ struct command *block_command(struct interpreter *in)
     return c;
 }
 
-/* The command is a motion of the program: digital outputs that wait for one go with it. */
+/* Count a command that is a motion of the program; outputs that wait for one go with it. */
 static void accept(struct interpreter *in, struct command *c)
 {
     c->set = in->set;
@@ -55,7 +56,7 @@ static void accept(struct interpreter *in, struct command *c)
     in->count++;
 }
 
-/* The fault of an arc or of a command, and what is known of it. */
+/* The fault of an arc that is refused. */
 static enum fault of_path(enum path_status s)
 {
     return s == PATH_NO_RADIUS      ? FAULT_ARC_RADIUS
@@ -106,13 +107,14 @@ enum fault block_complete(struct command *c, const struct program *p, struct fau
     return block_refusal(s, &why, r);
 }
 
-/* How an arc of the program is one of the machine. */
+/* What the frame in force makes of an arc of the program. */
 struct shape {
-    double ratio; /* of the radius */
+    double ratio; /* factor of the radius */
     bool ccw;
     struct path_tolerance tolerance;
 };
 
+/* Centre of an arc along the plane's axes, machine coordinates [mm], from R or two of I J K. */
 static enum fault arc_centre(const struct interpreter *in, const struct block *b,
                              const struct shape *shape, const double end[AXES], double centre[2],
                              struct fault_report *r)
@@ -123,7 +125,7 @@ static enum fault arc_centre(const struct interpreter *in, const struct block *b
     const struct token *any = gcode_first(&b->g, letters);
     const struct token *normal = gcode_word(&b->g, CENTRE_LETTERS[in->plane]);
 
-    if (normal && normal->value != 0.0) { /* posts write K0 in XY */
+    if (normal && normal->value != 0.0) { /* postprocessors write K0 in XY */
         return tokens_at_word(r, FAULT_UNUSED, normal);
     }
     if (radius && any) {

@@ -8,18 +8,18 @@
 
 static const double TAU = 6.283185307179586;
 
-/* What is shorter is no motion, and no room for one: far below a pulse, far above rounding. [mm] */
+/* Shorter is no motion, nor room for one: far below a pulse, far above rounding errors. [mm] */
 static const double SHORT = 1e-9;
 
-/* An arc about a corner that is shorter makes no difference: leaving it out moves the path by less
- * than its square over eight radii. [mm] */
+/* An arc about a corner that is shorter is left out. That moves the path by less than its square
+ * over eight radii. [mm] */
 static const double SMOOTH = 1e-5;
 
-/* Concave corners below this angle are what rounding makes of a smooth contour. The tool may go
- * back in them, into the contour by less than 1.3e-5 of its radius. [rad] */
+/* A concave corner below this angle is what rounded coordinates make of a smooth contour. The tool
+ * may go back in it, and so cuts into the contour by less than 1.3e-5 of its radius. [rad] */
 static const double SLIGHT = 0.01;
 
-/* Nearer to half a turn than this angle is a way back. [rad] */
+/* A corner nearer to half a turn than this leads back on the contour. [rad] */
 static const double BACK = 1e-6;
 
 static double dot(const double a[2], const double b[2])
@@ -76,8 +76,8 @@ bool contour_fits(const struct contour *s, double edge)
     return s->turn == 0.0 || el_min(s->radius[0], s->radius[1]) - s->turn * edge > SHORT;
 }
 
-/* Angle about the centre of an arc from one place on to another, along the arc; negative if
- * rounding or a corner left out puts that a little behind. [rad] */
+/* Angle [rad] about the centre of an arc from a to b, along the arc, 0 .. 2 pi; negative if
+ * rounding or a corner that is left out puts b a little behind a. */
 static double angle_along(const struct contour *s, const double a[2], const double b[2])
 {
     const double u[2] = { a[0] - s->centre[0], a[1] - s->centre[1] };
@@ -86,8 +86,8 @@ static double angle_along(const struct contour *s, const double a[2], const doub
     return angle * el_hypot(u[0], u[1]) < -10.0 * SMOOTH ? angle + TAU : angle;
 }
 
-/* The two places where the ways of the centre beside two motions cross; false: nowhere. Two lines
- * have one, twice. */
+/* The two crossings of a line, `edge` to the left of that through a corner, and a circle; false:
+ * there is none. `left` is the unit vector to the left of the line. */
 static bool line_circle(const double corner[2], const double left[2], double edge,
                         const double centre[2], double radius, double place[2][2])
 {
@@ -103,6 +103,7 @@ static bool line_circle(const double corner[2], const double left[2], double edg
     return rest >= 0.0;
 }
 
+/* The two crossings of circles of radius ra about a and rb about b; false: there is none. */
 static bool circles(const double a[2], double ra, const double b[2], double rb, double place[2][2])
 {
     const double d = el_max(distance(a, b), SHORT);
@@ -118,6 +119,8 @@ static bool circles(const double a[2], double ra, const double b[2], double rb, 
     return rest >= 0.0;
 }
 
+/* The two crossings of the centre's paths beside two motions; false: there is none. Two lines have
+ * one, which is given twice. */
 static bool crossings(const struct contour *a, const struct contour *b, double edge,
                       double place[2][2])
 {
@@ -140,8 +143,8 @@ static bool crossings(const struct contour *a, const struct contour *b, double e
     return true;
 }
 
-/* The crossing at which the tool meets the second motion while it goes along the first one: the
- * last one before its end. */
+/* The crossing at which the centre leaves the first motion for the second one: of both the one that
+ * is nearer in front of the end of the first. False: there is none. */
 static bool crossing(const struct contour *a, const struct contour *b, double edge, double meets[2])
 {
     double place[2][2], end[2], back[2];
@@ -214,7 +217,7 @@ bool contour_path(const struct contour *s, const struct path *along, enum path_p
     if (path_arc(path, plane, start, end, s->centre, s->turn > 0.0, 1, &miss) != PATH_OK) {
         return false;
     }
-    /* None if nothing is left: path_arc has then made a turn of nothing or less. */
+    /* Below 1 if nothing is left: path_arc has then gone round for a sweep of 0 or less. */
     const int turns = 1 + (int)round((sweep - fabs(path->sweep)) / TAU);
     return turns >= 1
            && path_arc(path, plane, start, end, s->centre, s->turn > 0.0, turns, &miss) == PATH_OK;

@@ -11,30 +11,32 @@
 #include "frame.h"
 #include "tools.h"
 
+/* Command i of those that are held, from 0, the oldest. */
 static struct command *held(struct cutter *k, int32_t i)
 {
     return &k->held[(k->first + i) % CUTTER_HELD];
 }
 
+/* Hold a command behind all others. */
 static void hold(struct cutter *k, const struct command *c)
 {
     *held(k, k->count++) = *c;
 }
 
-/* Whether it moves in the plane. */
+/* Whether a command moves in the plane. */
 static bool in_plane(const struct command *c, enum path_plane plane)
 {
     const int a = path_first(plane), b = path_second(plane);
     return c->path.arc || c->path.start[a] != c->path.end[a] || c->path.start[b] != c->path.end[b];
 }
 
-/* The fault stands in the line of the motion held. */
+/* Give a fault the place of the motion held, and return it. */
 static enum fault at_motion(const struct interpreter *in, enum fault f, struct fault_report *r)
 {
     return f != FAULT_NONE ? block_at_line(in, &in->cutter.moving, f, r) : f;
 }
 
-/* The centre goes on from a place that another command had where this one is. */
+/* Move a command, which has no motion in the plane, to where the tool's centre stands. */
 static enum fault follow_place(struct command *c, const struct program *p, enum path_plane plane,
                                const double place[2], struct fault_report *r)
 {
@@ -50,8 +52,8 @@ static enum fault follow_place(struct command *c, const struct program *p, enum 
     return block_complete(c, p, r);
 }
 
-/* The motion held ends at a place of the centre, in front of a concave corner or not; all that is
- * held becomes ready. A fault stands in its line. */
+/* End the motion held where the tool's centre is at `to`, in front of a concave corner or not; all
+ * that is held becomes ready. A fault has the place of that motion. */
 static enum fault end_at(struct interpreter *in, const struct program *p, const double to[2],
                          bool concave, struct fault_report *r)
 {
@@ -77,8 +79,8 @@ static enum fault end_at(struct interpreter *in, const struct program *p, const 
     return f;
 }
 
-/* The tool turns about the corner in front of a motion: with its feed, or that of the one before;
- * between two rapids straight. */
+/* Make the arc of the tool's centre about the corner in front of the motion `next`, with its feed;
+ * if that is a rapid, with the feed of the motion before. Between two rapids it is a line. */
 static enum fault turn_corner(struct interpreter *in, const struct program *p,
                               const struct command *before, const struct command *next,
                               const double from[2], const double to[2], struct fault_report *r)
@@ -110,7 +112,7 @@ static enum fault turn_corner(struct interpreter *in, const struct program *p,
     return f;
 }
 
-/* A motion in the plane behind one that is held. */
+/* A motion in the plane has come behind one that is held: find the corner, and end that one. */
 static enum fault corner(struct interpreter *in, const struct program *p, const struct command *c,
                          struct fault_report *r)
 {
@@ -127,7 +129,7 @@ static enum fault corner(struct interpreter *in, const struct program *p, const 
         return kind == CONTOUR_BACK ? FAULT_CUTTER_BACK : FAULT_CUTTER_CORNER;
     }
     if (entry_arc && kind != CONTOUR_CONVEX) {
-        contour_beside(&a, true, k->edge, from); /* smooth, or there is no such arc */
+        contour_beside(&a, true, k->edge, from); /* only a smooth corner can follow it */
         if (el_hypot(from[0] - to[0], from[1] - to[1]) > 1e-5) {
             return FAULT_CUTTER_ENTRY;
         }
@@ -229,7 +231,7 @@ void cutter_drop(struct interpreter *in)
     memset(&in->cutter, 0, sizeof in->cutter);
 }
 
-/* The distance of the centre to the left of the contour.
+/* Set the distance of the tool's centre to the left of the contour, and the plane.
  * CCN 16: the diameter stands in the block, in the table or with the tool that is loaded. */
 static enum fault set_edge(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
@@ -259,7 +261,7 @@ static enum fault set_edge(struct interpreter *in, const struct block *b, struct
     return FAULT_NONE;
 }
 
-/* What the block has that does not go with compensation, or NULL. */
+/* The word of the block that may not come while compensation is on, or NULL. */
 static const struct token *refused(const struct interpreter *in, const struct block *b)
 {
     static const enum gcode_group groups[] = { GCODE_SYSTEM, GCODE_TOOL, GCODE_SCALING,

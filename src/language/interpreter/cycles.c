@@ -9,21 +9,21 @@
 #include "frame.h"
 #include "switching.h"
 
-static const double RELIEF = 0.254;       /* [mm] back for a peck: 0.01 inch, as LinuxCNC */
-static const double REPEATS_MAX = 9999.0; /* L */
-static const double PECKS_MAX = 10000.0;  /* of one hole */
-static const double SAME = 1e-9;          /* [mm] nearer places are one: rounding of offsets */
+static const double RELIEF = 0.254; /* [mm] clearance above a peck: 0.01 inch, as in LinuxCNC */
+static const double REPEATS_MAX = 9999.0; /* highest L */
+static const double PECKS_MAX = 10000.0;  /* in one hole */
+static const double SAME = 1e-9; /* [mm] nearer places differ by rounding of offsets only */
 
-/* The steps of each cycle above its hole, and the words it needs beside R and the depth:
+/* The steps of each cycle from R on, and the words that it needs beside R and the depth:
  *
- *     d feed to the bottom      g feed one peck deeper; from the bottom on behind the <
- *     u feed to R               c rapid back to what is drilled, less the relief
- *     U feed to the clear way   < go on at the first step
- *     R rapid to R              p dwell             x overrides off
- *     ^ rapid to the clear way  s spindle off       r spindle the other way round
- *     ! stop as M0              t spindle and overrides as before
- *     i rapid aside             h rapid back over the hole
- *     D rapid to the bottom     o rapid to the clear way, both where the tool is
+ *     d feed to the bottom         g feed one peck deeper; at the bottom go on behind the <
+ *     u feed to R                  c rapid to RELIEF above what is drilled, R at most
+ *     U feed to the clear height   < go on at the first step
+ *     R rapid to R                 p dwell             x overrides off
+ *     ^ rapid to the clear height  s spindle off       r spindle the other way round
+ *     ! stop as M0                 t spindle and overrides as before
+ *     i rapid aside                h rapid back over the hole
+ *     D rapid to the bottom        o rapid to the clear height, both where the tool is
  *     k feed to K
  */
 static const struct {
@@ -36,9 +36,10 @@ static const struct {
     { 880, "dps!^t", "P" }, { 890, "dpU", "P" },
 };
 
-/* In front of those: rapid over the hole, rapid to R. */
+/* Steps in front of those: rapid over the hole, rapid to R. */
 enum { STEP_HOLE, STEP_TOP, STEP_FIRST };
 
+/* Row of a code; -1: it is no canned cycle. */
 static int row_of(int code)
 {
     for (int i = 0; i < (int)(sizeof rows / sizeof *rows); i++) {
@@ -64,8 +65,8 @@ static bool pecks(int code)
     return code == 730 || code == 830;
 }
 
-/* Whether it takes P, Q, or I J K; some may have P, which of these only Fanuc's controls know in
- * front of pecks. */
+/* Whether a cycle takes P, Q, or I J K. P is a choice in tapping and in G73 and G83, with which
+ * only Fanuc's controls have it. */
 static bool takes(int code, char letter)
 {
     return strchr(rows[row_of(code)].words, letter)
@@ -84,7 +85,8 @@ void cycles_modes(struct interpreter *in, const struct block *b)
     }
 }
 
-/* Machine coordinates of a place at a height above the hole. */
+/* Machine coordinates of a place, in program coordinates, at a height. Coordinates nearer than SAME
+ * to where the tool is are made equal to it. */
 static void place_at(const struct interpreter *in, const double program[AXES], double height,
                      double end[AXES])
 {
@@ -97,6 +99,7 @@ static void place_at(const struct interpreter *in, const double program[AXES], d
     }
 }
 
+/* Make a straight motion to a place at a height. */
 static enum fault go(struct interpreter *in, const struct program *p, const double program[AXES],
                      double height, bool rapid, struct fault_report *r)
 {
@@ -107,7 +110,8 @@ static enum fault go(struct interpreter *in, const struct program *p, const doub
     return block_straight(in, p, end, rapid ? 0.0 : k->feed, cycles_taps(k->code), r);
 }
 
-/* A word that the cycle keeps: from the block, else *value stays as it was in the series. */
+/* Take a word that holds for a series: without it *value stays, or it is `missing` if no block of
+ * the series has had it (!kept). */
 static enum fault keep(const struct block *b, bool kept, char letter, double scale, double *value,
                        enum fault missing, struct fault_report *r)
 {
@@ -120,7 +124,8 @@ static enum fault keep(const struct block *b, bool kept, char letter, double sca
     return FAULT_NONE;
 }
 
-/* I J K of G87: from the hole to where the tool fits through, and the height it bores up to. */
+/* I J K of G87: displacement from the hole to where the tool fits through, and the height up to
+ * which it bores. */
 static enum fault keep_aside(struct interpreter *in, const struct block *b, bool kept,
                              struct fault_report *r)
 {
@@ -178,7 +183,7 @@ static enum fault keep_words(struct interpreter *in, const struct program *p, co
     return FAULT_NONE;
 }
 
-/* The first hole and the heights. */
+/* Find the first hole and the heights; a tool below R goes up there. */
 static enum fault set_places(struct interpreter *in, const struct program *p, const struct block *b,
                              bool series, struct fault_report *r)
 {
@@ -267,6 +272,7 @@ enum fault cycles_block(struct interpreter *in, const struct program *p, const s
     return f;
 }
 
+/* Make a command that switches the spindle and the overrides. */
 static void turn(struct interpreter *in, int32_t turning, uint32_t overrides)
 {
     in->switches.turning = turning;
@@ -274,7 +280,8 @@ static void turn(struct interpreter *in, int32_t turning, uint32_t overrides)
     switching_make(in, 0, 0);
 }
 
-/* Rapid where the tool is, as high as over the hole or aside of it, or along the normal. */
+/* Make a rapid of G87: i and h, aside of the hole or over it at the height of the tool; D and o,
+ * along the normal from where the tool is. */
 static enum fault shift(struct interpreter *in, const struct program *p, char step,
                         struct fault_report *r)
 {
@@ -293,7 +300,7 @@ static enum fault shift(struct interpreter *in, const struct program *p, char st
               true, r);
 }
 
-/* One step of the list.
+/* Make one step of the cycle.
  * CCN 22: a case for each letter of a list of steps. */
 static enum fault step(struct interpreter *in, const struct program *p, const char *steps,
                        struct fault_report *r)
@@ -314,7 +321,7 @@ static enum fault step(struct interpreter *in, const struct program *p, const ch
     case 'k': return go(in, p, k->hole, k->bored, false, r);
     case 'g':
         k->pecked = el_max(k->pecked - k->peck, k->bottom);
-        if (k->pecked - k->bottom < SAME) { /* the rest of the rounding is no peck */
+        if (k->pecked - k->bottom < SAME) { /* what rounding leaves is no peck */
             k->pecked = k->bottom;
             k->step = STEP_FIRST + (int32_t)(strchr(steps, '<') - steps) + 1;
         }
@@ -342,7 +349,7 @@ static enum fault step(struct interpreter *in, const struct program *p, const ch
     }
 }
 
-/* The hole is made: on to the next one, or the block is done. */
+/* A hole is finished: go on to the next one, or the block is done. */
 static enum fault next_hole(struct interpreter *in)
 {
     struct cycle *k = &in->cycle;
@@ -362,7 +369,7 @@ enum fault cycles_next(struct interpreter *in, const struct program *p, struct f
     enum fault f = FAULT_NONE;
 
     while (k->running && in->count == 0 && f == FAULT_NONE) {
-        in->flow.again += k->repeats > 0; /* as a line that is read again */
+        in->flow.again += k->repeats > 0; /* counts as a line that is read again */
         if (k->step == STEP_HOLE) {
             k->step++;
             frame_program(in, in->point, here);

@@ -6,12 +6,12 @@
 #include "cycles.h"
 #include "el_extremes.h"
 
-/* So that a path of any length has an end. [mm/s] */
+/* Lowest feed, so that a path of any length comes to its end. [mm/s] */
 static const double FEED_MIN = 1e-9;
 
 enum { INVERSE_TIME = 930, PER_MINUTE = 940, PER_TURN = 950 };
 
-/* Above the highest feed is a note, if that may be driven instead, or a fault. */
+/* A feed [mm/s] above the highest is a note if that may be driven instead, else a fault. */
 static enum fault check(const struct program *p, double feed, bool exact, const struct token *f,
                         const struct tokens *line, struct fault_report *r)
 {
@@ -36,7 +36,7 @@ enum fault feed_set(struct interpreter *in, const struct program *p, const struc
     const struct token *f = gcode_word(&b->g, 'F');
 
     if (mode != GCODE_ABSENT && mode != in->words.feed_mode) {
-        in->words.feed_mode = mode; /* an F of another unit says nothing in this one */
+        in->words.feed_mode = mode; /* F has another unit now */
         in->words.per_turn = in->feed = 0.0;
     }
     if (!f) {

@@ -20,7 +20,7 @@
 #include "uses.h"
 #include "waiting.h"
 
-static const double DWELL_LEAST = 1e-6, WAY_LEAST = 1e-9; /* [s], [mm] */
+static const double DWELL_LEAST = 1e-6, WAY_LEAST = 1e-9; /* [s], [mm]: less takes no time */
 
 void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
                        const double origin[INTERPRETER_SYSTEMS][AXES])
@@ -35,7 +35,7 @@ void interpreter_start(struct interpreter *in, const double point[AXES], double 
     memcpy(in->origin, origin, INTERPRETER_SYSTEMS * sizeof *in->origin);
 }
 
-/* G61, G64: exact stop, or corners within a tolerance and runs of lines within another. */
+/* G61, G61.1: exact stop; G64: corners within P, runs of short lines within Q. */
 static enum fault set_blend(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct token *p = gcode_word(&b->g, 'P'), *q = gcode_word(&b->g, 'Q');
@@ -52,7 +52,7 @@ static enum fault set_blend(struct interpreter *in, const struct block *b, struc
     return FAULT_NONE;
 }
 
-/* Units and plane, by which other words of the line are read. */
+/* Set units and plane, by which other words of the line are read. */
 static void set_measure(struct interpreter *in, struct block *b)
 {
     const int *code = b->g.code;
@@ -111,7 +111,7 @@ static enum fault set_modes(struct interpreter *in, struct block *b, struct faul
     return FAULT_NONE;
 }
 
-/* A word of the centre or radius of an arc; R and P unless another code has them. */
+/* The first of I J K, or of R P if no other code of the block takes it; or NULL. */
 static const struct token *shape_word(const struct block *b)
 {
     const struct token *shape = gcode_first(&b->g, "IJK");
@@ -122,7 +122,7 @@ static const struct token *shape_word(const struct block *b)
     return shape;
 }
 
-/* A point of a NURBS, its end, or what may not stand between its points. */
+/* Whether the block has a control point of a NURBS, its end, or what may not stand in between. */
 static bool nurbs_asked(const struct interpreter *in, const struct block *b, bool words, bool axis)
 {
     const int code = b->g.code[GCODE_MOTION];
@@ -131,8 +131,8 @@ static bool nurbs_asked(const struct interpreter *in, const struct block *b, boo
                             : code == 53 || (in->nurbs.count > 0 && words);
 }
 
-/* Motion of the block, if it has any. One row of questions: who is asked first has the first
- * claim on the words, so the order is the language's.
+/* Make the motion of the block, if it has any. The first question that is answered with yes has the
+ * words, so their order is the language's.
  * CCN 19: a question for each thing that may claim the words. */
 static enum fault move(struct interpreter *in, const struct program *p, const struct block *b,
                        struct fault_report *r)
@@ -170,13 +170,13 @@ static enum fault move(struct interpreter *in, const struct program *p, const st
     return f == FAULT_NONE ? rounding_block(in, p, b, before, r) : f;
 }
 
-/* G4 P leaves axis words to a motion; X and U of a Fanuc are its time. */
+/* Whether a block with G4 moves, too: with P it may; X or U, on Fanuc's controls, are its time. */
 static bool moves_behind_dwell(const struct block *b)
 {
     return gcode_word(&b->g, 'P') && block_moves(b);
 }
 
-/* Dwell, offsets, home or motion, whichever the block asks for. */
+/* Execute what the block asks for: dwell, G28 or G30, offsets, scaling and rotation, or motion. */
 static enum fault act(struct interpreter *in, const struct program *p, const struct block *b,
                       struct fault_report *r)
 {
@@ -191,7 +191,7 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
         return block_home(in, p, b, r);
     }
     if (b->g.code[GCODE_TOOL] == 431 || b->g.code[GCODE_TOOL] == 432) {
-        return FAULT_NONE; /* these have taken the axis words */
+        return FAULT_NONE; /* G43.1 and G43.2 have taken the axis words */
     }
     if (tools_measured(b)) {
         return tools_measure(in, p, b, r);
@@ -209,7 +209,7 @@ static enum fault act(struct interpreter *in, const struct program *p, const str
     return move(in, p, b, r);
 }
 
-/* G9: behind the motion of the block the axes rest, as by G4 P0. */
+/* G9: behind the motion of the block the axes come to rest, as by G4 P0. */
 static void rest_behind(struct interpreter *in, const struct block *b, int32_t before)
 {
     if (b->g.code[GCODE_EXACT] != GCODE_ABSENT && in->count > before && !in->cycle.running
@@ -238,7 +238,7 @@ static enum fault subprogram(struct interpreter *in, const struct program *p, co
                        : flow_subprogram(in, p, number->value, runs ? &runs->value : NULL, NULL, r);
 }
 
-/* The axis words of the block lead somewhere. */
+/* Whether axis words of the block move the axes. */
 static bool moves_axes(const struct block *b)
 {
     const int other = b->g.code[GCODE_NONMODAL], tool = b->g.code[GCODE_TOOL];
@@ -249,7 +249,7 @@ static bool moves_axes(const struct block *b)
            && gcode_first(&b->g, BLOCK_AXES "@^");
 }
 
-/* G67, and behind a line that moves the call that G66 asks for. */
+/* Execute G67; or behind a line that moves the axes make the call of G66. */
 static enum fault modal_macro(struct interpreter *in, const struct program *p,
                               const struct block *b, struct fault_report *r)
 {
@@ -261,7 +261,7 @@ static enum fault modal_macro(struct interpreter *in, const struct program *p,
     return in->cycle.running || in->nurbs.count > 0 ? FAULT_MODAL : flow_modal_call(in, p, r);
 }
 
-/* Stop or end of a block, ten times its code. */
+/* Execute M0, M1, M60 (a stop) or M2, M30 (the end); `code` is ten times the number. */
 static void stop(struct interpreter *in, const struct program *p, int code)
 {
     if (code == 0 || code == 600 || (code == 10 && p->optional_stop)) {
@@ -280,7 +280,8 @@ static enum fault also(enum fault f, enum fault g)
     return f != FAULT_NONE ? f : g;
 }
 
-/* Behind a fault: the axes are where the words of the block lead, and axis words move. */
+/* Behind a fault: put the axes where the words of the block lead, and let axis words that lacked a
+ * code of motion have G1 from here on. */
 static void go_on(struct interpreter *in, const struct program *p, const struct block *b,
                   enum fault f, const double before[AXES])
 {
@@ -297,9 +298,9 @@ static void go_on(struct interpreter *in, const struct program *p, const struct 
     }
 }
 
-/* Execute one block, in the order of RS-274: feed, outputs, spindle, coolant, dwell, modes,
+/* Execute one block, in the order of RS-274: modes, feed, tool, outputs, spindle, coolant, dwell,
  * offsets, motion, stop. f is a fault of its text; behind a fault it goes on with what is left, so
- * that modes and place are those in which the next lines are read.
+ * that modes and place are right for the lines that follow.
  * CCN 21: half of it chooses where the faults of each part go. */
 static enum fault execute(struct interpreter *in, const struct program *p, struct block *b,
                           enum fault f, struct fault_report *r)
@@ -308,7 +309,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     double before[AXES];
 
     ignored.notes = 0;
-    ignored.line = r->line; /* where calls say they stand */
+    ignored.line = r->line; /* the place that calls get */
     ignored.offset = r->offset;
     memcpy(ignored.file, r->file, FAULT_FILE);
     memcpy(before, in->point, sizeof before);
@@ -323,7 +324,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
     f = also(f, switching_block(in, p, b, f ? &ignored : r));
     f = also(f, saved_modes_block(in, b, f ? &ignored : r));
-    if (b->g.code[GCODE_SAVING] == 720) { /* G codes of the line come behind it */
+    if (b->g.code[GCODE_SAVING] == 720) { /* G codes of the block come behind M72 */
         f = also(f, set_modes(in, b, f ? &ignored : r));
         f = also(f, tools_lengths(in, p, b, f ? &ignored : r));
     }
@@ -343,7 +344,7 @@ static enum fault execute(struct interpreter *in, const struct program *p, struc
     return also(f, subprogram(in, p, b, f ? &ignored : r));
 }
 
-/* Go on with a cycle, or read and execute one line. */
+/* Go on with a cycle or a NURBS that runs, or read and execute one line. */
 static enum fault next_line(struct interpreter *in, const struct program *p, struct fault_report *r)
 {
     struct block b;
@@ -370,8 +371,8 @@ static enum fault next_line(struct interpreter *in, const struct program *p, str
     return f == FAULT_NONE && in->ended ? nurbs_end(in, r) : f;
 }
 
-/* A command is handed out. One that takes no time does not end what goes round without any: a
- * machine would never come to its next point. */
+/* Hand out a command. One that takes time begins the count of FAULT_ENDLESS anew; a loop of others
+ * would keep a controller from its next interpolation point for ever. */
 static enum interpreter_result hand_out(struct interpreter *in, const struct command *c)
 {
     const bool brief = c->type == COMMAND_DELAY

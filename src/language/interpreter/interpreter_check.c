@@ -5,19 +5,20 @@
 
 #include "waiting.h"
 
-/* A check on its way. */
+/* State of a check, by which it leaves out faults that only follow from others. */
 struct check {
-    enum fault latest; /* of an axis, since the last motion without a fault */
+    enum fault latest; /* fault of an axis since the latest command; or FAULT_NONE */
     int32_t axis;
-    bool flow; /* an O word was wrong: the ends of blocks do not count any more */
+    bool flow; /* an O word was wrong, so that ends of loops and conditions prove nothing */
 };
 
+/* Whether a fault is of an axis: all motions that follow may have it. */
 static bool of_axis(enum fault f)
 {
     return f == FAULT_SPEED || f == FAULT_RANGE || f == FAULT_TRAVEL || f == FAULT_AXIS;
 }
 
-/* Whether a fault only follows from one that has been told. */
+/* Whether a fault only follows from one that is listed, or is a second one of its line. */
 static bool follows(struct check *k, const struct fault_list *all, const struct fault_report *r)
 {
     const bool word = r->fault >= FAULT_O_WORD && r->fault <= FAULT_CALLS;
@@ -36,12 +37,13 @@ static bool follows(struct check *k, const struct fault_list *all, const struct 
     return same || end || again;
 }
 
-/* Nothing can be read behind it. */
+/* Whether nothing can be read behind a fault. */
 static bool last(enum fault f)
 {
     return f == FAULT_READ || f == FAULT_ZERO || f == FAULT_ENDLESS || f == FAULT_ALARM;
 }
 
+/* List a note unless there is one of its kind. */
 static void note(struct fault_list *all, const struct fault_note *told)
 {
     for (int i = 0; i < all->notes; i++) {
@@ -59,7 +61,7 @@ static void note(struct fault_list *all, const struct fault_note *told)
     n->length = told->length;
 }
 
-/* Take a fault; false if that was the last. */
+/* List a fault; false: the check ends. */
 static bool take(struct check *k, struct fault_list *all, const struct fault_report *r, int room)
 {
     if (!follows(k, all, r)) {
@@ -72,7 +74,7 @@ static bool take(struct check *k, struct fault_list *all, const struct fault_rep
     return !last(r->fault);
 }
 
-/* Read on until `room` faults are known. */
+/* Read the program to its end, or to the first fault if `room` is 1, or to fault room + 1. */
 static void check(struct interpreter *in, const struct program *p, int room, struct fault_list *all)
 {
     const int64_t most = p->check_again > 0 ? p->check_again : CHECK_AGAIN;

@@ -9,21 +9,22 @@
 #include "feed.h"
 #include "frame.h"
 
-/* Between a curve and the commands made of it, and that within which these follow each other
- * without a rest. [mm] */
+/* Distance [mm] between the curve and its cubics at most; and the tolerance [mm] within which these
+ * are driven without a rest. */
 static const double AWAY = 1e-4, JOINED = 1e-3;
-static const double SHORTEST = 1.0 / 4096.0; /* of a span: shorter segments are as they are */
+static const double SHORTEST = 1.0 / 4096.0; /* of a span: made at any distance */
 
-enum { PROBES = 5 }; /* places at which a segment is held against the curve */
+enum { PROBES = 5 }; /* number of places at which a segment is compared with the curve */
 
-/* Knot of a number: 0 for the first ones, then whole numbers, the last ones at the end. */
+/* Knot j: 0 for the first `order` ones, then 1, 2, ...; beyond the curve's end that of the end. */
 static double knot(const struct nurbs *n, int32_t j)
 {
     const int32_t last = n->ended && j > n->count - 1 ? n->count : j;
     return last < n->order ? 0.0 : last - n->order + 1.0;
 }
 
-/* Point and derivative by the parameter, 0..1 within a span, by de Boor's triangle. */
+/* Point [mm] and its derivative by the parameter t, 0 .. 1 within a span, by de Boor's algorithm on
+ * weighted points (w x, w y, w z, w). */
 static void curve(const struct nurbs *n, int32_t span, double t, double point[3], double slope[3])
 {
     const int32_t degree = n->order - 1;
@@ -53,7 +54,8 @@ static void curve(const struct nurbs *n, int32_t span, double t, double point[3]
     }
 }
 
-/* A segment of a span: its end and inner points, and how far it is away from the curve. */
+/* The cubic from n->from to `to` in the span, 0 .. 1: its end and inner points; returns its largest
+ * distance from the curve at PROBES places [mm]. */
 static double segment(const struct nurbs *n, double to, double end[3], double inner[2][3])
 {
     const double size = to - n->from;
@@ -79,7 +81,8 @@ static double segment(const struct nurbs *n, double to, double end[3], double in
     return most;
 }
 
-/* Whether a segment is a line, however it is run through. */
+/* Whether the inner points of a cubic lie within AWAY of its chord and between its ends, so that a
+ * line can stand for it. */
 static bool straight(const double begin[3], const double end[3], const double inner[2][3])
 {
     double chord[3], length = 0.0;
@@ -101,8 +104,8 @@ static bool straight(const double begin[3], const double end[3], const double in
     return true;
 }
 
-/* The command of a segment from where the tool is; *to comes down until it fits. Where points fall
- * together, a curve stands still by its parameter: there it is a line. */
+/* Make the command of a segment from where the tool is; *to is halved towards n->from until it
+ * fits. Where control points coincide, the derivative may be 0: a line is made there. */
 static enum fault make(struct interpreter *in, const struct program *p, double *to,
                        struct fault_report *r)
 {
@@ -157,7 +160,7 @@ enum fault nurbs_next(struct interpreter *in, const struct program *p, struct fa
     return f;
 }
 
-/* Keep a point, and forget those that no span to come depends on. */
+/* Keep a control point, and forget those on which no span to come depends. */
 static void add(struct nurbs *n, const double point[AXES], double weight)
 {
     if (n->span > n->first) {
@@ -170,7 +173,7 @@ static void add(struct nurbs *n, const double point[AXES], double weight)
     q[3] = weight;
 }
 
-/* Make what can be made now. */
+/* Let those spans be made whose control points are all known. */
 static void run(struct interpreter *in, const struct block *b, const struct fault_report *r)
 {
     struct nurbs *n = &in->nurbs;
@@ -197,7 +200,7 @@ static enum fault begin(struct interpreter *in, const struct block *b, double we
     return FAULT_NONE;
 }
 
-/* A control point: both axes of the plane, as coordinates that go on from the one before. */
+/* Add the control point of a block; with G91 its words count from the control point before. */
 static enum fault add_point(struct interpreter *in, const struct program *p, const struct block *b,
                             double weight, struct fault_report *r)
 {
@@ -232,7 +235,7 @@ static enum fault end_block(struct interpreter *in, const struct block *b, struc
     return FAULT_NONE;
 }
 
-/* The words of a line of G5.2: what it may not have, and a point with both its axes or none. */
+/* Check the words of a line of G5.2: it has both axes of the plane or neither, and P above 0. */
 static enum fault words_of(const struct interpreter *in, const struct program *p,
                            const struct block *b, const struct token *other, struct fault_report *r)
 {
@@ -252,7 +255,7 @@ static enum fault words_of(const struct interpreter *in, const struct program *p
     return FAULT_NONE;
 }
 
-/* A line of G5.2 whose words are right: the first begins the curve, each with a point adds it. */
+/* A line of G5.2 whose words are right: the first one begins the curve, and its point is added. */
 static enum fault take_line(struct interpreter *in, const struct program *p, const struct block *b,
                             struct fault_report *r)
 {

@@ -31,7 +31,7 @@ enum fault probing_block(struct interpreter *in, const struct program *p, const 
     }
     in->motion = GCODE_NO_MOTION;
     if (in->count == before && (code == 383 || code == 385)) {
-        frame_program(in, in->point, in->contact); /* no way, no contact, and no error */
+        frame_program(in, in->point, in->contact); /* no motion, no contact, and no error */
         in->touched = 0.0;
         return FAULT_NONE;
     }

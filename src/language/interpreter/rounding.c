@@ -9,16 +9,16 @@
 #include "elementary.h"
 #include "frame.h"
 
-/* A corner whose arc is shorter is smooth: nothing comes between. [mm] */
+/* A corner whose arc would be shorter is smooth, and stays as it is. [mm] */
 static const double SMOOTH = 1e-5;
 
-/* The fault stands in the line of the motion that waits. */
+/* Give a fault the place of the motion that waits, and return it. */
 static enum fault at_motion(const struct interpreter *in, enum fault f, struct fault_report *r)
 {
     return block_at_line(in, &in->rounding.line, f, r);
 }
 
-/* A line or an arc that stays in the plane. */
+/* Whether a command is a line or an arc that stays in the plane. */
 static bool in_plane(const struct command *c, enum path_plane plane)
 {
     bool stays =
@@ -31,8 +31,8 @@ static bool in_plane(const struct command *c, enum path_plane plane)
     return stays;
 }
 
-/* Where a chamfer leaves a motion: as far from the corner as it says, in front of it (sign -1) or
- * behind it. False: the arc ends nearer. */
+/* Where a chamfer meets a motion: at the distance `size` [mm] from the corner, in front of it (sign
+ * -1) or behind it (1). False: no place on the circle of an arc is so far away. */
 static bool chamfer_at(const struct contour *s, const double corner[2], double size, double sign,
                        double at[2])
 {
@@ -54,7 +54,7 @@ static bool chamfer_at(const struct contour *s, const double corner[2], double s
     return true;
 }
 
-/* Where an arc about a centre touches a motion, `edge` to the left of it. */
+/* Where an arc of ,R touches a motion; its centre is `edge` [mm] to the left of it. */
 static void touch_at(const struct contour *s, bool end, double edge, const double centre[2],
                      double at[2])
 {
@@ -66,12 +66,13 @@ static void touch_at(const struct contour *s, bool end, double edge, const doubl
     at[1] = s->turn == 0.0 ? centre[1] - edge * left[1] : s->centre[1] + away * y;
 }
 
-/* What comes between two motions: where it begins and ends, about which centre. */
+/* The chamfer or arc between two motions: its ends and its centre [mm], its sense. */
 struct piece {
     double from[2], to[2], centre[2];
     bool ccw;
 };
 
+/* Find it for a corner that turns by an angle [rad]; false: there is no room. */
 static bool piece_of(const struct rounding *k, const struct contour *a, const struct contour *b,
                      double angle, struct piece *q)
 {
@@ -92,7 +93,7 @@ static bool piece_of(const struct rounding *k, const struct contour *a, const st
     return kind == CONTOUR_CONCAVE || kind == CONTOUR_JOINED;
 }
 
-/* The path of what comes between; false: there is none. */
+/* Its path; false: there is none. */
 static bool between(const struct rounding *k, const struct piece *q, struct path *path)
 {
     const int a = path_first(k->plane), b = path_second(k->plane);
@@ -111,7 +112,8 @@ static bool between(const struct rounding *k, const struct piece *q, struct path
     return path_arc(path, k->plane, start, end, q->centre, q->ccw, 1, &miss) == PATH_OK;
 }
 
-/* The motion made last joins the one that waits: that, what comes between, and it are made. */
+/* Join the motion made last to the one that waits: the commands are that one, shortened, the
+ * chamfer or arc, and the motion, shortened. */
 static enum fault join(struct interpreter *in, const struct program *p, struct fault_report *r)
 {
     struct rounding *k = &in->rounding;
@@ -152,7 +154,7 @@ static enum fault join(struct interpreter *in, const struct program *p, struct f
     return f == FAULT_NONE ? f : at_motion(in, f, r);
 }
 
-/* The motion made last waits for the next one. */
+/* Let the motion made last wait for the next one; w is its ,C or ,R. */
 static enum fault hold(struct interpreter *in, const struct block *b, const struct token *w,
                        struct fault_report *r)
 {

@@ -33,7 +33,8 @@ static struct saved_modes modes_now(const struct interpreter *in)
     return m;
 }
 
-/* While a contour is cut, what would change its frame is refused, as it is in a line. */
+/* Whether modes can be restored. While cutter compensation, G51 or G68 is in force, what a block
+ * may not change then cannot be restored either. */
 static bool possible(const struct interpreter *in, const struct saved_modes *m)
 {
     const bool framed = in->words.scaled || in->words.rotated;

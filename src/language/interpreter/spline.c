@@ -4,7 +4,7 @@
 
 #include "frame.h"
 
-/* The words of two letters, 0 for one that is not there, as a way of the machine. [mm] */
+/* The words of two letters, 0 for one that is not there, as a displacement in machine axes [mm]. */
 static void way_of(const struct interpreter *in, const struct block *b, const char letters[2],
                    double way[3])
 {

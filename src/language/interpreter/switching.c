@@ -7,9 +7,10 @@
 #include "frame.h"
 #include "queue.h"
 
-static const double METRE = 1000.0, FOOT = 304.8; /* [mm] of S with G96 */
+static const double METRE = 1000.0, FOOT = 304.8; /* [mm] S of G96 is in m or ft per minute */
 
-/* What G96 asks for now: about the program's zero, along X of the machine. */
+/* What G96 asks for: its speed S, and the X of the program's zero in machine coordinates, from
+ * which the radius is measured. */
 static struct outputs_surface surface_of(const struct interpreter *in)
 {
     static const double ZERO[AXES];
@@ -43,13 +44,13 @@ struct at_once {
     struct outputs_analog analog;
 };
 
-/* Number of an output from a word, 0 .. count - 1; -1 if it is none. */
+/* Number of an output that a word has, 0 .. count - 1; -1: it is none. */
 static int output_of(const struct token *w, int count)
 {
     return w->value >= 0.0 && w->value < count && w->value == round(w->value) ? (int)w->value : -1;
 }
 
-/* M62 .. M65; bits of M64 and M65 go to *now, those of M62 and M63 wait in the state. */
+/* Execute M62 .. M65: bits of M64 and M65 go to *now, those of M62 and M63 wait in *in. */
 static enum fault digital(struct interpreter *in, const struct block *b, struct at_once *now,
                           struct fault_report *r)
 {
@@ -75,7 +76,7 @@ static enum fault digital(struct interpreter *in, const struct block *b, struct 
     return FAULT_NONE;
 }
 
-/* M67, which waits in the state, and M68, to *now. */
+/* Execute M67, whose value waits in *in, or M68, whose value goes to *now. */
 static enum fault analog(struct interpreter *in, const struct block *b, struct at_once *now,
                          struct fault_report *r)
 {
@@ -104,7 +105,7 @@ static enum fault outputs(struct interpreter *in, const struct block *b, struct 
                                                : digital(in, b, now, r);
 }
 
-/* M48 .. M53; P0 undoes what the code alone does. */
+/* Execute M48 .. M53; M50 to M53 with P0 do the opposite. */
 static enum fault overrides(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     static const struct {
@@ -140,8 +141,8 @@ static enum fault overrides(struct interpreter *in, const struct block *b, struc
     return FAULT_NONE;
 }
 
-/* M3 .. M5; M19 turns the spindle to R degrees, P 0 on the shorter way, 1 clockwise, 2
- * counter-clockwise, within Q seconds: it stops, turning to a place is beyond the outputs. */
+/* Execute M3 .. M5, M19. M19 only stops the spindle, for its angle is no output; R [deg], P (0: the
+ * shorter way, 1: clockwise, 2: counter-clockwise) and Q [s] are checked. */
 static enum fault spindle(struct interpreter *in, const struct program *p, const struct block *b,
                           struct fault_report *r)
 {
@@ -166,7 +167,7 @@ static enum fault spindle(struct interpreter *in, const struct program *p, const
     return FAULT_NONE;
 }
 
-/* S, G96 with its D, G97. */
+/* Execute S, G96 with its D, G97. */
 static enum fault speed(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct token *s = gcode_word(&b->g, 'S'), *d = gcode_word(&b->g, 'D');
@@ -194,13 +195,14 @@ static enum fault speed(struct interpreter *in, const struct block *b, struct fa
     return FAULT_NONE;
 }
 
-/* Whether two states of what is switched differ for the machine. */
+/* Whether two states differ in coolant, overrides or the spindle's speed. */
 static bool differ(const struct switches *a, const struct switches *b)
 {
     return a->coolant != b->coolant || a->overrides != b->overrides
            || switches_spindle(a) != switches_spindle(b);
 }
 
+/* Likewise for the state now; or the surface speed is not that which the machine has. */
 static bool differs(const struct interpreter *in, const struct switches *before)
 {
     const struct outputs_surface pass = surface_of(in), told = in->switches.told;
@@ -214,7 +216,7 @@ void switching_differs(struct interpreter *in, const struct switches *before)
     }
 }
 
-/* Words that do nothing where only the tool moves and outputs switch. */
+/* Add a note for each word that does nothing on a machine without spindle and coolant (p->bare). */
 static void tell(const struct block *b, struct fault_report *r)
 {
     const struct gcode *g = &b->g;

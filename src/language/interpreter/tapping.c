@@ -10,6 +10,7 @@
 
 static const uint32_t FIXED = OUTPUTS_FEED_FIXED | OUTPUTS_SPEED_FIXED;
 
+/* What is wrong with the words of the block, or with the spindle. */
 static enum fault refused(const struct interpreter *in, const struct program *p,
                           const struct block *b, struct fault_report *r)
 {
@@ -45,7 +46,7 @@ enum fault tapping_block(struct interpreter *in, const struct program *p, const 
     }
     const double faster = i && i->value > 1.0 ? i->value : 1.0;
     const double feed = gcode_word(&b->g, 'K')->value * b->scale * s->speed / 60.0;
-    if (feed * faster > p->limits.feed) { /* cut down it would leave the thread */
+    if (feed * faster > p->limits.feed) { /* a lower feed would leave the thread */
         r->value = feed * faster * 60.0;
         r->limit = p->limits.feed * 60.0;
         return tokens_at_line(r, FAULT_FEED, &b->tokens);

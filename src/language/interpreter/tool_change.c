@@ -4,6 +4,7 @@
 #include "switching.h"
 #include "tools.h"
 
+/* The word's tool is the next one. */
 static enum fault choose(struct interpreter *in, const struct token *t, struct fault_report *r)
 {
     struct tool tool;
@@ -21,6 +22,7 @@ static enum fault choose(struct interpreter *in, const struct token *t, struct f
     return FAULT_NONE;
 }
 
+/* M6: the next tool comes into the spindle, which is off. */
 static void load(struct interpreter *in, const struct program *p)
 {
     const bool turns = switches_spindle(&in->switches) != 0.0;
@@ -42,7 +44,7 @@ static void load(struct interpreter *in, const struct program *p)
     }
 }
 
-/* M61: the tool is there already. */
+/* M61 Q: the tool is in the spindle already. */
 static enum fault declare(struct interpreter *in, const struct block *b, struct fault_report *r)
 {
     const struct token *q = gcode_word(&b->g, 'Q');

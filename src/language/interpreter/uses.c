@@ -17,7 +17,7 @@
 #define CORNER     (GCODE_BIT(TOKENS_CHAMFER) | GCODE_BIT(TOKENS_ROUND))
 #define AXIS_WORDS ((uint32_t)1 << GCODE_LETTERS)
 
-/* The codes beside those of motion that take words: group, code, letters. */
+/* Codes other than those of motion that take words: group, code, letters. */
 #define CODES(X) \
     X(NONMODAL, 40, P) \
     X(NONMODAL, 100, P | L | R | AXIS_WORDS) \
@@ -54,7 +54,7 @@
     X(CUTTER, 411, D) \
     X(CUTTER, 421, D)
 
-/* What the codes of motion take beside axis words, while no other code takes those. */
+/* What codes of motion take beside axis words, if no other code takes these. */
 #define MOVES(X) \
     X(MOTION, 0, POLAR) \
     X(MOTION, 10, POLAR) \
@@ -77,7 +77,7 @@
     X(MOTION, 880, POLAR | R | L | P) \
     X(MOTION, 890, POLAR | R | L | P)
 
-/* What some take besides on Fanuc's controls. */
+/* What some of these take in addition on Fanuc's controls. */
 #define FANUC(X) \
     X(MOTION, 730, P) \
     X(MOTION, 830, P) \
@@ -93,10 +93,10 @@ static const struct row {
     int code;
     uint32_t takes;
 } rows[] = { CODES(ROW) }, moves[] = { MOVES(ROW) }, fanuc[] = { FANUC(ROW) };
-static const uint32_t OWNERS = 0 CODES(GROUP); /* groups that have rows */
+static const uint32_t OWNERS = 0 CODES(GROUP); /* bits of groups with rows */
 static const uint32_t OWNED = (0 CODES(LETTERS) MOVES(LETTERS) FANUC(LETTERS)) & ~AXIS_WORDS;
 
-/* Which word a code gave that takes each letter, the axis words at the end. */
+/* The word of the code that takes each letter, or NULL; last for the axis words. */
 struct owners {
     const struct token *of[GCODE_LETTERS + 1];
 };
@@ -121,7 +121,7 @@ const struct token *uses_of(const struct gcode *g, char letter)
     return NULL;
 }
 
-/* Owners of the letters of a block; two of one letter that is there, or of axes, are a fault. */
+/* Find the owners. FAULT_SHARED: two codes take a letter that the block has, or axis words. */
 static enum fault share(const struct gcode *g, struct owners *o, struct fault_report *r)
 {
     memset(o, 0, sizeof *o);
@@ -138,7 +138,7 @@ static enum fault share(const struct gcode *g, struct owners *o, struct fault_re
     return FAULT_NONE;
 }
 
-/* Letters that the code of motion in force takes. */
+/* Bits of the letters that the code of motion in force takes. */
 static uint32_t moves_with(const struct interpreter *in, const struct block *b)
 {
     size_t i = 0;
@@ -153,7 +153,7 @@ static uint32_t moves_with(const struct interpreter *in, const struct block *b)
     return i < sizeof moves / sizeof *moves ? moves[i].takes | more : 0;
 }
 
-/* The block moves: by its code of motion, its axis words, or what else only a motion has. */
+/* Whether the block moves: it has a code of motion, axis words, or I J K R that no code takes. */
 static bool moves_by(const struct gcode *g, const struct owners *o)
 {
     const int code = g->code[GCODE_MOTION];
@@ -165,7 +165,8 @@ static bool moves_by(const struct gcode *g, const struct owners *o)
     return any;
 }
 
-/* G0 or G1 beside G28 or G30, as posts write it: it holds from the next line on. */
+/* Whether G0 or G1 stands beside G28 or G30, as postprocessors write it: it holds from the next
+ * line on. */
 static bool homes_beside(const struct gcode *g)
 {
     const int other = g->code[GCODE_NONMODAL], motion = g->code[GCODE_MOTION];
