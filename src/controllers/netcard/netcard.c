@@ -252,7 +252,8 @@ void card_advance_player(struct netcard *c)
     }
 }
 
-/* Vectors of inputs that have become pending; one that was so already comes no second time. */
+/* Make interrupts of the inputs' vectors pending. One that is pending already does not count
+ * twice. */
 static void pend_vectors(struct netcard *c, uint32_t vectors)
 {
     for (int i = 0; i < CARD_VECTORS; i++) {
@@ -262,7 +263,7 @@ static void pend_vectors(struct netcard *c, uint32_t vectors)
     }
 }
 
-/* Let the hardware do what is due at c->now. */
+/* Let the hardware do all that is due at c->now. */
 static void hardware(struct netcard *c)
 {
     card_advance_player(c);
@@ -362,7 +363,7 @@ void netcard_set_inputs(struct netcard *c, uint32_t levels)
     pend_vectors(c, card_inputs_set(&c->inputs, levels, c->now) & ~before);
 }
 
-/* Origins whose edge of the trigger's kind comes now: the FPGA keeps the count. */
+/* Latch the counts of axes whose origin has an edge of the trigger's kind now, as the FPGA does. */
 static void latch(struct netcard *c, uint32_t origin)
 {
     int64_t counts[FRAME_AXES];
