@@ -73,7 +73,7 @@ typedef struct {
     double high_limit;       /* [mm] from the logical origin to the positive limit switch */
     double low_limit;        /* [mm] from the logical origin to the negative limit switch */
     double HOT_offset;       /* [mm] from the positive limit switch inwards to the software limit */
-    double LOT_offset;       /* [mm] from the negative limit switch inwards to its one */
+    double LOT_offset;       /* [mm] from the negative limit switch inwards to its limit */
     int32_t sensor_on;       /* logic state of the home sensor when ON, 0 or 1 */
     int32_t index_on;        /* logic state of the encoder's index when ON; 1 at the start */
     int32_t home_dir;        /* bits 0, 1, 2: direction in phases 1, 2, 3; 0 positive,

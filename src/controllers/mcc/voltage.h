@@ -17,7 +17,7 @@ enum { VOLTAGE_RANGE = 10 }; /* [V] of the card's DAC, both ways */
 struct voltage {
     struct law_config config; /* with the axes and pulses per mm that the machine has now */
     bool wanted[AXES], inverted[AXES]; /* the gains have the axis on; the machine inverts it */
-    bool special;                      /* an axis has more than the P law */
+    bool special;                      /* more than the P law is in use */
     struct law law;
     struct commanded_path commanded_path;
     int32_t base[3];       /* [pulses] put out where the commanded path starts, at 0 */

@@ -130,7 +130,7 @@ enum card_clear { CLEAR_NONE, CLEAR_GIVEN, CLEAR_OVER };
 
 struct netcard_config {
     struct card_settings settings;
-    uint8_t key[NET_SHA_BYTES]; /* shared key of the link; all 0: no authentication */
+    uint8_t key[NET_SHA_BYTES]; /* key of the link; all 0: an open link without MAC */
 };
 
 struct netcard {

@@ -28,7 +28,7 @@ struct session_config {
     uint32_t card;
     uint32_t firmware;
     uint8_t slots, axes;
-    uint8_t key[NET_SHA_BYTES];  /* shared key; all 0: no authentication */
+    uint8_t key[NET_SHA_BYTES];  /* the card's key; all 0: an open link without MAC */
     uint8_t seed[NET_SHA_BYTES]; /* of nonces and pauses: never the same twice except in tests */
 };
 
