@@ -21,8 +21,8 @@ void groups_init(struct groups *s, const struct group_config *config,
     }
 }
 
-/* Whether a group may have these channels: each exists, is free and is named once; at least one
- * is. */
+/* True if a group may have these channels: each exists, is free and is named once, and there is at
+ * least one. */
 static bool channels_free(const struct groups *s, int card, const int32_t channel[AXES])
 {
     bool taken[AXES] = { false };
@@ -46,7 +46,7 @@ static bool valid(const struct groups *s, int group)
     return group >= 0 && group < GROUP_MAX && s->group[group].used;
 }
 
-/* Channels of a group begin or cease to be used. */
+/* Mark the channels of a group as used, or as free again. */
 static void use(struct groups *s, const struct group *g, bool used)
 {
     struct group_card *c = &s->card[g->card];
@@ -61,8 +61,8 @@ static void use(struct groups *s, const struct group *g, bool used)
     }
 }
 
-/* The machine of a group: its motion, the channels' axes, the card's DDA time. An axis it does not
- * have is like one that it has. */
+/* The machine of a group: settings of its motion, axes of its channels, DDA time of its card. An
+ * axis that it does not have gets the valid settings of another. */
 static struct machine machine_of(const struct groups *s, int card, const int32_t channel[AXES],
                                  bool voltage, const struct machine *motion)
 {
@@ -83,7 +83,7 @@ static struct machine machine_of(const struct groups *s, int card, const int32_t
     return m;
 }
 
-/* A group on channels that it may have. */
+/* Create a group on channels that it may have. Returns its index, or a code. */
 static int create(struct groups *s, int card, const int32_t channel[AXES], bool voltage,
                   const struct machine *motion)
 {
@@ -215,7 +215,8 @@ static void cycle(struct group *g, int64_t clock, const struct group_panel *pane
     task_run(&g->mcc, g->program ? program : NULL);
 }
 
-/* What its program asks of the machine: inputs, a probe, and of pulse channels where they are. */
+/* Set the signals that the program of a group asks for: inputs, probe, and where pulse channels
+ * are. */
 static void show(const struct groups *s, struct group *g, const struct group_panel *panel)
 {
     const struct group_card *c = &s->card[g->card];
@@ -237,7 +238,7 @@ static void show(const struct groups *s, struct group *g, const struct group_pan
 
 /* --- What each card is given. ---------------------------------------------------------------- */
 
-/* A group whose frames go to the FIFO of a card. */
+/* True if the frames of a group go to the FIFO of this card. */
 static bool on_fifo(const struct group *g, int card)
 {
     return g->used && !g->voltage && g->card == card;

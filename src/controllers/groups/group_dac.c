@@ -11,14 +11,15 @@ static bool there(int card, int number, int count)
     return card >= 0 && card < GROUP_CARDS && number >= 0 && number < count;
 }
 
-/* The card's own position loop of a group's pulse channel gives the voltage of its DAC. */
+/* True if a DAC gets the voltage of the card's own position loop, of the pulse channel of its
+ * number. */
 static bool looped(const struct group_card *c, int channel)
 {
     return channel < AXES && c->machine.axis[channel].used
            && c->command_mode[channel] == GROUP_COMMAND_VOLTAGE;
 }
 
-/* Whether an encoder counter closes a loop. */
+/* True if an encoder counter is the feedback of an axis. */
 static bool counter_taken(const struct group_card *c, int encoder)
 {
     for (int i = 0; i < GROUP_DACS; i++) {

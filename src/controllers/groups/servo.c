@@ -18,7 +18,7 @@ void servo_start(struct servo *s, const struct law_config *law, const struct mac
     voltage_start(&s->voltage, &c, m);
 }
 
-/* What the library sees of the machine: its own pulses in the place of the card's. */
+/* Set the signals that the library sees: pulses are those of this servo, not those of the card. */
 static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
 {
     struct signals raw = { .probe = m->signals.probe, .digital = m->signals.digital };
@@ -34,7 +34,7 @@ static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
     }
 }
 
-/* A DDA time begins, as long as the machine has it: the next point, standstill without one. */
+/* Begin a DDA time, of the length that the machine has now, with the next point or standstill. */
 static void take(struct servo *s, struct mcc *m)
 {
     static const int32_t STANDSTILL[AXES];

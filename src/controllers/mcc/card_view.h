@@ -1,4 +1,5 @@
-/* card_view - the library's side of the link: what the card shows, what it is given. */
+/* card_view - the library's side of the link to the card: it reads what the card shows and writes
+ * what the card is given. */
 #ifndef CARD_VIEW_H
 #define CARD_VIEW_H
 
@@ -6,12 +7,13 @@
 #include "pcl.h"
 #include "signals.h"
 
-/* FIFO and interrupts of a card whose position control is p; what it tells of the machine. */
+/* What the card shows: FIFO and interrupts, with the stock of the axis that p watches; and its
+ * signals of the machine. */
 struct pcl_card card_of(const struct pcl *p, const struct link_card *link);
 struct signals card_signals(const struct link_card *link);
 
-/* DDA, interrupts, and the transaction if it has a new number. `used`: the DDA runs, sources pull
- * the line. */
+/* Write what the card is given: settings of DDA and interrupts, and the transaction of p if its
+ * number is new. With `used` the DDA runs and the sources pull the interrupt line. */
 void card_write(const struct pcl *p, const struct machine *m, bool used, struct link_host *link);
 
 #endif

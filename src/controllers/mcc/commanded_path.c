@@ -82,7 +82,7 @@ static void bend(const struct commanded_path *t, int64_t middle, double out[3])
     }
 }
 
-/* A piece of the path and what of it is nearest. */
+/* The path from one point to the next, and the place on it that is nearest to the tool. */
 struct commanded_path_segment {
     double from[3], chord[3], along[3]; /* [mm], [mm], unit */
     double size;                        /* [mm] of the chord */
@@ -91,7 +91,7 @@ struct commanded_path_segment {
     double square; /* [mm^2] distance to the foot */
 };
 
-/* Nearest point on the chord from a point to the next. */
+/* Nearest place on the chord from point i to the next. */
 static struct commanded_path_segment chord_of(const struct commanded_path *t, int64_t i,
                                               const double place[3])
 {
@@ -112,7 +112,7 @@ static struct commanded_path_segment chord_of(const struct commanded_path *t, in
     return p;
 }
 
-/* The bend of the circle that a piece belongs to; false for a straight piece. */
+/* Axis and radius of the circle from point i to the next; false where the path is straight. */
 static bool arc_of(const struct commanded_path *t, int64_t i, double size, double axis[3],
                    double *radius)
 {
@@ -138,7 +138,8 @@ static bool arc_of(const struct commanded_path *t, int64_t i, double size, doubl
     return true;
 }
 
-/* The foot at an end of a piece: the path is not the chord, which lies on the tool's side. */
+/* Move the foot to an end of the piece: there the chord may be nearer to the tool than the path
+ * is. */
 static void at_end(struct commanded_path_segment *p, bool far, const double place[3])
 {
     p->square = 0.0;
@@ -148,7 +149,8 @@ static void at_end(struct commanded_path_segment *p, bool far, const double plac
     }
 }
 
-/* Nearest point on the piece, on its circle if it has one. */
+/* Nearest place on the path from point i to the next: on its circle if it has one, else on the
+ * chord. */
 static struct commanded_path_segment refined(const struct commanded_path *t, int64_t i,
                                              const double place[3])
 {

@@ -3,7 +3,7 @@
 
 #include "mcc.h"
 
-/* Nothing under way and nothing to come. */
+/* True if nothing is under way and nothing is to come. */
 static bool idle(const struct mcc *m)
 {
     return !m->running && m->ring.count == 0 && !trajectory_busy(&m->trajectory)

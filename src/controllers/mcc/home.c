@@ -27,11 +27,13 @@ static bool by_limit(const struct home_config *c)
     return c->mode == HOME_LIMIT || c->mode == HOME_LIMIT_INDEX;
 }
 
+/* True if the sensor is ON, or the limit switch in its place. */
 static bool on(const struct home_config *c, const struct home_inputs *in)
 {
     return by_limit(c) ? limit(in, sign(c, 0)) : in->sensor == c->sensor_on;
 }
 
+/* Begin a phase where the axis is. */
 static void enter(struct home *h, enum home_phase phase, const struct home_inputs *in)
 {
     h->phase = phase;
@@ -56,7 +58,7 @@ static bool too_far(const struct home *h, const struct home_inputs *in, double w
     return fabs(in->position - h->begin) > way;
 }
 
-/* Phase 1. */
+/* Phase 1: onto the sensor; the first limit switch turns the axis round, the second is a fault. */
 static void search(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
     if (on(c, in)) {
@@ -73,7 +75,7 @@ static void search(struct home *h, const struct home_config *c, const struct hom
     }
 }
 
-/* Away from the limit, over the sensor and off it, to search again from the usual side. */
+/* Away from the limit switch, over the sensor and off it, to search again from the usual side. */
 static void turn(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
     h->passed = h->passed || on(c, in);
@@ -84,8 +86,9 @@ static void turn(struct home *h, const struct home_config *c, const struct home_
     }
 }
 
-/* Phase 2. A limit switch that is the sensor may be active here, the other one not. If the axis has
- * run over the sensor before it came to rest, it comes onto it once more on its way back. */
+/* Phase 2: off the sensor. The axis may be on a limit switch that is the sensor, but not on the
+ * other one. If it ran over the sensor before it came to rest, it meets it once more on its way
+ * back. */
 static void leave(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
     h->passed = h->passed || on(c, in);
@@ -99,7 +102,7 @@ static void leave(struct home *h, const struct home_config *c, const struct home
     }
 }
 
-/* Phase 3. */
+/* Phase 3: to the index. */
 static void latch(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
     if (h->armed && in->latched) {
@@ -112,7 +115,7 @@ static void latch(struct home *h, const struct home_config *c, const struct home
     }
 }
 
-/* The axis rests after what a phase has found. */
+/* The axis rests after a phase has found its edge: begin the next phase. */
 static void next_phase(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
     const bool index = c->mode != HOME_SENSOR && c->mode != HOME_LIMIT;
@@ -128,6 +131,7 @@ static void next_phase(struct home *h, const struct home_config *c, const struct
     }
 }
 
+/* See what has come of the phase, and go on to the next one. */
 static void look(struct home *h, const struct home_config *c, const struct home_inputs *in)
 {
     if (h->stopping) {

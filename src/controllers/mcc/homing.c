@@ -44,7 +44,6 @@ int homing_set_settle(struct mcc *m, double seconds)
     return MCC_NO_ERR;
 }
 
-/* Place of the machine at an encoder count. [mm] */
 double homing_place(const struct mcc *m, int i, int32_t count)
 {
     const struct homing_axis *x = &m->homing.axis[i];
@@ -52,12 +51,13 @@ double homing_place(const struct mcc *m, int i, int32_t count)
     return (x->inverted ? -1.0 : 1.0) * from_zero / scale(m, i);
 }
 
-/* The axis stands: planned so, all its pulses written, and for some time at its encoder. */
+/* True if the axis is at rest: by its plan, and for the time `settle` by its encoder too. */
 static bool rests(const struct mcc *m, int i)
 {
     return axes_rests(&m->trajectory.axes, i) && m->homing.axis[i].clocks >= m->homing.settle;
 }
 
+/* Measure for how long the encoder has stood still, with every point in the card. */
 static void watch(struct mcc *m, int i, int64_t clocks)
 {
     struct homing_axis *x = &m->homing.axis[i];
@@ -89,6 +89,7 @@ static struct home_inputs inputs(const struct mcc *m, int i)
                                  .latch = homing_place(m, i, m->signals.latch[i]) };
 }
 
+/* Give an order of the search to the trajectory's axis, if it is a new one. */
 static void obey(struct mcc *m, int i, const struct home_order *o)
 {
     struct homing_axis *x = &m->homing.axis[i];
@@ -114,7 +115,7 @@ static void obey(struct mcc *m, int i, const struct home_order *o)
     }
 }
 
-/* The axes with the next number, if there is one. */
+/* Begin the search of the axes with the next order; false if there is none. */
 static bool next_group(struct mcc *m)
 {
     struct homing *h = &m->homing;
@@ -200,7 +201,7 @@ static void fail(struct mcc *m, int i, enum home_fault fault)
     control_settle(m);
 }
 
-/* All axes stand at their origins, every point is written: here is 0 from now on. */
+/* All axes stand at their origins and the card has every point: this position is 0 from now on. */
 static void set_origin(struct mcc *m)
 {
     trajectory_bind(&m->trajectory);

@@ -15,7 +15,7 @@ int inquiry_set_place(struct mcc *m, enum inquiry_place place)
     return MCC_NO_ERR;
 }
 
-/* All commands so far have ended and the card has taken their points. */
+/* True if all commands so far have ended and the card has taken their points. */
 static bool ended(const struct mcc *m)
 {
     return m->ring.count == 0 && !trajectory_busy(&m->trajectory) && !m->trajectory.stopped
@@ -50,14 +50,15 @@ static void input(struct mcc *m, int64_t clocks)
     q->was = is;
 }
 
-/* The card has latched a counter since the probe began to move. */
+/* True if the card has latched the axis' counter since the probe began to move, and latches
+ * count. */
 static bool latched(const struct mcc *m, int i)
 {
     return m->inquiry.place == INQUIRY_LATCH && m->program.wait.kind == WAIT_PROBE
            && m->machine.axis[i].used && m->signals.latched[i] != m->inquiry.latched[i];
 }
 
-/* The probe is as G38 wants it. */
+/* True if the probe is as G38 wants it: it touches, or no longer touches. */
 static bool contact(const struct mcc *m)
 {
     bool any = m->signals.probe == (m->program.wait.mode == WAIT_HIGH);
@@ -68,7 +69,7 @@ static bool contact(const struct mcc *m)
     return any && !m->dry_run;
 }
 
-/* The machine rests before the probe moves. */
+/* Before the probe moves: once the machine rests, let it go unless it is already as G38 wants. */
 static void free_to_move(struct mcc *m)
 {
     struct inquiry *q = &m->inquiry;

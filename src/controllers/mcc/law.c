@@ -6,7 +6,7 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-/* What is left of the pre-filter's lag at rest is nothing from here on. [pulses], [pulses/s] */
+/* At rest, a remainder of the pre-filter's lag below this is set to 0. [pulses], [pulses/s] */
 static const double NOTHING = 1e-6;
 
 /* Two directions are opposite if 1 + their cosine is below this. */

@@ -58,7 +58,7 @@ static bool asyn_valid(const struct machine_asyn *r)
     return true;
 }
 
-/* 0 takes the library's own. */
+/* True for a share, or for 0, which stands for the library's own value. */
 static bool share_valid(double x)
 {
     return x == 0.0 || machine_share(x);
@@ -125,14 +125,14 @@ static double jerk_share(const struct machine *m)
     return m->jerk_share > 0.0 ? m->jerk_share : JERK_SHARE;
 }
 
-/* A ramp between rest and a speed that takes a time; of type 'T' its jerk has no limit. */
+/* Ramp between rest and a speed that takes `time` [s]. For type 'T' its jerk has no limit. */
 static struct ramp_rule rule(const struct machine *m, char type, double time)
 {
     return (struct ramp_rule){ .time = time, .share = type == 'S' ? jerk_share(m) : 0.0 };
 }
 
-/* Time over which a way with these ramps, at constant acceleration, has to be averaged for a jerk
- * like theirs; 0 of type 'T'. [s] */
+/* Time of the mean that gives a motion with ramps of constant acceleration the jerk of S-shaped
+ * ramps; 0 for type 'T'. [s] */
 static double smooth(const struct machine *m)
 {
     const double up = m->acc_type == 'S' ? m->acc_time : 0.0;
@@ -140,6 +140,7 @@ static double smooth(const struct machine *m)
     return 0.5 * jerk_share(m) * (up + down); /* from +acc to -dec at most: (acc + dec) / jerk */
 }
 
+/* Share of the safe motor speed for rapids. */
 static double rapid(const struct machine *m)
 {
     return m->ptp_ratio > 0.0 ? m->ptp_ratio : 1.0;

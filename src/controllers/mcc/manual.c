@@ -139,13 +139,13 @@ static double pulses_of(const struct mcc *m, int axis)
     return round(place_of(m, axis) * machine_pulses_per_mm(&m->machine.axis[axis]));
 }
 
-/* The axis stands on the limit switch of a direction. */
+/* True if the axis is on the limit switch of a direction. */
 static bool on_limit(const struct mcc *m, int axis, double direction)
 {
     return ((direction > 0.0 ? m->signals.upper : m->signals.lower) >> axis & 1) != 0;
 }
 
-/* Whether an axis can move by hand in a direction; 0 stands for none. */
+/* MCC_NO_ERR if an axis can be moved by hand in a direction, of which 0 is none; else the code. */
 static int movable(const struct mcc *m, int axis, double direction)
 {
     const int code = manual_allowed(m);
@@ -191,7 +191,7 @@ int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
     return MCC_NO_ERR;
 }
 
-/* One step of an axis that stands. */
+/* Jog an axis that stands to a target [mm]. */
 static int step(struct mcc *m, int axis, double target, const struct axes_limits *l)
 {
     const double pulses = target * machine_pulses_per_mm(&m->machine.axis[axis]);
@@ -238,7 +238,7 @@ static int32_t counter(const struct mcc *m, int encoder)
     return encoder < AXES ? m->signals.enc[encoder] : m->signals.enc_aux[encoder - AXES];
 }
 
-/* The axis is where it shall be when the wheel stands as it does now. */
+/* From now on the axis counts the wheel's motion from where both are. */
 static void rebase(struct mcc *m, int axis)
 {
     struct manual_axis *w = &m->manual.axis[axis];

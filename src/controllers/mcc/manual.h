@@ -1,7 +1,7 @@
-/* manual - axes moved by hand, one by one: jog and hand wheel. The calls stand in mcc.h.
+/* manual - axes moved by hand, one by one: jog and handwheel. The calls are in mcc.h.
  *
- * While an axis is in use here, or in homing, commands are refused and the trajectory's axes follow
- * orders.
+ * While any axis is moved by hand or homed, commands are refused and each axis of the trajectory
+ * moves by itself, as it is ordered.
  */
 #ifndef MANUAL_H
 #define MANUAL_H
@@ -16,11 +16,11 @@ enum { MANUAL_ENCODERS = 9 }; /* counters of the card, those of the axes first *
 
 struct manual_axis {
     enum manual_use use;
-    int32_t encoder; /* hand wheel: its counter, 0 .. 8 */
-    double ratio;    /* [pulses/count] */
-    int32_t count;   /* [counts] of the counter at the latest look */
-    int64_t turned;  /* [counts] since the axis was at `base` */
-    int32_t base;    /* [pulses] */
+    int32_t encoder; /* encoder counter of the handwheel, 0 .. 8 */
+    double ratio;    /* [pulses/count] of the axis by the handwheel */
+    int32_t count;   /* [counts] of that counter at the latest look */
+    int64_t turned;  /* [counts] that the wheel has turned since the axis was at `base` */
+    int32_t base;    /* [pulses] position from which those counts move the axis */
 };
 
 struct manual {
@@ -30,18 +30,18 @@ struct manual {
 /* MCC_NO_ERR if axes may be moved by hand now, or the code that says why not. */
 int manual_allowed(const struct mcc *m);
 
-/* Take an axis into use; the first one sets the axes free. */
+/* Take an axis into use. The first one lets all axes of the trajectory move by themselves. */
 void manual_use(struct mcc *m, int axis, enum manual_use use);
 
-/* True while an axis follows a hand wheel. */
+/* True while some axis follows a handwheel. */
 bool manual_wheel(const struct mcc *m);
 
-/* The card has reported its signals: limit switches stop axes that move onto them, axes follow
- * their hand wheels. */
+/* Act on the signals that the card has just reported: stop jogged axes that move onto a limit
+ * switch, and let axes follow their handwheels. */
 void manual_look(struct mcc *m);
 
-/* After an IPO cycle: axes that have done what they should are out of use; the last one brings
- * back commands. */
+/* Call after an IPO cycle: axes whose jog is done are no longer in use; once none is, commands are
+ * taken again. */
 void manual_end(struct mcc *m);
 
 #endif

@@ -48,7 +48,7 @@ int MCC_get_errcode(const struct mcc *m)
     return m->error;
 }
 
-/* Whether a motion call can be taken now. */
+/* MCC_NO_ERR if a motion call can be taken now, else the code that refuses it. */
 static int acceptable(const struct mcc *m)
 {
     return !m->open                                           ? MCC_INITIAL_MOTION
@@ -59,7 +59,7 @@ static int acceptable(const struct mcc *m)
                                                               : MCC_NO_ERR;
 }
 
-/* A target of the user in machine coordinates; false if it is no number. */
+/* A target as the user gives it, in machine coordinates; false if it is no number. */
 static bool absolute(const struct mcc *m, const double target[AXES], double end[AXES])
 {
     for (int i = 0; i < AXES; i++) {
@@ -91,7 +91,7 @@ static int accept(struct mcc *m, struct command *c, enum command_status s)
     return c->index;
 }
 
-/* Plan a command whose path is set, and take it. */
+/* Plan a command whose path is set, and put it into the ring. Returns its index, or a code. */
 static int plan(struct mcc *m, struct command *c, enum command_type type)
 {
     const struct mechanism machine = machine_mechanism(&m->machine);
@@ -104,7 +104,7 @@ static int plan(struct mcc *m, struct command *c, enum command_type type)
                                              : command_move(c, &machine, &l, type, m->feed, &r));
 }
 
-/* A command with what is set for its ends. */
+/* A command with the settings of path mixing and look-ahead. */
 static struct command smoothed(const struct mcc *m)
 {
     return (struct command){
@@ -143,7 +143,7 @@ int MCC_ptp_asyn(struct mcc *m, const double target[AXES])
     return straight(m, target, COMMAND_PTP_ASYN);
 }
 
-/* Only some axes go somewhere: `count` from `first` on. */
+/* A motion of some axes only, `count` of them from `first` on. */
 static int some(struct mcc *m, int first, int count, const double value[], enum command_type type)
 {
     double target[AXES] = { 0.0 };

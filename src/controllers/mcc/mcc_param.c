@@ -25,7 +25,7 @@ static bool bit(int32_t x)
     return x == 0 || x == 1;
 }
 
-/* What machine_valid does not look at. */
+/* True if the parameters are valid that machine_valid does not look at. */
 static bool valid(const MCC_MACH_PARAM *p)
 {
     return p->type >= MCC_LINEAR && p->type <= MCC_UNUSED && bit(p->pos2encoder_dir)
@@ -49,7 +49,7 @@ static void set_axis(struct machine_axis *a, const MCC_MACH_PARAM *p)
     a->index_low = p->index_on == 0;
 }
 
-/* The machine as the user wants it. */
+/* *w becomes the machine with the user's parameters; MCC_PARAMETER if they are not valid. */
 static int wanted(const struct mcc *m, struct machine *w)
 {
     *w = m->machine;
@@ -78,8 +78,8 @@ void mcc_param_home(struct mcc *m, int axis)
     m->epcio_axis_param[axis].sensor_on = c->sensor_on;
 }
 
-/* The search of the origin with new parameters: the offset counts in whole pulses, the counter of
- * the encoder turns with the axis. */
+/* Adapt the homing of an axis to new parameters: its offset is again in whole pulses, and its
+ * encoder counts the other way if the axis has turned. */
 static void set_homing(struct homing_axis *x, const MCC_MACH_PARAM *p, bool turned,
                        const struct machine_axis *a)
 {
@@ -93,8 +93,8 @@ static void set_homing(struct homing_axis *x, const MCC_MACH_PARAM *p, bool turn
     }
 }
 
-/* Where an axis stands does not change: the pulses it got are the same in number, and turn their
- * sign with its direction; what they are in mm follows. */
+/* Keep an axis where it stands: it has got as many pulses as before, with their sign turned if its
+ * direction has; its position in mm follows from them. */
 static void keep_place(struct mcc *m, int i, const struct machine_axis *new)
 {
     const struct machine_axis *old = &m->machine.axis[i];

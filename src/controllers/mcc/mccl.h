@@ -130,14 +130,14 @@ static inline int MCC_JogPulse(struct mcc *m, int pulses, int axis)
     return MCC_jog_s(m, axis, pulses);
 }
 
-/* Axes with order 1 together, then those with 2, ...; 0: not. */
+/* Homing: axes of order 1 together, then those of order 2, and so on; 0: the axis is not homed. */
 static inline int MCC_Home(struct mcc *m, int x, int y, int z, int u, int v, int w)
 {
     const int32_t order[AXES] = { x, y, z, u, v, w };
     return MCC_go_home(m, order);
 }
 
-/* The table counts at once; there, from MCC_UpdateCompParam on. */
+/* The table takes effect at once; there, with MCC_UpdateCompParam. */
 static inline int MCC_SetCompParam(struct mcc *m, const struct comp_table *table, int axis)
 {
     return MCC_set_comp(m, axis, table);
@@ -153,7 +153,7 @@ static inline int MCC_DisableSingleBlock(struct mcc *m)
     return task_set_single_block(m, false);
 }
 
-/* An arc through (ra, rb) to (a, b), a circle about (ca, cb), with U V W. */
+/* An arc through (ra, rb) to (a, b), or a circle about (ca, cb), while U V W follow. */
 #define MCCL_TURNS(plane, lower) \
     static inline int MCC_Arc##plane##UVW(struct mcc *m, double ra, double rb, double a, double b, \
                                           double u, double v, double w) \
@@ -200,7 +200,7 @@ MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseSpeed, MCC_GetMaxPulseSpeed, MCC
          MCC_get_max_dda_spd)
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetPGain, MCC_GetPGain, MCC_set_P_gain, MCC_get_P_gain)
 
-/* Its largest change from one DDA time to the next; there, from period to period. */
+/* The largest change of that between DDA times; there, between interpolation periods. */
 MCCL_SIX(int32_t, mccl_give_int, MCC_SetMaxPulseAcc, MCC_GetMaxPulseAcc, MCC_set_max_dda_acc,
          MCC_get_max_dda_acc)
 MCCL_SIX(int, mccl_give_int, MCC_SetOverTravelCheck, MCC_GetOverTravelCheck, MCC_set_check_OT,
@@ -209,7 +209,7 @@ MCCL_SIX(double, mccl_give, MCC_SetInPosToleranceEx, MCC_GetInPosToleranceEx, MC
          MCC_get_inpos_tol)
 MCCL_GET(int, mccl_give_int, MCC_GetInPosStatus, MCC_check_in_pos)
 
-/* Of the axes that move for themselves. */
+/* Ramps of axes that move by themselves. */
 MCCL_SIX(char, mccl_give_char, MCC_SetPtPAccType, MCC_GetPtPAccType, MCC_set_ptp_asyn_acc_type,
          MCC_get_ptp_asyn_acc_type)
 MCCL_SIX(char, mccl_give_char, MCC_SetPtPDecType, MCC_GetPtPDecType, MCC_set_ptp_asyn_decc_type,
@@ -219,7 +219,7 @@ MCCL_SIX(double, mccl_give, MCC_SetPtPAccTime, MCC_GetPtPAccTime, MCC_set_ptp_as
 MCCL_SIX(double, mccl_give, MCC_SetPtPDecTime, MCC_GetPtPDecTime, MCC_set_ptp_asyn_dec_step,
          MCC_get_ptp_asyn_dec_step)
 
-/* Of the points the card has taken. */
+/* Positions of the latest point that the card has taken. */
 MCCL_GET(double, mccl_give, MCC_GetCurPos, MCC_get_cpos)
 MCCL_GET(int32_t, mccl_give_int, MCC_GetPulsePos, MCC_get_ppos)
 MCCL_GET(int32_t, mccl_give_int, MCC_GetErrorCount, MCC_get_errcnt)

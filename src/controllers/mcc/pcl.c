@@ -37,7 +37,7 @@ int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card)
     if (!p->open || card->cmd_ack != p->seq) {
         return -1;
     }
-    /* All but the frames it refused. */
+    /* The card has taken all frames but those that it refused. */
     const int64_t refused = (int64_t)card->frames_refused - p->refused;
     const int32_t taken = refused < 0          ? p->count
                           : refused > p->count ? 0

@@ -5,13 +5,13 @@
 
 #include "reach.h"
 
-/* Pulses come as planned for the DDA time in progress; then two DDA times tell that none comes. */
+/* Pulses of the DDA time under way still come. Without any for two DDA times, none will come. */
 static const int64_t QUIET = 2; /* [DDA times] */
 
-static const int64_t OUTSIDE = -1; /* of `settled`: not within the tolerance */
+static const int64_t OUTSIDE = -1; /* value of `settled` while an axis is not in position */
 
-/* Frame of a point from the previous position, uncompensated; false if the card could not take
- * it. */
+/* Give a point its uncompensated frame, from the position before; false if an axis would get more
+ * than max_dda pulses. */
 static bool frame(const struct mcc *m, struct point *p)
 {
     for (int i = 0; i < AXES; i++) {
@@ -24,8 +24,8 @@ static bool frame(const struct mcc *m, struct point *p)
     return true;
 }
 
-/* Error of the way to a point that a limit switch blocks, however small it is; 0 if the mode has
- * none. *axis is -1 if none does. */
+/* *axis becomes the axis whose limit switch blocks the motion from one point to another, however
+ * small it is; -1: none. Returns the error to be raised for it, 0 if the mode raises none. */
 static int32_t blocked(const struct mcc *m, const struct point *from, const struct point *to,
                        int *axis)
 {
@@ -37,13 +37,13 @@ static int32_t blocked(const struct mcc *m, const struct point *from, const stru
     return guard_switch_error(&m->machine) ? MCC_ERROR_TRAVEL + *axis : 0;
 }
 
-/* Software limits count from the origin that homing looks for, and it meets limit switches. */
+/* True while homing runs, for which neither software limits nor limit switches count. */
 static bool homing(const struct mcc *m)
 {
     return trajectory_ordered(&m->trajectory) && m->homing.state == HOMING_RUNS;
 }
 
-/* Whether a point keeps within travel and switches; else *error as of reaction_point. */
+/* True if software limits and limit switches allow a point; else *error is as in reaction_point. */
 static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
                    const struct point *p, int32_t *error)
 {
@@ -103,7 +103,7 @@ int32_t reaction_error_of(const struct fault_report *r)
     return r->fault == FAULT_TRAVEL ? MCC_ERROR_TRAVEL + r->axis : MCC_ERROR_ARC;
 }
 
-/* Rest in the last of the points that stay. */
+/* Stop at once: rest at the last of the `stay` points that a transaction holds, drop the others. */
 static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
 {
     const struct point *last = stay > 0 ? queue_peek(&m->queue, stay - 1) : &m->written;
@@ -125,8 +125,8 @@ int32_t reaction_put_out(const struct mcc *m, int axis)
     return m->protection.base[axis] + m->signals.pulses[axis] - m->written.added[axis];
 }
 
-/* Take the position from the pulses that the card has put out. Of the compensation counts what the
- * latest point written had; the rest is driven in when the library goes on. */
+/* Take the position from the pulses that the card has put out. The compensation is taken as that of
+ * the latest point written; the rest is driven in when the library goes on. */
 static void follow(struct mcc *m)
 {
     struct point *w = &m->written;
@@ -151,7 +151,7 @@ static void emergency(struct mcc *m)
     m->running = false;
     trajectory_stop(&m->trajectory, &m->ring);
     queue_clear(&m->queue);
-    m->written.outputs = m->trajectory.outputs; /* off now, not with a point */
+    m->written.outputs = m->trajectory.outputs; /* they go off now, not with a point */
     m->trajectory.untold = false;
 }
 
@@ -229,7 +229,7 @@ void reaction_look(struct mcc *m, const struct reaction_look *l)
     if (!m->error && !m->trajectory.abort && !homing(m) && m->queue.count > 0) {
         const int32_t error = blocked(m, &m->written, queue_peek(&m->queue, 0), &axis);
         if (axis >= 0) {
-            reaction_stop(m, error); /* the newest points may go another way */
+            reaction_stop(m, error); /* the newest points may go in another direction */
         }
     }
     if (m->trajectory.confirming) {

@@ -23,7 +23,7 @@ struct program task_program(const struct mcc *m, const struct source *s)
                              .least_increment = m->dialect.least_increment };
 }
 
-/* A program begins; what the one before has switched on stays on. */
+/* Begin a program; what the program before has switched on stays on. */
 static void begin(const struct mcc *m, struct interpreter *in)
 {
     const struct switches switches = m->program.switches;
@@ -34,7 +34,7 @@ static void begin(const struct mcc *m, struct interpreter *in)
     in->tools.loaded = loaded;
 }
 
-/* The speed of a motor in its own unit. */
+/* A fault of the speed of a motor is reported in rpm. */
 static void in_rpm(const struct mcc *m, struct fault_report *r)
 {
     if (r->fault == FAULT_SPEED) {
@@ -151,13 +151,14 @@ void task_operate(struct mcc *m, bool hold, double override)
     MCC_set_ptp_ospd(m, 100.0 * override);
 }
 
-/* The library works: it is open and no emergency stop holds it. */
+/* True if the library is open and no emergency stop holds it. */
 static bool works(const struct mcc *m)
 {
     return m->open && m->error != MCC_ERROR_STOP;
 }
 
-/* Room for a command, if what has left the ring since its head was there is kept. */
+/* True if a command can be read into the ring, with the commands kept that have left it since its
+ * head was `head`: task_point may need them again. */
 static bool has_room(const struct mcc *m, int32_t head)
 {
     return works(m) && m->running && !waiting_now(&m->program)
@@ -191,7 +192,7 @@ void task_read(struct mcc *m, const struct source *s)
     }
 }
 
-/* Interpret ahead while there is room; how many commands. */
+/* Read commands while there is room for them. Returns how often it read. */
 static int refill(struct mcc *m, const struct source *s, int32_t head)
 {
     int made = 0;

@@ -1,76 +1,89 @@
-/* task - the IPO task: part program -> command ring -> interpolation points. */
+/* task - the interpolation (IPO) task of the library: it reads the part program into the command
+ * ring and the commands into the queue of interpolation points. Around it stand the calls that
+ * check, start and operate a program.
+ *
+ *     part program --task_read--> command ring --task_point--> point queue --> card (pcl.h)
+ */
 #ifndef TASK_H
 #define TASK_H
 
 #include "mcc.h"
 
-/* Codes of the library's group status that occur here. */
+/* The library's group status, as far as it occurs here, with the library's numbers. */
 enum task_status { TASK_RUNNING, TASK_STOPPED, TASK_HOLD, TASK_DELAY, TASK_BLOCK_HOLD, TASK_WHEEL };
 
-/* What a program is read against, whose text comes from s. */
+/* A program whose text comes from s, with the machine, dialect and switches it is read with. */
 struct program task_program(const struct mcc *m, const struct source *s);
 
-/* Read the whole program as it would run from the last command's end; nothing moves. */
+/* Read the whole program as it would run from the end of the latest command, without any motion;
+ * *r gets its first fault. */
 void task_check(const struct mcc *m, const struct source *s, struct fault_report *r);
 
-/* The same for all faults and notes. */
+/* The same, with all faults and notes. */
 void task_check_all(const struct mcc *m, const struct source *s, struct fault_list *all);
 
-/* Start a program that task_check found good. Refused like a motion call. */
+/* Start a program that task_check has found good. Refused with MCC_COMMAND_NOTACCEPTED while a
+ * program runs, an abort is under way or axes move by hand, with MCC_RUN_TIME after an error. */
 int task_start(struct mcc *m);
 
-/* Origins of G54 (system 1) .. G59 (6) at the start of a program. [mm] Refused while one runs. */
+/* Set an origin [mm] with which programs start: system 1 is that of G54, 6 that of G59. Refused
+ * while a program runs. */
 int task_set_origin(struct mcc *m, int system, const double origin[AXES]);
 
-/* Switches of the panel, from the next line on that is read: pass over lines that begin with /,
- * stop at M1. Both are off at first. */
+/* Switches of the panel: skip blocks that begin with /, stop at M1. They act from the next block
+ * that is read; both are off at first. */
 void task_set_switches(struct mcc *m, bool block_delete, bool optional_stop);
 
-/* Tools that a program begins with; M6 waits for task_continue, or is immediate (at first). */
+/* Set the tool table with which programs start, and whether M6 waits for task_continue; at first it
+ * does not. */
 void task_set_tools(struct mcc *m, const struct tool_table *tools, bool change_stops);
 
-/* How programs are meant that are checked or started from now on. */
+/* Set the dialect in which programs are read from now on. */
 void task_set_dialect(struct mcc *m, const struct mcc_dialect *d);
 
-/* Rest before each block: a line of the program, or a call of the API. The one with which a program
- * starts has leave. Switched off, a block that waits still needs task_continue. */
+/* Single block: come to rest before each block of the program or call of the API, until
+ * task_continue. The block with which a program starts does not wait. A block that waits when this
+ * is switched off still needs task_continue. */
 int task_set_single_block(struct mcc *m, bool on);
 
-/* Go on behind M0 or M1, or with the next block. Refused unless the axes rest there and every point
- * has been written. */
+/* Go on after M0 or M1, or with the next single block. Refused with MCC_CONTI_ILLEGAL unless the
+ * axes rest there and the card has taken every point. */
 int task_continue(struct mcc *m);
 
-/* Hold or go on, and override (1 is 100 %), as a panel has them: what does not apply is refused. */
+/* Hold or go on, and set the override of both feed and point-to-point (1 is 100 %), as a panel does
+ * in every cycle. A call that the library refuses has no effect. */
 void task_operate(struct mcc *m, bool hold, double override);
 
-/* One cycle: fill the point queue as far as commands reach. The text is the one that task_check
+/* One cycle: fill the point queue, as far as there are commands. s is the text that task_check has
  * found good; NULL if no program runs. */
 void task_run(struct mcc *m, const struct source *s);
 
-/* The cycle in parts, for a PC on which interpreter and points are modules of their own. Is there a
- * command to make, a point to compute? */
+/* The cycle in parts, for a PC on which interpreter and interpolation are modules of their own.
+ * True if a command can be read, if a point can be computed. */
 bool task_can_read(const struct mcc *m);
 bool task_can_point(const struct mcc *m);
 
-/* Make the next command of the program. Not unless it can. */
+/* Read the next command of the program into the ring. Only if task_can_read. */
 void task_read(struct mcc *m, const struct source *s);
 
-/* Make commands while there is room for them; how many. */
+/* Read commands while the ring has room for them. Returns how often it read. */
 int task_read_all(struct mcc *m, const struct source *s);
 
-/* Compute a point. Not unless it can. With a source commands are made in the place of those it
- * took, without (NULL) it takes what the ring has. Returns how many were made. */
+/* Compute the next point. Only if task_can_point. With a source s, the ring is filled again as
+ * commands leave it; without (NULL) the point is made of what the ring has. Returns how often it
+ * read. */
 int task_point(struct mcc *m, const struct source *s);
 
-/* Behind the last point: where the next command begins, if all of them are done. */
+/* Call after the last point of a cycle: once all commands are done, the next one begins where the
+ * axes rest, and axes that were moved by hand take commands again. */
 void task_settle(struct mcc *m);
 
-/* True while a card that gets no point would stand still in the middle of a motion. */
+/* True in the middle of a motion: a card that got no point now would stand still too early. */
 bool task_moving(const struct mcc *m);
 
 enum task_status task_status(const struct mcc *m);
 
-/* A key of a panel: it counts as pressed when it goes down, until somebody takes that. */
+/* A key of a panel. It is pressed when it goes down, and stays so until key_take. */
 struct key {
     bool down;    /* when it was looked at last */
     bool pressed; /* since it was taken last */
@@ -82,7 +95,7 @@ static inline void key_look(struct key *k, bool down)
     k->down = down;
 }
 
-/* Has it been pressed? Once for all times that it was. */
+/* True if the key has been pressed since the last call, however often. */
 static inline bool key_take(struct key *k)
 {
     const bool pressed = k->pressed;

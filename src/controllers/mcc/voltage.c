@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The path begins where the machine is: at the start, and behind an emergency stop. */
+/* Begin the commanded path where the machine is: at the start, and after an emergency stop. */
 static void begin_trail(struct voltage *v, const struct mcc *m)
 {
     static const double origin[3] = { 0.0 };
@@ -53,7 +53,8 @@ void voltage_follow(struct voltage *v, const struct machine *m)
     }
 }
 
-/* A frame and its end. Places come from pulses put out, so that a new origin is no motion. */
+/* Append a frame that the card has taken (NULL: standstill) to the commanded path. Its end comes
+ * from the sum of pulses, so that a new origin is no motion. */
 static void take(struct voltage *v, const struct mcc *m, const struct point *point)
 {
     const double dda_time = machine_dda_time(&m->machine);
@@ -88,7 +89,7 @@ void voltage_taken(struct voltage *v, const struct mcc *m, const struct pcl_part
     }
 }
 
-/* The frame being put out; an empty FIFO puts nothing out behind it. */
+/* Point of the frame that is being put out; NULL once that is over and the FIFO is empty. */
 static const struct commanded_path_point *now_out(struct voltage *v, const struct mcc *m,
                                                   int64_t now, int32_t stock)
 {
@@ -103,7 +104,8 @@ static const struct commanded_path_point *now_out(struct voltage *v, const struc
                                                    : commanded_path_at(&v->commanded_path, frame);
 }
 
-/* Pulses, errors and compensation of the instant before, when that frame was put out. */
+/* Point of the path nearest to the tool, whose place follows from pulses, errors and compensation
+ * of the instant before, when `frame` was put out. */
 static struct commanded_path_foot nearest(struct voltage *v, const struct mcc *m, int64_t frame)
 {
     const struct commanded_path_point *at = commanded_path_at(&v->commanded_path, frame);

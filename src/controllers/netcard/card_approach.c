@@ -1,4 +1,5 @@
-/* From where a stop, a job or homing has left the axes to where the next job begins. */
+/* The approach: motion of the axes from where a stop, a job or homing has left them to position 0,
+ * where the next job begins. */
 #include "netcard_parts.h"
 
 #include <math.h>
@@ -6,7 +7,7 @@
 
 #include "el_extremes.h"
 
-/* Axes that go together. */
+/* Axes that move together in each turn of the approach, a bit each. */
 static const uint32_t TURN[] = {
     [APPROACH_TOOL] = 0xC, [APPROACH_PLANE] = 0x3, [APPROACH_THERE] = 0
 };
@@ -21,7 +22,8 @@ bool card_approach_due(const struct netcard *c)
     return due;
 }
 
-/* Highest speed: that of the axis, or what leaves a pulse its width. [pulses/period] */
+/* Highest speed of an axis: its own, or the one that still leaves a pulse its width.
+ * [pulses/period] */
 static double fastest(const struct netcard *c, int axis)
 {
     const struct card_settings *s = &c->settings;
@@ -40,7 +42,7 @@ static bool there(const struct netcard *c, uint32_t axes)
     return all;
 }
 
-/* Turns whose axes are all there. */
+/* Skip turns whose axes are all at position 0. */
 static void pass_turns(struct netcard *c)
 {
     while (c->approach < APPROACH_THERE && there(c, TURN[c->approach])) {
@@ -67,7 +69,7 @@ bool card_approach_begin(struct netcard *c)
     return player_begin(&c->player, &job, card_clock(c)) == PLAYER_OK;
 }
 
-/* A step from or to rest keeps within the speed, too. */
+/* A step from rest or to rest keeps within the highest speed, too. */
 struct frame card_approach_next(struct netcard *c)
 {
     const struct card_settings *s = &c->settings;

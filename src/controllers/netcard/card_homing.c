@@ -1,4 +1,5 @@
-/* The home task, and what of it both policies have. */
+/* The home task by the table of states and commands, and the parts of homing that both policies
+ * share. */
 #include "netcard_parts.h"
 
 #include <string.h>
@@ -8,7 +9,7 @@ static void go(struct netcard *c, enum card_home_step step)
     c->step[NETCARD_HOME] = step;
 }
 
-/* Frames that stand in the FIFO while the task sleeps for a tick. */
+/* Number of frames that the FIFO needs while the task sleeps for a tick of the kernel. */
 static int32_t lead(const struct card_settings *s)
 {
     const int32_t n = s->tick_ns / s->period_ns + 2;
@@ -129,7 +130,7 @@ void card_home_raise(struct netcard *c)
     kernel_set_priority(&c->kernel, NETCARD_HOME, c->settings.priority_home);
 }
 
-/* A stop lowers the rate: until rest the task gives frames. */
+/* True while a stop brings the player to rest: until then the task still gives frames. */
 static bool stops(const struct netcard *c)
 {
     const int32_t at = c->step[NETCARD_HOME];
@@ -137,7 +138,7 @@ static bool stops(const struct netcard *c)
     return c->state == NET_STOPPING && (at == HOME_STEP || at == HOME_LAST);
 }
 
-/* Is homing over before its end? */
+/* True if homing is to be given up before its end. */
 static bool given_up(const struct netcard *c)
 {
     const int32_t at = c->step[NETCARD_HOME];

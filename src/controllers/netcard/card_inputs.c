@@ -29,7 +29,7 @@ static bool wanted(const struct card_input *in, bool level)
     return in->edge == CARD_EDGE_BOTH || level == (in->edge == CARD_EDGE_RISE);
 }
 
-/* Pause and stop do not wait for the end of the deaf time. */
+/* True if an action does not wait for the end of the deaf time: pause and stop, or no such time. */
 static bool urgent(const struct card_input *in)
 {
     return in->action == CARD_PAUSE || in->action == CARD_STOP || in->debounce == 0;
@@ -105,9 +105,9 @@ uint32_t card_inputs_advance(struct card_inputs *c, int64_t now)
     return card_inputs_vectors(c);
 }
 
-/* A line with a deaf time, behind an edge or at the end of that time: the level that is there is
- * taken. What waited is done if its level is there still. An edge whose level has gone again was a
- * spike: both edges came. */
+/* The routine of a line with a deaf time, after an edge or at the end of that time, takes the level
+ * that is there now. An action that waited is done if its level is still there. If the level after
+ * an edge is the old one again, the edge was a spike, which has two edges. */
 static enum card_action take(struct card_inputs *c, int line, int64_t now)
 {
     const struct card_input *in = &c->config.line[line];

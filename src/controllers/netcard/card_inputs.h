@@ -1,15 +1,16 @@
-/* card_inputs - sixteen programmable inputs on the external interrupt lines of the processor.
+/* card_inputs - the network card's sixteen programmable inputs, on the external interrupt lines of
+ * its processor: what each edge at a pin makes the card do.
  *
- * Lines 0 to 4 have a vector each, 5 to 9 and 10 to 15 share one: seven vectors. A line keeps one
- * edge: one that comes while it is served is served next, a second one is lost. A shared vector
- * serves its lowest line first.
+ * Lines 0 to 4 have an interrupt vector each, lines 5 to 9 share one, and lines 10 to 15: seven
+ * vectors. A line keeps one edge: an edge that comes while another is served is served next, a
+ * second one is lost. A shared vector serves its lowest line first.
  *
  *     edge -> pending -> routine: the input has changed -> deaf for `debounce` -> level read again
  *
- * There is no filter. Pause and stop act at the first edge. Start, home and event act behind the
- * deaf time, if the level is still there: a spike does not start a machine. If at its end the
- * level is another one than the routine took, that is an edge again. Without a deaf time every
- * action acts at once. */
+ * There is no filter. Pause and stop act at the first edge. Start, home and event act after the
+ * deaf time, if the level is still there: so a spike does not start a machine. If the level at the
+ * end of the deaf time differs from the one the routine took, that is an edge again. Without a
+ * deaf time every action acts at once. */
 #ifndef CARD_INPUTS_H
 #define CARD_INPUTS_H
 
@@ -23,7 +24,7 @@ enum { CARD_VECTORS = 7 };
 struct card_input {
     enum card_action action;
     enum card_edge edge;
-    int64_t debounce; /* [ns] 0 or more */
+    int64_t debounce; /* [ns] deaf time after an edge, 0 or more */
 };
 
 struct card_inputs_config {
@@ -32,34 +33,35 @@ struct card_inputs_config {
 
 struct card_inputs {
     struct card_inputs_config config;
-    uint32_t levels;              /* at the pins */
-    uint32_t taken;               /* as the routines know them */
-    uint32_t pending;             /* lines */
+    uint32_t levels;              /* levels at the pins, a bit each line, as all masks here */
+    uint32_t taken;               /* levels that the routines took last */
+    uint32_t pending;             /* lines with an edge that waits for its routine */
     uint32_t waiting;             /* lines whose action waits for the end of the deaf time */
-    uint32_t ended;               /* lines whose deaf time is over, not served since */
-    int64_t deaf[CARD_INPUTS];    /* [ns] until which the line is deaf; -1: it hears */
-    int64_t edges, lost, ignored; /* edges in all; lost while one was pending; ignored while deaf */
+    uint32_t ended;               /* lines whose deaf time is over and that were not served since */
+    int64_t deaf[CARD_INPUTS];    /* [ns] time until which the line is deaf; -1: it hears */
+    int64_t edges, lost, ignored; /* all edges; lost while one was pending; ignored while deaf */
 };
 
-/* What a routine has found. */
+/* What an interrupt routine has found. */
 struct card_input_served {
     int line;                /* -1: no line of this vector was pending */
-    enum card_action action; /* to be done now; CARD_NONE also for an edge without one */
+    enum card_action action; /* what is to be done now; CARD_NONE also for an edge without action */
 };
 
-/* Levels at power on: no edge. */
+/* Power on, with these levels at the pins, which are no edges. */
 void card_inputs_start(struct card_inputs *c, const struct card_inputs_config *config,
                        uint32_t levels);
 
-/* The levels at the pins from `now` on. Returns the vectors that are pending, a bit each. */
+/* Set the levels at the pins from `now` [ns] on. Returns the pending vectors, a bit each. */
 uint32_t card_inputs_set(struct card_inputs *c, uint32_t levels, int64_t now);
 
-/* End of the next deaf time [ns]; INT64_MAX none. Then call card_inputs_advance, which returns
- * vectors as above: the level is read again in the line's own routine. */
+/* End of the next deaf time [ns]; INT64_MAX: there is none. Call card_inputs_advance at that
+ * time: it returns the pending vectors as above, for the level is read again in the line's own
+ * routine. */
 int64_t card_inputs_next(const struct card_inputs *c);
 uint32_t card_inputs_advance(struct card_inputs *c, int64_t now);
 
-/* The routine of a vector: its lowest pending line is served. To be called again while
+/* The routine of a vector, which serves its lowest pending line. Call it again while
  * card_inputs_vectors has the vector. */
 struct card_input_served card_inputs_serve(struct card_inputs *c, int vector, int64_t now);
 

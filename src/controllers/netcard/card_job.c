@@ -1,4 +1,4 @@
-/* A job on its way from flash to the FPGA, as run has it under either policy. */
+/* A job on its way from the flash to the FPGA, for the run task under either policy. */
 #include "netcard_parts.h"
 
 static void go(struct netcard *c, enum card_run_step step)
@@ -95,7 +95,7 @@ bool card_job_page(struct netcard *c)
     return c->page.good && job_reader_page(&c->reader, c->page.bytes) == JOB_GOOD;
 }
 
-/* Does the frame taken last lead to a position that the axes may have? */
+/* True if the latest frame leads to a position within the range of each axis. */
 static bool within(const struct netcard *c)
 {
     for (int i = 0; i < CARD_AXES; i++) {

@@ -121,7 +121,8 @@ static int order(struct netcard *c, uint32_t number, enum card_command command, 
     return give;
 }
 
-/* The RESET that has waited for the drives; a drive that still has its alarm is in its way. */
+/* Answer the RESET that has waited for the drives: it is refused if a drive still has its alarm or
+ * the emergency stop acts. */
 static void end_clear(struct netcard *c)
 {
     const enum net_code code = c->axes.stop || c->axes.alarm ? NET_ALARM : NET_DONE;
@@ -254,7 +255,7 @@ void card_tell_status(struct netcard *c)
     session_status(&c->session, &s, c->now);
 }
 
-/* Act on the loss of the link, as the settings say. */
+/* Act on the loss of the link, as the settings say. Returns the semaphore to be given, -1: none. */
 static int lost(struct netcard *c)
 {
     enum net_code code;

@@ -1,6 +1,6 @@
-/* The document's scheme as it is written: each packet gives its semaphore, whatever the card does,
- * and four tasks do what they are woken for. Only what they share with the table's tasks, the
- * reading of a job and the search of origins, is elsewhere. */
+/* The literal policy, the document's scheme as it is written: each packet gives its semaphore,
+ * whatever the card is doing, and four tasks do what they are woken for. What they share with the
+ * tasks of the safe policy, the reading of a job and the search of origins, is elsewhere. */
 #include "netcard_parts.h"
 
 int literal_order(struct netcard *c, enum card_command command, uint32_t axes)
@@ -19,7 +19,7 @@ int literal_order(struct netcard *c, enum card_command command, uint32_t axes)
     }
 }
 
-/* The pulses end at once; run and home give up, each when it has the processor. */
+/* Stop: the pulses end at once; run and home give up, each when it has the processor. */
 static void stop(struct netcard *c)
 {
     kernel_mark(&c->kernel, NETCARD_STEP, NETCARD_STOP);
@@ -45,7 +45,7 @@ static void stop_task(struct netcard *c)
     }
 }
 
-/* Pause has the processor until a start. */
+/* Pause: the task keeps the processor until a START. */
 static void hold(struct netcard *c)
 {
     kernel_mark(&c->kernel, NETCARD_STEP, NETCARD_PAUSE);
@@ -72,8 +72,8 @@ static void pause_task(struct netcard *c)
     }
 }
 
-/* Run goes on with its next frame, from where homing has left the axes. What stood in the FIFO is
- * gone: a job that was all in there has been played. */
+/* Run goes on with its next frame, from where homing has left the axes. The frames that were in the
+ * FIFO are lost; a job of which all frames were there counts as played. */
 static void go_on(struct netcard *c)
 {
     c->state = NET_RUNNING;
@@ -96,7 +96,7 @@ static void home_last(struct netcard *c)
     c->step[NETCARD_HOME] = HOME_RAISE;
 }
 
-/* A stop or a fault ends homing. */
+/* True if a stop or a fault ends homing at this step. */
 static bool home_ends(const struct netcard *c, enum card_home_step at)
 {
     const bool over = c->state == NET_FAULT || c->homing == HOMING_STOPPED || card_job_given_up(c);

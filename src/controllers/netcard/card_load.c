@@ -4,7 +4,7 @@
 
 static const int64_t SECOND = 1000000000, APART = 100000000;
 
-/* The youngest mark that is a second old, else the oldest. */
+/* The youngest mark that is at least a second old, else the oldest mark. */
 static const struct card_load_mark *before(const struct card_load *l, int64_t clock)
 {
     const struct card_load_mark *found = NULL;

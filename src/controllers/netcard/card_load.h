@@ -1,11 +1,12 @@
-/* card_load - share of the processor that tasks and interrupts have had in the last second.
+/* card_load - share of the processor's time that each task and the interrupts have had in the last
+ * second.
  *
- *     told    v  v  v  v  v  v  v  v  v  v  v     each time what everyone has had so far is kept,
- *             '------- 1 s -------------'         but not more often than each 0.1 s
+ *     told    v  v  v  v  v  v  v  v  v  v  v     each call marks the busy times so far, but at
+ *             '------- 1 s -------------'         most one mark is kept for each 0.1 s
  *
- * The share is that since the youngest mark of an age of 1 s, so up to 1.1 s are looked at. Until
- * there is one it is the share since power-up; told more rarely than each second, since the last
- * time.
+ * The share is that since the youngest mark that is at least 1 s old, so up to 1.1 s count. Until
+ * there is such a mark the share is that since power-up; if calls are rarer than one a second, that
+ * since the call before.
  */
 #ifndef CARD_LOAD_H
 #define CARD_LOAD_H
@@ -18,12 +19,12 @@ enum { CARD_LOADS = 7, CARD_LOAD_MARKS = 11 };
 struct card_load {
     int32_t latest; /* index of the latest mark */
     struct card_load_mark {
-        int64_t clock;            /* [ns] of the kernel */
-        int64_t busy[CARD_LOADS]; /* [ns] so far */
-    } mark[CARD_LOAD_MARKS];      /* all 0: that of power-up */
+        int64_t clock;            /* [ns] clock of the kernel */
+        int64_t busy[CARD_LOADS]; /* [ns] processor time of each since power-up */
+    } mark[CARD_LOAD_MARKS];      /* the one that is all 0 is that of power-up */
 };
 
-/* Tell what each has had so far at this clock [ns], and get the share of each [1/1000]. */
+/* Take the processor time that each has had at this clock [ns], and give its share [1/1000]. */
 void card_load_tell(struct card_load *l, int64_t clock, const int64_t busy[CARD_LOADS],
                     uint16_t share[CARD_LOADS]);
 

@@ -1,6 +1,6 @@
 #include "netcard_parts.h"
 
-/* Give the drives their error clear. */
+/* Time for which the drives get their error clear. [ns] */
 static const int64_t CLEAR_NS = 20000000;
 
 static bool has_job(const struct netcard *c)
@@ -13,7 +13,8 @@ void card_rest(struct netcard *c)
     c->state = has_job(c) ? NET_READY : NET_EMPTY;
 }
 
-/* An event of a frame that still waits for its interrupt is not put out behind it. */
+/* The event of a frame that still waits for its interrupt must not be put out after the rest
+ * event. */
 void card_put_rest(struct netcard *c)
 {
     const struct job_header *h = &c->reader.header;
@@ -41,7 +42,7 @@ void card_fault(struct netcard *c, enum net_code error)
     }
 }
 
-/* Why a start would be refused though its state is right. */
+/* Why a START is refused although the state allows it; NET_DONE: it is not. */
 static enum net_code startable(const struct netcard *c)
 {
     if (!c->settings.write_during_run && c->store.phase != STORE_REST) {

@@ -6,7 +6,7 @@ static void go(struct netcard *c, enum card_run_step step)
     c->step[NETCARD_RUN] = step;
 }
 
-/* The first frames are in the FIFO. A pause or a stop may have come meanwhile. */
+/* Let the player go, as the first frames are in the FIFO, unless a pause or a stop has come. */
 static void let_go(struct netcard *c, enum card_job_phase phase)
 {
     c->phase = phase;
@@ -15,7 +15,7 @@ static void let_go(struct netcard *c, enum card_job_phase phase)
     }
 }
 
-/* Frames are given from now on, those of the approach if there is one. */
+/* From now on frames are given: those of the approach first, if the axes need one. */
 static void give(struct netcard *c, enum net_code else_code)
 {
     const bool due = card_approach_due(c);
@@ -42,7 +42,7 @@ static void begin(struct netcard *c)
     }
 }
 
-/* The page that was asked for, once it is there. */
+/* Go on once the page that was asked for has come. */
 static void read_page(struct netcard *c, enum card_run_step step)
 {
     if (c->page.wanted) {
@@ -59,7 +59,8 @@ static void read_page(struct netcard *c, enum card_run_step step)
     }
 }
 
-/* The job leads out of the range: it is stopped while its frames in stock still lie within. */
+/* The job leads out of the range of positions: stop it, while the frames in stock are still
+ * within. */
 static void stop(struct netcard *c)
 {
     c->error = NET_LIMIT;
@@ -81,7 +82,7 @@ static void push(struct netcard *c)
     card_job_push(c, &to);
 }
 
-/* What comes behind a frame: another one, a page, or nothing more. */
+/* Go on after a frame: with another one, a page, or nothing more. */
 static void next(struct netcard *c)
 {
     switch (card_job_next(c)) {

@@ -72,7 +72,7 @@ bool card_settings_good(const struct card_settings *s, struct card_wrong *wrong)
            && clocks(wrong, "dir_hold_ns", s->dir_hold_ns);
 }
 
-/* Where the settings stand, in the order of their numbers. */
+/* Place, type and range of each setting in struct card_settings, in the order of their numbers. */
 enum kind { KIND_BOOL, KIND_INT, KIND_DOUBLE };
 #define KIND(x) _Generic((x), bool: KIND_BOOL, int32_t: KIND_INT, double: KIND_DOUBLE)
 #define PLACE(type, name, elements, unit, start, low, high, words) \

@@ -1,10 +1,10 @@
-/* card_settings - what a user sets of the network card: each setting declared once, with its start
- * value, range, unit and words, for whoever offers it under this name. Its number in this list is
- * its id on the wire (CONFIG_GET, CONFIG_SET), its element the index.
+/* card_settings - the settings of the network card. Each is declared once, with its start value,
+ * range, unit and description, for everything that offers it under this name. Its number in the
+ * list is its id on the link (CONFIG_GET, CONFIG_SET), with the number of the element as index.
  *
  *     X(type, name, elements, unit, start, low, high, words)
  *
- * Positions are pulses, times whole numbers of the unit that stands there.
+ * Positions are in pulses; times are whole numbers of the unit given.
  */
 #ifndef CARD_SETTINGS_H
 #define CARD_SETTINGS_H
@@ -14,8 +14,8 @@
 
 enum { CARD_AXES = 4, CARD_INPUTS = 16, CARD_OUTPUTS = 16 };
 
-/* Kinds of trigger of an origin, of edges of an input, of what an input does, of what the loss of
- * the link does, of rules for commands. */
+/* In this order: the trigger of an origin, the edge of an input, what an input does, what the loss
+ * of the link does, and the policy, which is the rules for commands. */
 enum card_trigger { CARD_RISING, CARD_FALLING, CARD_HIGH, CARD_LOW };
 enum card_edge { CARD_EDGE_RISE, CARD_EDGE_FALL, CARD_EDGE_BOTH };
 enum card_action { CARD_NONE, CARD_START, CARD_PAUSE, CARD_STOP, CARD_HOME, CARD_EVENT };
@@ -129,26 +129,28 @@ struct card_settings {
     CARD_SETTINGS(CARD_MEMBER)
 };
 
-/* Number of each setting on the wire. */
+/* Number of each setting on the link. */
 #define CARD_NUMBER(type, name, elements, unit, start, low, high, words) CARD_SET_##name,
 enum card_setting { CARD_SETTINGS(CARD_NUMBER) CARD_SETTING_COUNT };
 
 struct card_settings card_settings_start(void);
 
-/* What is wrong with a setting. */
+/* A setting that is not good, and why. */
 struct card_wrong {
-    const char *name, *why; /* why NULL: not within low .. high */
-    int32_t index;          /* from 0 */
+    const char *name, *why; /* why NULL: the value is not within low .. high */
+    int32_t index;          /* element of the setting, from 0 */
     double value, low, high;
 };
 
-/* Whether a card can have these settings; if not, the first that is wrong. */
+/* True if a card can have these settings; if not, *wrong is the first one that is not good. */
 bool card_settings_good(const struct card_settings *s, struct card_wrong *wrong);
 
-/* A setting by its number: whether there is one, and its value rounded to whole. */
+/* Value of a setting by its number, rounded to a whole number. False if there is no such
+ * setting. */
 bool card_settings_get(const struct card_settings *s, int id, int index, int64_t *value);
 
-/* False, and nothing changed, if there is no such one or the settings would not be good. */
+/* Set a setting by its number. False, and nothing changes, if there is no such setting or the
+ * settings would not be good. */
 bool card_settings_set(struct card_settings *s, int id, int index, int64_t value);
 
 #endif

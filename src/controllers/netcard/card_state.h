@@ -1,13 +1,15 @@
-/* card_state - the one state word of the card and the table of state and command.
+/* card_state - the state of the network card, and the table that says for each state and command
+ * whether the command is accepted.
  *
  *     EMPTY --job--> READY --START--> RUNNING <--START-- PAUSED
  *                      ^                 |  PAUSE          ^
  *                      |                 '---> PAUSING ----'       STOP from any that moves:
  *                      '--- STOPPING <------------------------     STOPPING, then READY or EMPTY
  *
- * HOME is taken at rest, running and paused: it ends the job. HOMING can be paused and stopped. A
- * limit, an alarm, an emergency stop lead to FAULT from anywhere; RESET leads out when the cause is
- * gone. Behind STOP, HOME and FAULT only a new START moves, from the job's begin.
+ * HOME is accepted at rest, running and paused, and ends the job. HOMING can be paused and stopped.
+ * A limit switch, an alarm or an emergency stop leads to FAULT from anywhere; RESET leads out of it
+ * when the cause is gone. After STOP, HOME and FAULT only a new START moves the axes, from the
+ * begin of the job.
  */
 #ifndef CARD_STATE_H
 #define CARD_STATE_H
@@ -28,16 +30,16 @@ enum card_command {
     CARD_COMMANDS
 };
 
-/* What the table says. */
+/* What the table says of a command in a state. */
 struct card_rule {
     enum net_code code; /* NET_DONE: accepted */
-    bool acts;          /* the task of the command is woken: else there is nothing to do */
+    bool acts;          /* the task of the command is woken; else there is nothing to do */
 };
 
-/* Rule of a command in a state. */
+/* Look up a command in a state. */
 struct card_rule card_rule(enum net_state state, enum card_command command);
 
-/* The axes move, or may at once. */
+/* True in the states in which axes move, or may begin to move at any time. */
 bool card_state_moves(enum net_state state);
 
 #endif

@@ -1,4 +1,4 @@
-/* The stop and the pause task. */
+/* The stop task and the pause task, by the table of states and commands. */
 #include "netcard_parts.h"
 
 static void go(struct netcard *c, enum netcard_task task, enum card_turn_step step)
@@ -6,7 +6,7 @@ static void go(struct netcard *c, enum netcard_task task, enum card_turn_step st
     c->step[task] = step;
 }
 
-/* STOPPING: down to rest first, then all that waits is given up. */
+/* STOPPING: bring the player to rest first, then let run and home give up. */
 static void stop(struct netcard *c)
 {
     go(c, NETCARD_STOP, TURN_WAIT);
@@ -47,7 +47,7 @@ void card_stop(struct netcard *c)
     }
 }
 
-/* The motion goes on, if it had begun: what has not is let go by its own task. */
+/* Let the motion go on, if it had begun; if not, its own task will let the player go. */
 static void resume(struct netcard *c)
 {
     kernel_mark(&c->kernel, NETCARD_STEP, NETCARD_PAUSE);
@@ -76,7 +76,7 @@ void card_pause(struct netcard *c)
     switch (c->step[NETCARD_PAUSE]) {
     case TURN_WAIT: card_take(c, NETCARD_PAUSE, NETCARD_GIVE_PAUSE, TURN_LOOK); break;
     case TURN_LOOK: card_work(c, NETCARD_PAUSE, c->settings.step_cycles, TURN_ACT); break;
-    case TURN_RELEASE: /* they look what has become of the motion meanwhile */
+    case TURN_RELEASE: /* run or home looks at what has become of its motion */
         go(c, NETCARD_PAUSE, TURN_WAIT);
         kernel_give(&c->kernel, c->state == NET_HOMING ? NETCARD_GIVE_HOME : NETCARD_GIVE_FIFO);
         break;

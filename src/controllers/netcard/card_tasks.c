@@ -1,12 +1,12 @@
-/* The storage task, and what the interrupts do. */
+/* The storage task, and the interrupts' routines. */
 #include "netcard_parts.h"
 
 #include <string.h>
 
-/* In which run reads and writes what fills the FIFO again. */
+/* Time that run gets to read and write frames until the FIFO is full again. */
 static const int64_t ERASE_MARGIN_NS = 10000000;
 
-/* Could the FIFO run dry while the chip erases a sector? Then run reads first. */
+/* True if the FIFO could run dry while the chip erases a sector, so that run must read first. */
 static bool must_wait(const struct netcard *c)
 {
     const struct flash_config *f = &c->flash.config;
@@ -51,7 +51,7 @@ void card_store(struct netcard *c)
     }
 }
 
-/* The semaphores that what the FPGA tells is for. */
+/* Semaphores to be given for what the FPGA tells, a bit each. */
 static uint32_t told(struct netcard *c)
 {
     const uint32_t what = c->told.what, events = c->told.events;
@@ -81,7 +81,8 @@ static uint32_t told(struct netcard *c)
     return gives;
 }
 
-/* An input's routine: what it does is a command like any other. */
+/* The routine of an input's vector. Its action is a command like any other. Returns the semaphores
+ * to be given, a bit each. */
 static uint32_t served(struct netcard *c, int vector)
 {
     static const enum card_command COMMAND[] = { [CARD_START] = CARD_DO_START,

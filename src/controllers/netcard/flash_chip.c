@@ -30,7 +30,7 @@ void flash_start(struct flash_chip *f, const struct flash_config *config)
     f->random = config->seed;
 }
 
-/* The sector's bytes are in the array from now on. */
+/* From now on the content of the sector is in the array. */
 static void open_sector(struct flash_chip *f, int32_t sector)
 {
     if (!f->written[sector])
@@ -87,7 +87,8 @@ static int64_t begin(struct flash_chip *f, enum flash_work work, int32_t at, int
     return f->end - now;
 }
 
-/* May an operation begin at place `which` of so many? One that is over has its effect first. */
+/* True if an operation may begin at place `which` of `of` places. One that is over takes effect
+ * first. */
 static bool ready(struct flash_chip *f, int32_t which, int32_t of, int64_t now)
 {
     settle(f, now);
@@ -159,7 +160,7 @@ void flash_cut(struct flash_chip *f, int64_t now)
             *byte &= (uint8_t)(f->page[k] | ~reached);
             continue;
         }
-        /* as before and erased where neither or both of two draws hold; else anything */
+        /* neither of two draws holds: as before; both hold: erased; one holds: anything */
         const uint8_t again = bits_of(&f->random, p), any = (uint8_t)draw(&f->random);
         const uint8_t open = reached ^ again;
         *byte = (uint8_t)((*byte & ~open) | (reached & again) | (any & open));

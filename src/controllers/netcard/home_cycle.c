@@ -66,7 +66,7 @@ static void fail(struct home_cycle *h, int axis, enum home_cycle_fault fault)
     h->state = HOME_CYCLE_STOPPING;
 }
 
-/* Begin with the axes of the lowest order above the one before. */
+/* Begin the search of the axes with the next higher order. */
 static void next_order(struct home_cycle *h, const struct home_cycle_input *in)
 {
     int32_t next = INT32_MAX;
@@ -139,7 +139,7 @@ static void turn(struct home_cycle *h, int i, const struct home_cycle_input *in,
     }
 }
 
-/* If the axis ran over the switch before it came to rest, it comes onto it once more. */
+/* Phase 2. An axis that ran over the switch before it came to rest comes onto it once more. */
 static void back(struct home_cycle *h, int i, const struct home_cycle_input *in, bool seen)
 {
     const struct home_axis *a = &h->config.axis[i];
@@ -173,7 +173,7 @@ static void edge(struct home_cycle *h, int i, const struct home_cycle_input *in)
     }
 }
 
-/* The axis rests behind what a phase has found. */
+/* The axis rests after a phase has found its place: begin the next phase. */
 static void next_phase(struct home_cycle *h, int i)
 {
     struct home_search *c = &h->axis[i];
@@ -219,7 +219,7 @@ static void look(struct home_cycle *h, int i, const struct home_cycle_input *in)
     }
 }
 
-/* Speed of a phase, but for the ways to a place. [pulses/s] */
+/* Signed speed of a phase, unless that goes to a target. [pulses/s] */
 static double speed_of(const struct home_axis *a, enum home_cycle_phase phase)
 {
     switch (phase) {

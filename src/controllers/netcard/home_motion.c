@@ -5,7 +5,7 @@
 
 #include "el_extremes.h"
 
-/* Of sums of speeds: the last step may miss the target by so much [pulses]. */
+/* Error of sums of speeds by rounding, by which the last step may miss the target. [pulses] */
 static const double ROUNDING = 1e-6;
 
 static int32_t put_out(struct home_motion *m, int64_t pulses)
@@ -15,7 +15,7 @@ static int32_t put_out(struct home_motion *m, int64_t pulses)
     return (int32_t)pulses;
 }
 
-/* The nearest to the wanted speed that may follow the present one. */
+/* Speed nearest to the wanted one that may follow the present speed. [pulses/period] */
 static double next_speed(const struct home_motion *m, const struct home_limits *l, double want)
 {
     const double free = el_max(l->acc, l->start);
@@ -37,8 +37,8 @@ int32_t home_motion_run(struct home_motion *m, const struct home_limits *l, doub
     return put_out(m, (int64_t)pulses);
 }
 
-/* The last step is no larger than one may stop from; before it v + (v - a) + .. + (v - k a) is what
- * is left. */
+/* Braking from speed v covers the distance left: v + (v - a) + .. + (v - k a). The last step is no
+ * larger than a step from which the axis may stop. */
 int32_t home_motion_to(struct home_motion *m, const struct home_limits *l, int64_t target,
                        double speed)
 {

@@ -59,7 +59,7 @@ bool store_read_mark(struct job_place *p, const uint8_t page[FLASH_PAGE])
     return true;
 }
 
-/* CRC of the file that a record tells; adds the time of its reading. */
+/* CRC of the file of a record, by reading it; adds the time of that to *took. [ns] */
 static uint32_t file_crc(const struct job_place *p, struct flash_chip *f, int64_t now,
                          int64_t *took)
 {

@@ -78,7 +78,7 @@ static struct player_config player_of(const struct card_settings *s)
                                    s->dir_hold_ns / PLAYER_CLOCK_NS };
 }
 
-/* All that power brings up; the flash and the counts of pulses have kept what they had. */
+/* Power-up of all parts; the flash and the pulse counts have kept their content. */
 static void boot(struct netcard *c)
 {
     const struct player_config player = player_of(&c->settings);
@@ -201,7 +201,7 @@ static void look_cleared(struct netcard *c)
     }
 }
 
-/* A limit switch in the way of a job, an alarm, the emergency stop. */
+/* Enter FAULT at a limit switch in the way of a job, at an alarm or at the emergency stop. */
 static void guard(struct netcard *c)
 {
     const struct netcard_axes *a = &c->axes;
@@ -223,7 +223,7 @@ static void guard(struct netcard *c)
     }
 }
 
-/* The last frame of homing, the approach or the job is over. */
+/* The last frame of homing, of the approach or of the job has been played. */
 static void frames_ended(struct netcard *c)
 {
     if (c->homing == HOMING_GIVEN) {
@@ -252,7 +252,8 @@ void card_advance_player(struct netcard *c)
     }
 }
 
-/* Vectors of inputs that have become pending; one that was so already comes no second time. */
+/* Make interrupts of the inputs' vectors pending. One that is pending already does not count
+ * twice. */
 static void pend_vectors(struct netcard *c, uint32_t vectors)
 {
     for (int i = 0; i < CARD_VECTORS; i++) {
@@ -262,7 +263,7 @@ static void pend_vectors(struct netcard *c, uint32_t vectors)
     }
 }
 
-/* Let the hardware do what is due at c->now. */
+/* Let the hardware do all that is due at c->now. */
 static void hardware(struct netcard *c)
 {
     card_advance_player(c);
@@ -285,7 +286,7 @@ static int64_t earlier(int64_t a, int64_t b)
     return a < b ? a : b;
 }
 
-/* Time at which the hardware next has something to do, after c->now. */
+/* Time after c->now at which the hardware next has something to do. [ns] */
 static int64_t horizon(const struct netcard *c, int64_t until)
 {
     const int64_t clock = player_next(&c->player);
@@ -362,7 +363,7 @@ void netcard_set_inputs(struct netcard *c, uint32_t levels)
     pend_vectors(c, card_inputs_set(&c->inputs, levels, c->now) & ~before);
 }
 
-/* Origins whose edge of the trigger's kind comes now: the FPGA keeps the count. */
+/* Latch the counts of axes whose origin has an edge of the trigger's kind now, as the FPGA does. */
 static void latch(struct netcard *c, uint32_t origin)
 {
     int64_t counts[FRAME_AXES];

@@ -1,15 +1,15 @@
-/* netcard - a motion card on a network: six tasks on a kernel, a job in flash, an FPGA that plays
- * it, inputs and outputs, a link to the PC.
+/* netcard - a motion card on a network, of four axes: six tasks on a kernel, a job file in flash,
+ * an FPGA that plays its frames, inputs and outputs, and a link to the PC.
  *
  *     link --bytes--> parser --job pages--> storage --> flash          (storage alone reads it)
  *                       | semaphores                      |
  *       home stop pause run <-------- pages -------------'
  *                        '--- frames, 5 words each ---> FIFO --> player --> direction and pulses
  *
- * Time is ns since power came first, a whole number; the FPGA's clock is 20 ns of it. All that
- * happens has its clock: netcard_advance goes from one to the next. At one clock the hardware comes
+ * Time is a whole number of ns since power first came; the FPGA's clock is 20 ns. Every event has
+ * its time, and netcard_advance goes from one event to the next. At one time the hardware comes
  * first (player, deaf times of inputs, ends of output pulses, timers of the link), then the
- * processor. Tasks, interrupts and what they cost are those of src/base/tasks/kernel.h.
+ * processor. Tasks, interrupts and their costs are those of src/base/tasks/kernel.h.
  */
 #ifndef NETCARD_H
 #define NETCARD_H
@@ -39,7 +39,7 @@ enum netcard_task {
     NETCARD_TASKS
 };
 
-/* Semaphores: the first five a command each, the others within the card. */
+/* Semaphores: those of the tasks, then those within the card. */
 enum netcard_semaphore {
     NETCARD_GIVE_BYTES,   /* to the parser: bytes, a command, a timer of the link */
     NETCARD_GIVE_STORAGE, /* a page is wanted, or there is something to write */
@@ -49,10 +49,10 @@ enum netcard_semaphore {
     NETCARD_GIVE_RUN,
     NETCARD_GIVE_FLASH, /* the chip has ended what it did */
     NETCARD_GIVE_PAGE,  /* the page is there */
-    NETCARD_GIVE_FIFO   /* room in the FIFO, the job's end, or it is given up */
+    NETCARD_GIVE_FIFO   /* room in the FIFO, or the job is at its end or to be given up */
 };
 
-/* Interrupts: inputs 0 .. 6 by their vector, then these. */
+/* Interrupts: vectors 0 .. 6 of the inputs, then these. */
 enum netcard_interrupt {
     NETCARD_FPGA = CARD_VECTORS,
     NETCARD_NETWORK,
@@ -61,21 +61,21 @@ enum netcard_interrupt {
     NETCARD_INTERRUPTS
 };
 
-/* What the log of the kernel has as KERNEL_MARK, of the task in `value`: a step of it. */
+/* Entry KERNEL_MARK in the log of the kernel: a step of the task in `value`. */
 enum { NETCARD_STEP };
 
-/* Commands without a link wait here. */
+/* Most commands of netcard_command that wait for the parser. */
 enum { NETCARD_ORDERS = 16 };
 
 struct netcard_order {
-    uint8_t command;
-    uint8_t axes;
+    uint8_t command; /* enum card_command */
+    uint8_t axes;    /* of HOME, a bit each */
 };
 
 struct netcard_result {
-    int32_t count;             /* commands answered so far */
-    enum card_command command; /* the latest */
-    enum net_code code;
+    int32_t count;             /* number of commands answered so far */
+    enum card_command command; /* the latest of them */
+    enum net_code code;        /* and its answer */
 };
 
 /* Levels at the terminals of the axes, a bit each. */
@@ -84,60 +84,60 @@ struct netcard_axes {
     bool stop; /* emergency stop */
 };
 
-/* A page on its way from flash to the one who asked. */
+/* A page on its way from the flash to the task that wants it. */
 struct netcard_page {
-    bool wanted, good;
-    uint32_t number; /* of the job's file */
+    bool wanted, good; /* a task waits for it; it has been read */
+    uint32_t number;   /* of the page in the job file */
     uint8_t bytes[FLASH_PAGE];
 };
 
-/* The job of the run task, from its start to where run has left it:
+/* Where the run task is with its job:
  *
  *     NONE --> READING --> PLAYING --> DRAINING --> PLAYED --> NONE
  *                 '------------------------^
  *
- * The same for the frames of the approach, then READING again. A stop, homing or a fault leads to
- * CUT or OVER from anywhere; run gives the job up when it has the processor. */
+ * The frames of the approach take the same course, then READING comes again. A stop, homing or a
+ * fault leads to CUT or OVER from any phase; run gives the job up when it has the processor. */
 enum card_job_phase {
     JOB_NONE,
     JOB_READING,  /* the first frames go into the FIFO */
     JOB_PLAYING,  /* the player has been let go, more frames follow */
-    JOB_DRAINING, /* all are in the FIFO */
-    JOB_PLAYED,   /* and out of it */
-    JOB_CUT,      /* to be given up, from PLAYING: what is in stock still counts */
+    JOB_DRAINING, /* all frames are in the FIFO */
+    JOB_PLAYED,   /* the player has played all frames */
+    JOB_CUT,      /* to be given up, from PLAYING: the frames in stock still count */
     JOB_OVER      /* to be given up, from another phase */
 };
 
-/* The way to where a job begins: the tool's axes first, then X and Y. */
+/* The approach to where a job begins: the tool's axes Z, U first, then X and Y. */
 enum card_approach { APPROACH_NONE, APPROACH_TOOL, APPROACH_PLANE, APPROACH_THERE };
 
-/* The home task, from the command to its end. What the axes search is in `home`. */
+/* Where the home task is, from its command to its end. The search itself is in `home`. */
 enum card_homing {
     HOMING_NONE,
-    HOMING_BEGINS, /* it has lowered its priority and waits for rest */
-    HOMING_GIVES,  /* frames */
-    HOMING_GIVEN,  /* all are in the FIFO */
-    HOMING_PLAYED, /* and out of it */
-    HOMING_STOPPED /* literal: it is to give up */
+    HOMING_BEGINS, /* it has lowered its priority and waits until the axes rest */
+    HOMING_GIVES,  /* it writes frames into the FIFO */
+    HOMING_GIVEN,  /* all frames are in the FIFO */
+    HOMING_PLAYED, /* the player has played all frames */
+    HOMING_STOPPED /* literal policy: the task is to give up */
 };
 
-/* Literal: pause has the processor; it is to end. */
+/* Literal policy: the pause task holds the processor, or is to end that. */
 enum card_hold { HOLD_NONE, HOLD_HOLDS, HOLD_RELEASED };
 
-/* A RESET in an alarm: the drives have their error clear; it has helped, or its time is over, and
- * the parser is to answer. */
+/* A RESET in an alarm: the drives get their error clear; then the alarm is gone or the time of that
+ * is over, and the parser is to answer. */
 enum card_clear { CLEAR_NONE, CLEAR_GIVEN, CLEAR_OVER };
 
 struct netcard_config {
     struct card_settings settings;
-    uint8_t key[NET_SHA_BYTES]; /* of the link; 0: open */
+    uint8_t key[NET_SHA_BYTES]; /* key of the link; all 0: an open link without MAC */
 };
 
 struct netcard {
-    struct card_settings settings; /* what a part took at power-up acts from the next one on */
+    struct card_settings settings; /* a part that read one at power-up keeps it until the next */
     bool power;
-    int64_t now;  /* [ns] all up to here is done */
-    int64_t boot; /* [ns] clock 0 of the kernel */
+    int64_t now;  /* [ns] up to which everything has happened */
+    int64_t boot; /* [ns] of the latest power-up, clock 0 of the kernel */
     struct kernel kernel;
     struct job_store store;
     struct player player;
@@ -145,75 +145,78 @@ struct netcard {
     struct card_outputs outputs;
     struct home_cycle home;
     struct session session;
-    struct card_load load;    /* of the processor, as told */
-    struct netcard_axes axes; /* levels */
-    uint32_t input_levels;
+    struct card_load load;    /* load of the processor, for the STATUS message */
+    struct netcard_axes axes; /* levels at the terminals */
+    uint32_t input_levels;    /* of the programmable inputs, a bit each */
 
     enum net_state state;
-    enum net_state resumes;   /* what goes on behind a pause: RUNNING or HOMING */
-    enum net_code error;      /* why FAULT; NET_DONE none */
-    uint32_t homed;           /* axes */
-    int64_t clear_until;      /* [ns] the drives' error clear is given */
-    enum card_clear clear;    /* of a RESET, */
-    uint32_t clear_number;    /* answered with this number */
-    int64_t loading;          /* [ns] that power-up reads the flash */
+    enum net_state resumes;   /* what goes on after a pause: RUNNING or HOMING */
+    enum net_code error;      /* why the state is FAULT; NET_DONE: it is not */
+    uint32_t homed;           /* axes that are homed, a bit each */
+    int64_t clear_until;      /* [ns] until which the drives get their error clear */
+    enum card_clear clear;    /* state of a RESET, */
+    uint32_t clear_number;    /* which is answered with this number */
+    int64_t loading;          /* [ns] for which power-up reads the flash */
     int64_t zero[CARD_AXES];  /* [pulses] count at which the position is 0 */
-    uint32_t latched;         /* origins that a latch of the FPGA has seen, */
-    int64_t latch[CARD_AXES]; /* [pulses] and where */
+    uint32_t latched;         /* axes whose origin the FPGA has latched, a bit each, */
+    int64_t latch[CARD_AXES]; /* [pulses] and the count at that edge */
 
-    int32_t step[(int)NETCARD_TASKS + (int)NETCARD_INTERRUPTS];
+    int32_t step[(int)NETCARD_TASKS + (int)NETCARD_INTERRUPTS]; /* where each goes on */
     uint32_t gives[NETCARD_INTERRUPTS]; /* semaphores an interrupt has still to give, a bit each */
-    struct player_told told;            /* by the FPGA, for its interrupt */
-    int64_t served[NETCARD_INTERRUPTS]; /* interrupts so far */
+    struct player_told told;            /* what the FPGA tells at its interrupt */
+    int64_t served[NETCARD_INTERRUPTS]; /* number of interrupts so far */
 
-    enum card_job_phase phase; /* of the job of run */
-    bool works;                /* its outputs may be on: its rest event is owed */
+    enum card_job_phase phase; /* of the job of the run task */
+    bool works;                /* outputs of the job may be on: its rest event is owed */
     enum card_approach approach;
-    struct home_motion way[CARD_AXES]; /* of it, so far */
+    struct home_motion way[CARD_AXES]; /* motion of the approach */
     enum card_hold hold;
     enum card_homing homing;
-    bool deferred;           /* storage waits for a full FIFO */
-    int32_t jobs;            /* begun so far */
-    uint32_t played_id;      /* of the latest */
-    struct player_job plays; /* as the FPGA knows it */
-    struct job_place place;  /* of that job */
+    bool deferred;           /* storage waits until the FIFO is full */
+    int32_t jobs;            /* number of jobs begun so far */
+    uint32_t played_id;      /* id of the latest job */
+    struct player_job plays; /* that job as the FPGA knows it */
+    struct job_place place;  /* that job in the flash */
     struct job_reader reader;
-    int64_t origin[CARD_AXES]; /* [pulses] position at which it began */
-    uint32_t home_axes;        /* of the latest HOME */
+    int64_t origin[CARD_AXES]; /* [pulses] position at which the job began */
+    uint32_t home_axes;        /* axes of the latest HOME, a bit each */
     struct netcard_page page;
-    uint16_t credit; /* [pages] as told last */
-    bool asked;      /* a JOB_BEGIN waits for what is missing */
+    uint16_t credit; /* [pages] that the PC was told last it may send */
+    bool asked;      /* a JOB_BEGIN waits until it is known which pages are missing */
 
-    struct netcard_order order[NETCARD_ORDERS];
-    int32_t first, orders;
+    struct netcard_order order[NETCARD_ORDERS]; /* ring of commands that wait for the parser */
+    int32_t first, orders;                      /* the oldest of them; how many */
     struct netcard_result result;
-    int32_t least;   /* [frames] smallest stock while a job played, not all read */
-    int32_t dropped; /* semaphores taken that the state did not want */
+    int32_t least;   /* [frames] smallest stock while a job played that was not all read */
+    int32_t dropped; /* number of semaphores taken that had no use in the state */
 
-    struct flash_chip flash; /* the last: it clears itself */
+    struct flash_chip flash; /* last, as it is large and clears itself */
 };
 
-/* Power on, flash erased or with a job in slot 0. The settings must be good. NET_DONE, or why the
- * job was not taken: NET_TOO_LONG, NET_BAD_JOB (store.fault); then there is none. */
+/* Power on, with the flash erased or with a job in slot 0. The settings must be good. Returns
+ * NET_DONE, or why the job was not taken, and then there is none: NET_TOO_LONG, NET_BAD_JOB (see
+ * store.fault). */
 enum net_code netcard_start(struct netcard *c, const struct netcard_config *config,
                             const uint8_t *job, uint32_t bytes);
 
-/* All events up to and including this time [ns], not before c->now. */
+/* Let all happen up to and including this time [ns], which is not before c->now. */
 void netcard_advance(struct netcard *c, int64_t until);
 
-/* Levels from now on. */
+/* Set the levels at the inputs, or at the terminals of the axes, from now on. */
 void netcard_set_inputs(struct netcard *c, uint32_t levels);
 void netcard_set_axes(struct netcard *c, const struct netcard_axes *axes);
 
-/* Power goes: the flash loses what is under way, all else its state but settings and the counts of
- * pulses. It comes: the card starts. */
+/* Power goes: an operation of the flash is broken off, and all else loses its state but settings
+ * and pulse counts. Power comes: the card starts. */
 void netcard_set_power(struct netcard *c, bool on);
 
-/* A command without a link, as if the parser got it. False: too many wait. `axes`: of HOME. */
+/* Give a command without the link, as if it had come to the parser; `axes` is that of HOME. False:
+ * too many commands wait. */
 bool netcard_command(struct netcard *c, enum card_command command, uint8_t axes);
 
-/* The link: bytes of the connection, returns how many are taken; bytes to send, taken out; the
- * connection stands or is cut; whether the card wants one. */
+/* The link. netcard_receive takes bytes of the connection and returns how many; netcard_send moves
+ * out at most so many bytes to be sent and returns how many. netcard_connected says whether the
+ * connection stands or is cut, netcard_wants_connection whether the card wants one. */
 size_t netcard_receive(struct netcard *c, const uint8_t *bytes, size_t n);
 size_t netcard_send(struct netcard *c, uint8_t *bytes, size_t most);
 void netcard_connected(struct netcard *c, bool yes);
@@ -222,7 +225,7 @@ bool netcard_wants_connection(const struct netcard *c);
 /* Position of an axis at c->now [pulses]. */
 int64_t netcard_position(const struct netcard *c, int axis);
 
-/* Frames of the job begun so far. */
+/* Number of frames of the job that the player has begun so far. */
 int64_t netcard_frames(const struct netcard *c);
 
 #endif

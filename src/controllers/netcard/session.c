@@ -2,7 +2,8 @@
 
 #include <string.h>
 
-/* Room that is kept for the answer to a message, and for each that may come later. */
+/* Bytes of room that are kept for the answer to a message, and for each answer that may come
+ * later. */
 enum { ANSWER = NET_HEADER + NET_BYTES_auth + NET_MAC, LATER = NET_HEADER + 8 + NET_MAC };
 
 enum { DOUBLINGS = 6 }; /* of the pause, 0.5 s to 30 s */
@@ -12,7 +13,7 @@ static bool queue(struct session *s, uint8_t type, const uint8_t *payload, size_
     return net_channel_put(&s->channel, type, payload, n);
 }
 
-/* The connection is over, or did not come about: pause, then the next one. */
+/* The connection is over or did not come about: pause before the next one. */
 static void hang_up(struct session *s, int64_t now)
 {
     int64_t pause = SESSION_RETRY_NS << s->attempts;
@@ -149,7 +150,7 @@ static void welcomed(struct session *s, int64_t now)
     net_alive_heard(&s->alive, now);
 }
 
-/* A frame of the handshake: it is answered, or the connection is over. */
+/* Answer a frame of the handshake, or end the connection. */
 static void greet(struct session *s, int64_t now)
 {
     const uint8_t type = net_channel_type(&s->channel);
@@ -174,7 +175,7 @@ static void tell_result(struct session *s, const struct session_kept *k)
     queue(s, NET_RESULT, payload, sizeof payload);
 }
 
-/* Is the command new, so that the card shall do it? Others are answered. */
+/* True if the command is new, so that the card is to do it. Others are answered here. */
 static bool command_is_new(struct session *s)
 {
     const uint8_t *p = net_channel_payload(&s->channel);
@@ -204,7 +205,7 @@ static bool command_is_new(struct session *s)
     return true;
 }
 
-/* What has come while the link is up: is it a message for the card? */
+/* True if the frame that has come while the link is up is a message for the card. */
 static bool for_the_card(struct session *s)
 {
     const struct net_channel *c = &s->channel;
@@ -221,7 +222,7 @@ static bool for_the_card(struct session *s)
     return false;
 }
 
-/* Room that answers may need: to one more message, and those that are to come. */
+/* Room that answers may need: the answer to one more message, and all that are still to come. */
 static size_t reserve(const struct session *s)
 {
     size_t open = s->job_sequence != 0;
@@ -235,8 +236,8 @@ static bool have_room(const struct session *s)
     return (size_t)s->channel.out_count + LATER + reserve(s) <= NET_OUT;
 }
 
-/* Deal with the whole frame, once there is room for what that gives. What is for the card stays and
- * is marked by `offered`. */
+/* Deal with a whole frame, once there is room for its answers. A message for the card stays, marked
+ * by `offered`. */
 static void serve(struct session *s, int64_t now)
 {
     const uint8_t type = net_channel_type(&s->channel);

@@ -1,4 +1,5 @@
-/* store_layout - where a slot, its record and its mark lie, and what these hold. */
+/* store_layout - where the slots of the job store, their records and marks lie in the flash, and
+ * how records and marks are written and read. */
 #ifndef STORE_LAYOUT_H
 #define STORE_LAYOUT_H
 
@@ -8,7 +9,7 @@
 #include "job_store.h"
 #include "net_crc.h"
 
-enum { STORE_HALF = FLASH_SECTORS / 2 };
+enum { STORE_HALF = FLASH_SECTORS / 2 }; /* sectors of one slot of two */
 
 static inline int32_t store_first_sector(int32_t slot)
 {
@@ -30,7 +31,7 @@ static inline int32_t store_mark_sector(int32_t slots, int32_t slot)
     return store_record_sector(slots, slot) + 1;
 }
 
-/* Pages of a slot. */
+/* Number of pages for a job file in a slot. */
 static inline uint32_t store_room(int32_t slots)
 {
     return (uint32_t)(store_record_sector(slots, 0) * FLASH_SECTOR_PAGES);
@@ -59,7 +60,7 @@ static inline bool store_blank(const uint8_t page[FLASH_PAGE])
     return true;
 }
 
-/* Of a file whose size, CRC and hash are these two the same? */
+/* True if both are of the same file, by size, CRC and hash. */
 static inline bool store_same(const struct job_place *a, const struct job_place *b)
 {
     return a->bytes == b->bytes && a->crc == b->crc && !memcmp(a->hash, b->hash, sizeof a->hash);
@@ -68,7 +69,8 @@ static inline bool store_same(const struct job_place *a, const struct job_place 
 void store_write_record(const struct job_place *p, uint8_t page[FLASH_PAGE]);
 void store_write_mark(const struct job_place *p, uint8_t page[FLASH_PAGE]);
 
-/* Read the record of a slot, all but the hash; its mark: size, CRC and hash. False: it is none. */
+/* Read the record of a slot, which has all but the hash; or a mark, which has size, CRC and hash.
+ * False: the page is no record, or no mark. */
 bool store_read_record(struct job_place *p, int32_t slots, int32_t slot,
                        const uint8_t page[FLASH_PAGE]);
 bool store_read_mark(struct job_place *p, const uint8_t page[FLASH_PAGE]);

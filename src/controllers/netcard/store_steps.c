@@ -3,7 +3,7 @@
 
 #include "store_layout.h"
 
-/* Sectors of the file, from the first of its slot. */
+/* Number of sectors of the file, from the first of its slot. */
 static int32_t file_sectors(const struct job_store *s)
 {
     return (int32_t)(store_pages(&s->next) + FLASH_SECTOR_PAGES - 1) / FLASH_SECTOR_PAGES;
@@ -27,7 +27,7 @@ static void finish(struct job_store *s, enum net_code result)
     s->result = result;
 }
 
-/* Nothing of the file is there: all that it needs is erased. */
+/* Nothing of the file is in the slot: mark all sectors that it needs to be erased. */
 static void afresh(struct job_store *s)
 {
     for (int32_t k = 0; k < file_sectors(s); k++)
@@ -37,7 +37,8 @@ static void afresh(struct job_store *s)
     s->phase = STORE_ERASE;
 }
 
-/* Is what the slot holds of this file? Without a job it may be in either slot. */
+/* Read the mark of a slot, which tells whether the slot holds pages of this file. Without a job in
+ * force these may be in either slot. */
 static int64_t scan_mark(struct job_store *s, struct flash_chip *f, int64_t now)
 {
     struct job_place mark;
@@ -77,7 +78,7 @@ static int64_t scan_page(struct job_store *s, struct flash_chip *f, int64_t now)
     return took;
 }
 
-/* Erase a sector that is to be; its whole block if all of it is and there is time. */
+/* Erase a sector; or its whole block, if all of that is to be erased and there is time. */
 static int64_t erase(struct job_store *s, struct flash_chip *f, int32_t sector, int64_t now)
 {
     const int32_t block = sector / FLASH_BLOCK_SECTORS;

@@ -8,7 +8,7 @@
 
 static const double VOLTS_MAX = VOLTAGE_RANGE; /* [V] */
 
-/* Show others what the modules are doing now. */
+/* Keep what the modules are doing now, as it is shown to others. */
 static void show(struct pc *pc)
 {
     cyclic_tell(&pc->modules, &pc->shown);
@@ -67,7 +67,7 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     homing_look(&pc->mcc, pc->config.bus);
 }
 
-/* Software voltages: the P law alone, or the law of figure 10 with what is added to it. */
+/* Compute the voltages of output mode 2: by the P law alone, or by the whole law of law.h. */
 static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
                     const struct pc_panel *panel)
 {
@@ -92,7 +92,7 @@ static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
     }
 }
 
-/* What the card shows: its frames first, for the law wants to know their points. */
+/* Look at what the card shows: at its frames first, as the law needs their points. */
 static void look_at_card(struct pc *pc, const struct pcl_card *card, int64_t now)
 {
     /* A number is drawn for each interrupt. */
@@ -108,7 +108,7 @@ static void look_at_card(struct pc *pc, const struct pcl_card *card, int64_t now
     pcl_notice(&pc->pcl, card, now, latency);
 }
 
-/* What the card and the interrupts just served tell of danger. */
+/* React to danger, as the card and the interrupts just served report it. */
 static void protect(struct pc *pc)
 {
     const struct isr *isr = &pc->pcl.isr;

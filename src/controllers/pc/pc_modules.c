@@ -3,7 +3,8 @@
 
 #include <stddef.h>
 
-/* A unit that can be made is begun, unless the run has had its share. Returns its time. [clocks] */
+/* Begin a unit if it can be made and the run may have one more. Returns its time [clocks], else
+ * 0. */
 static int64_t next_unit(struct pc *pc, int module, bool can)
 {
     struct pc_run *run = &pc->run[module];
@@ -24,7 +25,8 @@ static int64_t next_point(struct pc *pc)
     return next_unit(pc, PC_IPO, task_can_point(&pc->mcc));
 }
 
-/* The IPO begins, and with it the modules without a cycle. Returns the time to the first point. */
+/* Begin a run of the IPO, and in it the modules without a cycle of their own. Returns the time
+ * until the first point [clocks]. */
 static int64_t ipo_begin(struct pc *pc, const struct pc_now *now)
 {
     const struct pc_config *c = &pc->config;
@@ -41,7 +43,8 @@ static int64_t ipo_begin(struct pc *pc, const struct pc_now *now)
     return time + next_point(pc);
 }
 
-/* The transaction or page the PCL serves at this clock: its due clock; the time of the write. */
+/* Begin a run of the PCL: a page, or a transaction that is due. Returns the clock from which it was
+ * due; *time is that of the write [clocks], 0: there is none. */
 static int64_t pcl_begin(struct pc *pc, int64_t *time)
 {
     struct pcl *p = &pc->pcl;
@@ -109,7 +112,7 @@ static void ipo_end(struct pc *pc, const struct pc_now *now)
     cyclic_more(&pc->modules, PC_IPO, made * pc->config.unit[PC_INTERPRETER] + next_point(pc));
 }
 
-/* The latest write came in time: less than (n + 1) T after its interrupt. */
+/* True if the write comes in time: less than n + 1 DDA times after its interrupt. */
 static bool in_time(const struct pc *pc)
 {
     const struct pcl *p = &pc->pcl;
@@ -149,8 +152,8 @@ static void end(struct pc *pc, int module, const struct pc_now *now)
     }
 }
 
-/* Timer and event: ask for the IPO when a point has come to be made, unless it is asked already; if
- * it is at work it sees that itself. */
+/* With ipo_event, ask for a run of the IPO when a point can be made and none could before, unless a
+ * run is asked for already. If the IPO is at work it sees that by itself. */
 static void wake_ipo(struct pc *pc)
 {
     if (!pc->config.ipo_event) {

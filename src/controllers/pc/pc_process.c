@@ -12,7 +12,7 @@ void pc_look_at_panel(struct pc *pc, const struct pc_panel *panel)
     key_look(&p->clear_error, panel->clear_error);
 }
 
-/* Homing, jog, hand wheel; the library refuses what cannot be now. */
+/* Act on the keys of homing, jog and handwheel; the library refuses what is not possible now. */
 static void by_hand(struct pc *pc, const struct pc_panel *panel)
 {
     struct pc_process *p = &pc->process;
@@ -34,7 +34,8 @@ static void by_hand(struct pc *pc, const struct pc_panel *panel)
     }
 }
 
-/* The program may start: it waits for a search of the origins; home_first wants a good one. */
+/* True if the program may start: not before `start`, not while homing runs, and with home_first
+ * only after homing has succeeded. */
 static bool may_start(const struct pc *pc)
 {
     const int homed = MCC_check_homef(&pc->mcc);
@@ -42,7 +43,7 @@ static bool may_start(const struct pc *pc)
            && (homed == 1 || (homed < 0 && !pc->config.home_first));
 }
 
-/* The program once more from its first line, from where the axes stand. */
+/* Run the program once more from its first block, from where the axes stand. */
 static void run_anew(struct pc *pc, const struct source *program)
 {
     struct mcc *m = &pc->mcc;

@@ -4,6 +4,7 @@
 
 #include "el_extremes.h"
 
+/* Range of the products of two ranges. */
 static struct jet_range times(struct jet_range a, struct jet_range b)
 {
     const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
@@ -11,17 +12,20 @@ static struct jet_range times(struct jet_range a, struct jet_range b)
                                el_max(el_max(p, q), el_max(r, s)) };
 }
 
+/* Range of the differences of two ranges. */
 static struct jet_range less(struct jet_range a, struct jet_range b)
 {
     return (struct jet_range){ a.low - b.high, a.high - b.low };
 }
 
+/* Range of the reciprocals of a range without 0. */
 static struct jet_range inverse(struct jet_range a)
 {
     return (struct jet_range){ 1.0 / a.high, 1.0 / a.low };
 }
 
-/* The theorem of the mean value: f^(k) leaves its middle by h times the next one at most. */
+/* Narrow the ranges by the mean value theorem: f^(k) differs from its value in the middle by at
+ * most h max|f^(k+1)|. With ck = f^(k) / k! that is (k + 1) h max|c(k+1)|. */
 static struct jet narrowed(struct jet a)
 {
     for (int k = JET_TERMS - 2; k >= 0; k--) {
@@ -72,7 +76,7 @@ struct jet jet_scaled(const struct jet *a, double factor)
     return c;
 }
 
-/* The k-th term of a product times a factor. */
+/* The k-th term of a product times a factor: factor * sum of a_i b_(k-i) for i = 0 .. k. */
 static void term(const struct jet *a, const struct jet *b, int k, double factor, struct jet *c)
 {
     const struct jet_range f = { factor, factor };
@@ -99,6 +103,7 @@ struct jet jet_product(const struct jet *a, const struct jet *b)
     return narrowed(c);
 }
 
+/* Term by term from q b = a: q_k = (a_k - sum of q_i b_(k-i) for i < k) / b_0. */
 struct jet jet_quotient(const struct jet *a, const struct jet *b, bool *good)
 {
     struct jet q = { .half = a->half };
@@ -121,6 +126,7 @@ struct jet jet_quotient(const struct jet *a, const struct jet *b, bool *good)
     return narrowed(q);
 }
 
+/* Term by term from r r = a: r_k = (a_k - sum of r_i r_(k-i) for 0 < i < k) / (2 r_0). */
 struct jet jet_root(const struct jet *a, bool *good)
 {
     struct jet r = { .half = a->half };
@@ -160,7 +166,7 @@ struct jet jet_rate(const struct jet *a)
     return r;
 }
 
-/* (x y' - y x') / (x^2 + y^2) */
+/* The derivative of atan2(y, x): (x y' - y x') / (x^2 + y^2). */
 struct jet jet_angle_rate(const struct jet *x, const struct jet *y, bool *good)
 {
     const struct jet dx = jet_rate(x), dy = jet_rate(y);
@@ -171,7 +177,7 @@ struct jet jet_angle_rate(const struct jet *x, const struct jet *y, bool *good)
     return jet_quotient(&cross, &square, good);
 }
 
-/* c' = -w s, s' = w c, term by term. */
+/* Term by term from c' = -w s and s' = w c, with w the derivative of the angle. */
 void jet_direction(double cosine, double sine, const struct jet *rate, struct jet out[2])
 {
     const double middle[2] = { cosine, sine }, reach = rate->half * jet_most(&rate->all[0]);
@@ -207,7 +213,8 @@ static double length3(const double a[3])
     return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
 }
 
-/* Each derivative of a vector that turns has one length all over the part. */
+/* The k-th derivative of a vector that turns evenly is turn x .. x turn x v, whose length is the
+ * same all over the part. */
 void jet_turning(const double at[3], const double turn[3], double half, struct jet out[3])
 {
     const double rate = length3(turn);

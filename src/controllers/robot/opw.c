@@ -6,14 +6,15 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-static const double TURN = 6.283185307179586;
+static const double TURN = 6.283185307179586; /* [rad] 2 pi */
 
-/* A cosine may exceed 1 by rounding at the edge of reach. */
+/* So much may a cosine exceed 1 by rounding at the edge of reach. */
 static const double EDGE = 1e-12;
 
-/* Sine of joint 5 below which axes 4 and 6 are in line: rounding has the rest. */
+/* Sine of joint 5 below which axes 4 and 6 are in line: rounding decides what is left. */
 static const double IN_LINE = 1e-9;
 
+/* Inner angles th of the maker's joints: sign * joint - offset. [rad] */
 static void inner(const struct opw *o, const double joint[OPW_JOINTS], double th[OPW_JOINTS])
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
@@ -21,7 +22,7 @@ static void inner(const struct opw *o, const double joint[OPW_JOINTS], double th
     }
 }
 
-/* Rz(a) Ry(p): columns are the axes of the forearm's frame. */
+/* Rz(a) Ry(p), whose columns are the axes of the forearm's frame in the base frame. */
 static void forearm(double a, double p, double m[3][3])
 {
     const struct el_turn ta = el_sincos(a), tp = el_sincos(p);
@@ -41,7 +42,7 @@ static void product(const double a[3][3], const double b[3][3], double c[3][3])
     }
 }
 
-/* Rz(th4) Ry(th5) Rz(th6). */
+/* Rotation of the wrist: Rz(th4) Ry(th5) Rz(th6). */
 static void wrist(const double th[OPW_JOINTS], double m[3][3])
 {
     const struct el_turn t = el_sincos(th[5]);
@@ -53,7 +54,9 @@ static void wrist(const double th[OPW_JOINTS], double m[3][3])
     product((const double(*)[3])first, last, m);
 }
 
-/* Wrist centre in the plane of the arm: from axis 1, from axis 2 up. */
+/* Wrist centre in the plane of the arm: x from axis 1, z above axis 2. [m] With k the distance from
+ * elbow to wrist centre and p the angle of that line from upright:
+ *     x = a1 + c2 sin th2 + k sin p     z = c2 cos th2 + k cos p */
 static void centre(const struct opw *o, const double th[OPW_JOINTS], double *x, double *z)
 {
     const double k = el_hypot(o->a2, o->c3), p = th[1] + th[2] + el_atan2(o->a2, o->c3);
@@ -78,14 +81,15 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
     pose->at[2] = z + o->c1 + o->c4 * pose->turn[2][2];
 }
 
-/* acos of what may be out by rounding; false beyond that, and for what is no number. */
+/* acos of a cosine that may exceed 1 by rounding; false if it exceeds it further or is NaN. */
 static bool angle(double cosine, double *a)
 {
     *a = el_acos(el_max(-1.0, el_min(1.0, cosine)));
     return fabs(cosine) <= 1.0 + EDGE;
 }
 
-/* Joints 4 to 6 of the wrist by its rotation: one way, and flipped. */
+/* Both solutions th4 .. th6 for the rotation w of the wrist; the second has it flipped. Where axes
+ * 4 and 6 are in line th4 stays `near`, and both are the same. */
 static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOINTS])
 {
     const double sine = sqrt(w[0][2] * w[0][2] + w[1][2] * w[1][2]);
@@ -104,7 +108,7 @@ static void solve_wrist(const double w[3][3], double near, double th[2][OPW_JOIN
     th[1][5] = sine < IN_LINE ? last : last - 0.5 * TURN;
 }
 
-/* Joints of the maker, within half a turn of 0. */
+/* The maker's joints for inner angles, each within half a turn of 0. [rad] */
 static void outer(const struct opw *o, const double th[OPW_JOINTS], double joint[OPW_JOINTS])
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
@@ -129,12 +133,12 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
     uint32_t there = 0;
 
     if (reach < 0.0) {
-        return 0; /* within the lateral offset of axis 1 */
+        return 0; /* the wrist centre is nearer to axis 1 than the lateral offset b */
     }
     inner(o, near, known);
     const double out = sqrt(reach), aside = el_atan2(o->b, out), way = el_atan2(y, x);
     for (int shoulder = 0; shoulder <= OPW_BACK; shoulder += OPW_BACK) {
-        const double n = (shoulder ? -out : out) - o->a1; /* wrist centre from axis 2, along x */
+        const double n = (shoulder ? -out : out) - o->a1; /* [m] of the wrist centre from axis 2 */
         const double s2 = n * n + z * z, s = sqrt(s2);
         double th[2][OPW_JOINTS], seen[3][3], at2, at3;
         if (!angle((s2 + o->c2 * o->c2 - k2) / (2.0 * s * o->c2), &at2)
@@ -144,7 +148,7 @@ uint32_t opw_inverse_of(const struct opw *o, const struct opw_pose *pose,
         const double first = shoulder ? way + aside - 0.5 * TURN : way - aside;
         const struct el_turn base = el_sincos(first);
         const double c = base.cosine, d = base.sine, up = el_atan2(n, z);
-        for (int i = 0; i < 3; i++) { /* the attitude seen from the arm's plane */
+        for (int i = 0; i < 3; i++) { /* the orientation, seen from the arm's plane */
             seen[0][i] = c * pose->turn[0][i] + d * pose->turn[1][i];
             seen[1][i] = c * pose->turn[1][i] - d * pose->turn[0][i];
             seen[2][i] = pose->turn[2][i];

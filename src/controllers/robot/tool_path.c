@@ -7,74 +7,79 @@
 #include "el_extremes.h"
 #include "elementary.h"
 
-enum { STEPS = 8 }; /* of a segment that is looked at */
+enum { STEPS = 8 }; /* into which a segment is divided to sample its joints */
 
-/* Share of a joint's acceleration that the bend of its way may take where it limits the speed; the
- * rest changes the speed. */
+/* Share of a joint's acceleration limit that q'' v^2, the part from the curvature of the joint's
+ * path q(s), may take where it limits the speed v; the rest is left for changes of speed. */
 static const double BENT = 0.6;
 
-/* Most that limits may differ within a segment; with more segments than there is room the square of
- * that, and so on to a power of WIDE. */
+/* Largest ratio of the limits of speed and of acceleration within a segment. If the path then has
+ * more segments than there is room for, the square of these ratios is tried, then the 4th power,
+ * and so on until the power is above WIDE. */
 static const double UNEVEN_SPEED = 1.3, UNEVEN_ACC = 1.5;
 
 static const double WIDE = 64.0;
 
-/* The joints keep so much below their accelerations: steps are no places. */
+/* Share of the joints' acceleration limits that is used at the samples, as the joints may need more
+ * between them. */
 static const double MARGIN = 0.99;
 
-/* Where the speed falls below this share of the feed no mean is taken: it would smear the slow part
- * over all the way on which it is looked ahead. */
+/* If the speed falls below this share of the feed anywhere on the path, look-ahead takes no mean of
+ * the speed: it would spread the slow part over the whole distance that is looked ahead. */
 static const double SLOW = 0.5;
 
-/* A joint that turns further in a step is looked at more closely. [rad] */
+/* Largest turn of a joint from one sample to the next; beyond it the segment is halved. [rad] */
 static const double STEP = 0.2;
 
-/* No segment is shorter. [mm] */
+/* Shortest segment. [mm] */
 static const double LEAST = 1e-7;
 
-/* Share of a joint's acceleration for what a corner asks across the path. */
+/* Share of a joint's acceleration limit that a corner may take, in any direction of the tool. */
 static const double CORNER = 0.6;
 
-/* A corner that leaves less than this share of the acceleration of the segment beside it is not
- * driven: a stop costs two ramps, and crawling for it much more. */
+/* A corner that leaves less than this share of the acceleration of the segment beside it becomes a
+ * stop: that costs two ramps, while crawling through the corner would take much longer. */
 static const double CRAWL = 0.02;
 
-/* Way on either side that a corner gets, in its zones: as long as one of 12 degrees needs. */
+/* Length of the segment that a corner gets on either side, in units of its zone: as much as a
+ * corner of 12 degrees needs. */
 static const double LONG = 10.0;
 
-/* A segment is halved in thought so often before limits that do not hold are lowered; before bounds
- * are given up beside a singular place that is met; to come near to the limit of a joint. */
+/* The proof of a segment's limits by bounds halves it so often: before limits that do not hold are
+ * lowered (FINE); before bounds are given up beside a singular place that is met (CORE); at most,
+ * to come near to the limit of a joint (DEEP). */
 enum { FINE = 6, CORE = 10, DEEP = 40 };
 
-/* Farthest that a joint may go while it is known by where it was: no branch and no turn is nearer.
- * [rad] */
+/* Farthest that a joint may go while its latest position still identifies it: no other branch and
+ * no other whole turn is nearer. [rad] */
 static const double KNOWN = 1.0;
 
-/* Least share of an acceleration that is lowered by bounds instead of halving its segment. */
+/* Bounds may lower the acceleration of a segment to no less than this share; else it is halved. */
 static const double LOWERED = 0.5;
 
-/* What rounding makes of a joint beside a singular place. [rad] */
+/* Error of a joint by rounding beside a singular place. [rad] */
 static const double LEAP = 1e-4;
 
-/* A factor below this is 0 but for rounding. */
+/* A factor of opw_factors() below this is 0 within rounding: the place is singular. */
 static const double MET = 1e-9;
 
+/* The path that is cut, with all that this needs. */
 struct survey {
     struct mechanism arm;
     const struct arm_geometry *g;
     const struct tool_path_limits *l;
     const struct path *path;
-    double wide; /* uneven limits that are allowed, as a power */
+    double wide; /* power of UNEVEN_SPEED and UNEVEN_ACC that is allowed now */
     struct tool_path_fault *fault;
     double origin[OPW_JOINTS]; /* [rad] at the start of the path */
 };
 
-/* A segment looked at. */
+/* A segment as its samples show it. */
 struct look {
-    double q[STEPS + 1][OPW_JOINTS];
-    double cap, acc;
-    bool even;
-    bool met; /* a singular place is met: no bounds hold beside it */
+    double q[STEPS + 1][OPW_JOINTS]; /* [rad] joints at the samples */
+    double cap, acc;                 /* [mm/s], [mm/s^2] limits along the path on all of it */
+    bool even;                       /* the limits differ little enough within it, and are proved */
+    bool met;                        /* it meets a singular place, beside which no bounds hold */
 };
 
 static bool joints_at(const struct survey *s, double part, double joint[OPW_JOINTS])
@@ -84,15 +89,15 @@ static bool joints_at(const struct survey *s, double part, double joint[OPW_JOIN
     return mechanism_joints(&s->arm, place, joint);
 }
 
-/* Whether two joints in a row are on different sides of a singular place. */
+/* True if joints at two places in a row lie on different sides of a singular place. */
 static bool flips(const struct survey *s, const double a[OPW_JOINTS], const double b[OPW_JOINTS])
 {
     return opw_branch(&s->g->arm->opw, a) != opw_branch(&s->g->arm->opw, b);
 }
 
-/* The way from a to b flips: whether it meets the singular place, so that the joints go on
- * smoothly; or passes it, and the joints turn quickly, which is seen once it is looked at
- * closely. */
+/* The joints flip between parts a and b of the path. True if the path meets the singular place, so
+ * that the joints go on smoothly; false if it passes by, so that they turn quickly. Bisection down
+ * to LEAST tells which. */
 static bool meets(const struct survey *s, double a, const double at_a[OPW_JOINTS], double b,
                   const double at_b[OPW_JOINTS])
 {
@@ -138,7 +143,7 @@ static enum tool_path_status fault(const struct survey *s, enum tool_path_status
     return why;
 }
 
-/* Joints at the steps of a segment. */
+/* Find the joints at the samples of a segment. */
 static enum tool_path_status walk(const struct survey *s, double from, double size, struct look *k)
 {
     for (int n = 1; n <= STEPS; n++) {
@@ -165,8 +170,8 @@ static enum tool_path_status walk(const struct survey *s, double from, double si
     return TOOL_PATH_OK;
 }
 
-/* First and second derivative of a joint by the way at a step, from differences; at the ends
- * carried on from within. */
+/* First and second derivative of a joint by the path length s at a sample, from central differences
+ * with step h [mm]; at the ends extrapolated from within. [rad/mm], [rad/mm^2] */
 static void derivatives(const struct look *k, int n, int i, double h, double *slope, double *bend)
 {
     const int m = n == 0 ? 1 : n == STEPS ? STEPS - 1 : n, side = n - m;
@@ -175,7 +180,12 @@ static void derivatives(const struct look *k, int n, int i, double h, double *sl
     *slope = (k->q[m + 1][i] - k->q[m - 1][i]) / (2.0 * h) + side * h * *bend;
 }
 
-/* What the joints allow on a segment: the least of its steps. A fault is where they are slowest. */
+/* Limits along the path that the joints allow on a segment, the least of its samples. With speed v
+ * and acceleration a along the path, q(s) the joint:
+ *
+ *     |q'| v <= speed     |q''| v^2 <= BENT turn     |q'| a + |q''| v^2 <= turn
+ *
+ * A fault is noted where the joints are slowest. */
 static void allow(const struct survey *s, double from, double size, struct look *k)
 {
     const double h = size * s->path->length / STEPS;
@@ -206,7 +216,8 @@ static void allow(const struct survey *s, double from, double size, struct look 
               && most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
 }
 
-/* Whether the limits of a segment hold for such derivatives; asked to, they are lowered to that. */
+/* True if the limits of a segment hold for these bounds of the joints' derivatives. With `lower`
+ * the limits are lowered until they do, if that leaves enough acceleration. */
 static bool keeps(const struct survey *s, const struct bounds_pair *d, bool lower, struct look *k)
 {
     double cap = k->cap, acc = k->acc;
@@ -224,7 +235,8 @@ static bool keeps(const struct survey *s, const struct bounds_pair *d, bool lowe
     return cap >= k->cap && acc >= k->acc;
 }
 
-/* Whether all places within a reach of joints are within their limits. */
+/* True if the joints stay within their limits all over a part, half [mm] long to either side of
+ * joint[]. */
 static bool within(const struct survey *s, const double joint[OPW_JOINTS], const struct bounds *b,
                    double half)
 {
@@ -238,8 +250,8 @@ static bool within(const struct survey *s, const double joint[OPW_JOINTS], const
            && manipulator_outside(s->g->arm, s->origin, down) < 0;
 }
 
-/* Whether bounds tell the joints all over a part, half [mm] long to either side, by those in its
- * middle and at its start. */
+/* True if the bounds b identify the joints all over a part, half [mm] long to either side of its
+ * middle, from the joints at its start and middle. */
 static bool followed(const struct survey *s, const double start[OPW_JOINTS],
                      const double middle[OPW_JOINTS], const struct bounds *b, double half)
 {
@@ -251,7 +263,8 @@ static bool followed(const struct survey *s, const double start[OPW_JOINTS],
     return good;
 }
 
-/* Whether joints leap by the end of a part further than its bounds let them: another elbow. */
+/* True if joints go further from the middle to an end of a part than its bounds allow: they leap to
+ * another branch of the elbow. */
 static bool leaps(const double middle[OPW_JOINTS], const double end[OPW_JOINTS],
                   const struct bounds *b, double half)
 {
@@ -263,7 +276,7 @@ static bool leaps(const double middle[OPW_JOINTS], const double end[OPW_JOINTS],
     return found;
 }
 
-/* Whether a wrist or shoulder is singular at joints, but for rounding. */
+/* True if wrist or shoulder is singular at these joints, within rounding. */
 static bool singular(const struct survey *s, const double joint[OPW_JOINTS])
 {
     double factor[3];
@@ -272,7 +285,7 @@ static bool singular(const struct survey *s, const double joint[OPW_JOINTS])
     return fabs(factor[0]) < MET || fabs(factor[2]) < MET;
 }
 
-/* Angle that the whole path turns by, tool and arc. [rad] */
+/* Angle by which the whole path turns: that of the tool plus that of the arc. [rad] */
 static double turning(const struct survey *s)
 {
     const struct arm_moves *c = s->g->moves;
@@ -281,9 +294,10 @@ static double turning(const struct survey *s)
     return tool + (s->path->arc ? fabs(s->path->sweep) : 0.0);
 }
 
-/* Whether limits hold everywhere between two parts of the path, not at the steps only: bounds say
- * it of the whole, or of its halves. Where there are none a singular place is met, which the
- * joints pass smoothly, as the steps see it. joint[] goes on from the start to the end.
+/* True if the limits of k hold everywhere between two parts of the path, not only at the samples:
+ * bounds prove it for the whole, or for its halves. Where there are no bounds a singular place is
+ * met, which the joints pass smoothly, as the samples show. joint[] is moved from the start to the
+ * end.
  * CCN 24: a proof by halves: each way to decide an interval, before it is halved. */
 static bool proved(const struct survey *s, double from, double to, int depth,
                    double joint[OPW_JOINTS], struct look *k)
@@ -324,7 +338,8 @@ static bool proved(const struct survey *s, double from, double to, int depth,
            && proved(s, mid, to, depth + 1, joint, k);
 }
 
-/* Whether the limits of a segment that was looked at hold all over it, lowered if need be. */
+/* True if the limits of a sampled segment hold all over it, after they have been lowered if need
+ * be. */
 static bool certain(const struct survey *s, double from, double size, struct look *k)
 {
     const double cap = k->cap;
@@ -336,7 +351,7 @@ static bool certain(const struct survey *s, double from, double size, struct loo
         k->met = k->met || singular(s, k->q[n]) || flips(s, k->q[n - 1], k->q[n]);
     }
     bool good = proved(s, from, from + size, 0, joint, k);
-    for (int i = 0; i < OPW_JOINTS; i++) { /* the steps have not missed a turn */
+    for (int i = 0; i < OPW_JOINTS; i++) { /* the samples have not missed a turn */
         good = good && fabs(joint[i] - k->q[STEPS][i]) <= STEP;
     }
     if (good && k->cap < cap) {
@@ -345,7 +360,7 @@ static bool certain(const struct survey *s, double from, double size, struct loo
     return good;
 }
 
-/* Whether joints leap in a segment that cannot be shorter. */
+/* True if joints leap within a segment of the shortest length. */
 static bool torn(const struct survey *s, double from, double size, const struct look *k)
 {
     const double half = 0.5 * size * s->path->length, *middle = k->q[STEPS / 2];
@@ -355,8 +370,9 @@ static bool torn(const struct survey *s, double from, double size, const struct 
            && (leaps(middle, k->q[0], &b, half) || leaps(middle, k->q[STEPS], &b, half));
 }
 
-/* Segments from start to end, each as long as its place among the halves of halves and its evenness
- * allow. TOOL_PATH_SEGMENTS + 1: too many.
+/* Cut the path into segments from start to end. Each is 2^-n of the path, begins at a multiple of
+ * that, and is as long as its limits are even. w->count is TOOL_PATH_SEGMENTS + 1 if there are too
+ * many.
  * CCN 18: a size is taken, halved, doubled again or refused, and a refusal needs the least one. */
 static enum tool_path_status cut(struct tool_path *w, const struct survey *s,
                                  double joint[OPW_JOINTS])
@@ -400,8 +416,9 @@ static enum tool_path_status cut(struct tool_path *w, const struct survey *s,
     return TOOL_PATH_OK;
 }
 
-/* A mean over a time mixes accelerations of places as far apart as the tool goes in it: the least
- * holds for all of them. */
+/* The mean of look-ahead over a time `smooth` [s] mixes the accelerations of places that are as far
+ * apart as the tool goes in that time. So each segment gets the least acceleration of those within
+ * that reach. */
 static void spread(struct tool_path *w, double smooth)
 {
     double acc[TOOL_PATH_SEGMENTS];
@@ -421,7 +438,8 @@ static void spread(struct tool_path *w, double smooth)
     }
 }
 
-/* In a corner the acceleration may have any direction: what it asks of the joints at a place. */
+/* In a corner the tool's acceleration may have any direction. Returns the highest acceleration, at
+ * most acc [mm/s^2], that the joints allow in every direction at a place. */
 static double any_direction(const struct survey *s, const double joint[OPW_JOINTS], double acc)
 {
     const struct arm_move *m = &s->g->moves->move[(s->g->moves->count - 1) % ARM_MOVES_SIZE];
@@ -444,7 +462,8 @@ static double any_direction(const struct survey *s, const double joint[OPW_JOINT
     return acc;
 }
 
-/* The segment in which part `at` of the path lies ends there, and another begins. */
+/* Split the segment in which part `at` of the path lies, unless a piece would be too short or there
+ * is no room. */
 static void split(struct tool_path *w, double at)
 {
     int n = 0;
@@ -463,9 +482,10 @@ static void split(struct tool_path *w, double at)
     w->count++;
 }
 
-/* The corner at one end of a path: a segment beside it that is as short as it needs gets an
- * acceleration that may have any direction; farther off, a mean no longer mixes it with theirs.
- * Short segments get it whole. False, and nothing is lowered, if they would crawl. */
+/* Prepare a corner at one end of the path (side 0: start): a segment beside it, no longer than the
+ * corner needs, gets an acceleration that holds in every direction. A second one behind it keeps
+ * the mean of look-ahead from mixing it with the rest. A short segment gets it as a whole. False,
+ * and nothing is lowered, if the tool would crawl. */
 static bool lead(struct tool_path *w, const struct survey *s, int side,
                  const double joint[OPW_JOINTS])
 {

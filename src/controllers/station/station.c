@@ -47,19 +47,20 @@ struct station_config station_defaults(void)
     return c;
 }
 
-/* Whether pc_start will find that the axis can be homed so. */
+/* True if pc_start will accept how an axis is homed. */
 static bool can_home(const struct machine_axis *a, const struct home_config *h)
 {
     return home_valid(h) && el_max(h->high_speed, h->low_speed) <= machine_axis_speed(a);
 }
 
-/* A number of clocks, of which sums and products with what a run makes stay numbers: 289 days. */
+/* True for a number of clocks from `least` to 289 days, so that sums in a run do not overflow. */
 static bool clocks(int64_t x, int64_t least)
 {
     return x >= least && x < 1000000000000000;
 }
 
-/* Times of the modules on the processor; interrupts wake the position control. */
+/* True if the times of the PC's modules are valid. Position control has no cycle to be offset: it
+ * is woken by interrupts. */
 static bool modules_valid(const struct pc_config *p)
 {
     bool valid = clocks(p->bus, 1) && clocks(p->ipo, 1) && clocks(p->interpreter, 0)
@@ -97,7 +98,8 @@ static enum station_status check(const struct station_config *c)
     return STATION_OK;
 }
 
-/* The card of a machine: its axes, an encoder that counts ppr a turn with an index each turn. */
+/* Power the card on, for the axes of a machine, with encoders of ppr counts and one index a
+ * turn. */
 static void power_on(struct epcio *card, const struct machine *m)
 {
     struct epcio_config c = epcio_default_config();
@@ -218,7 +220,7 @@ enum station_status station_run(struct station *s, int64_t until, const struct s
     return STATION_OK;
 }
 
-/* Whether no pulse is under way or in stock. */
+/* True if no pulse is under way or in stock. */
 static bool card_rests(const struct epcio *card)
 {
     int32_t due = 0;
