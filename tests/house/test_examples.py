@@ -104,7 +104,7 @@ def test_a_project_finds_the_package_in_c_and_cxx(prefix: Path, tmp_path: Path) 
 def test_installed_libraries_show_names_of_the_project_alone(prefix: Path) -> None:
     found = output("nm", "-g", "--defined-only", *(prefix / "lib/motionfmu").glob("*.a"))
     shown = {words[2] for line in found.splitlines() if len(words := line.split()) == 3}
-    assert len(shown) > 1400
+    assert len(shown) > 1000  # else nothing was looked at
     assert {name for name in shown if not name.startswith("motionfmu_")} == set()
 
 
