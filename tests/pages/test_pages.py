@@ -139,7 +139,10 @@ def test_nothing_overlaps_overflows_or_breaks(browser: Any, pages: Any, kind: st
             ON_A_PHONE[kind](page, run)
             assert page.evaluate(LOOK) == []  # with the readouts too
         page.set_viewport_size(DESK)
-        page.wait_for_timeout(150)  # plots follow their size in 100 ms
+        for _ in range(200):  # plots follow their size in 100 ms, on a busy machine later
+            page.wait_for_timeout(150)
+            if not page.evaluate(LOOK):
+                break
         assert page.evaluate(LOOK) == []
         if kind == "contour":
             a_plot_is_saved(page)
