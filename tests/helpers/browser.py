@@ -29,14 +29,29 @@ def browser() -> Iterator[Any]:
 def tab(browser: Any, address: str, size: dict[str, int] = PHONE) -> Iterator[Any]:
     """A page in a browser window of a given size; an error in its console fails the test."""
     context = browser.new_context(viewport=size, is_mobile=size is PHONE, has_touch=size is PHONE)
-    page = context.new_page()
-    page.set_default_timeout(60_000)
     told: list[str] = []
-    page.on("pageerror", lambda error: told.append(str(error)))
-    page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
-    page.goto(address)
+    page = _opened(context, address, told)
     try:
         yield page
     finally:
         context.close()
     assert told == []
+
+
+def _opened(context: Any, address: str, told: list[str]) -> Any:
+    """A page at an address; a browser that does not answer is asked twice more."""
+    from playwright.sync_api import TimeoutError as NoAnswer
+
+    for left in (2, 1, 0):
+        page = context.new_page()
+        page.set_default_timeout(60_000)
+        page.on("pageerror", lambda error: told.append(str(error)))
+        page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
+        try:
+            page.goto(address)
+            return page
+        except NoAnswer:
+            if not left:
+                raise
+            page.close()
+    raise AssertionError
