@@ -38,20 +38,19 @@ def tab(browser: Any, address: str, size: dict[str, int] = PHONE) -> Iterator[An
     assert told == []
 
 
-def _opened(context: Any, address: str, told: list[str]) -> Any:
-    """A page at an address; a browser that does not answer is asked twice more."""
+def _opened(context: Any, address: str, told: list[str], tries: int = 3) -> Any:
+    """A page at an address; a browser that does not answer is asked again."""
     from playwright.sync_api import TimeoutError as NoAnswer
 
-    for left in (2, 1, 0):
-        page = context.new_page()
-        page.set_default_timeout(60_000)
-        page.on("pageerror", lambda error: told.append(str(error)))
-        page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
-        try:
-            page.goto(address)
-            return page
-        except NoAnswer:
-            if not left:
-                raise
-            page.close()
-    raise AssertionError
+    page = context.new_page()
+    page.set_default_timeout(60_000)
+    page.on("pageerror", lambda error: told.append(str(error)))
+    page.on("console", lambda m: told.append(m.text) if m.type == "error" else None)
+    try:
+        page.goto(address)
+    except NoAnswer:
+        page.close()
+        if tries == 1:
+            raise
+        return _opened(context, address, told, tries - 1)
+    return page

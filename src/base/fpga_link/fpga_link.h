@@ -83,11 +83,11 @@ enum fpga_format {
 /* Interrupts: of the pulse memories or their timer, and of inputs that change. */
 #define FPGA_INTERRUPTS(X) \
     X(int32_t, irq_seq, )            /* number of interrupts of memories or timer */ \
-    X(double, irq_clock, )           /* [clock] of the latest one */ \
+    X(double, irq_clock, )           /* [clock] of the latest of these interrupts */ \
     X(int32_t, irq_inputs, )         /* digital inputs as exchanged at it */ \
     X(double, irq_ai, [FPGA_ANALOG]) /* [V] analog inputs as exchanged at it */ \
     X(int32_t, input_irq_seq, )      /* number of interrupts of inputs that changed */ \
-    X(double, input_irq_clock, )     /* [clock] of the latest one */ \
+    X(double, input_irq_clock, )     /* [clock] of the latest input interrupt */ \
     X(int32_t, input_irq_image, )    /* digital inputs as exchanged at it */
 
 /* The state of the card. */

@@ -472,8 +472,7 @@ static void split(struct tool_path *w, double at)
         n++;
     }
     const double from = n > 0 ? w->segment[n - 1].until : 0.0;
-    if (n == w->count || w->count == TOOL_PATH_SEGMENTS || at * w->path.length < LEAST
-        || (at - from) * w->path.length < LEAST
+    if (n == w->count || w->count == TOOL_PATH_SEGMENTS || (at - from) * w->path.length < LEAST
         || (w->segment[n].until - at) * w->path.length < LEAST) {
         return;
     }

@@ -52,8 +52,8 @@ def first_line(folder: Path) -> str:
     """What a scenario shows or a machine is, right or wrong; of another project its title."""
     from motionfmu.scenarios.package_files import MACHINE, SCENARIO
 
-    files = [folder / name for name in (SCENARIO, MACHINE, "README.md")]
-    file = next((f for f in files[:-1] if f.is_file()), files[-1])
+    told = (folder / name for name in (SCENARIO, MACHINE))
+    file = next((f for f in told if f.is_file()), folder / "README.md")
     with file.open(encoding="utf-8", errors="replace") as stream:
         return stream.readline(1000).strip().lstrip("# ")
 

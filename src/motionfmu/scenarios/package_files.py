@@ -20,16 +20,18 @@ def folder(kind: str) -> Path:
 
 def scenarios() -> dict[str, Path]:
     """Folders of the scenarios that have a name: those of the package and of ./scenarios."""
-    places = (folder("scenarios"), Path("scenarios"))
-    found = [file.parent for place in places for file in sorted(place.glob(f"*/{SCENARIO}"))]
-    return {place.name: place for place in found}
+    return _named(SCENARIO, folder("scenarios"), Path("scenarios"))
 
 
 def machines() -> dict[str, Path]:
     """Folders of the machines that have a name: those of the package and of ./machines."""
-    places = (PACKAGE / "machines", Path("machines"))
-    found = [file.parent for place in places for file in sorted(place.glob(f"*/{MACHINE}"))]
-    return {place.name: place for place in found}
+    return _named(MACHINE, PACKAGE / "machines", Path("machines"))
+
+
+def _named(file: str, *places: Path) -> dict[str, Path]:
+    """Folders with such a file by their names; one of a later place hides those before."""
+    found = [one.parent for place in places for one in sorted(place.glob(f"*/{file}"))]
+    return {each.name: each for each in found}
 
 
 def examples() -> dict[str, Path]:

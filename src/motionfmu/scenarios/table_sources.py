@@ -1,7 +1,7 @@
 """Where the tables of a scenario come from: its file, what it extends, its machine, a program."""
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -185,26 +185,33 @@ def _read(file: Path) -> Source:
 def merged(sources: Iterable[Source]) -> tuple[Tables, Sources]:
     """The tables of all sources merged; an earlier source is stronger than a later one."""
     every = Sources(sources)
-    every.rows = {}
     found: Tables = {}
-    rows: dict[str, list[tuple[Source, int]]] = {}
     for source in reversed(every):
-        found = _less(found, rows, source)
-        found = _over(found, source.tables, adds=source.lines is not None)
-        for array in ARRAYS:
-            own = source.tables.get(array)
-            if isinstance(own, list):
-                before = rows.get(array, []) if source.lines is not None else []
-                rows[array] = [*before, *((source, k) for k in range(len(own)))]
-            elif array not in found:
-                rows.pop(array, None)
-    for array, places in rows.items():
-        for k, (source, own_place) in enumerate(places):
-            every.rows[f"{array}.{k}"] = (source, f"{array}.{own_place}")
+        found = _over(_less(found, source), source.tables, adds=source.lines is not None)
+    every.rows = _rows(found, every)
     return found, every
 
 
-def _less(base: Tables, rows: dict[str, list[tuple[Source, int]]], source: Source) -> Tables:
+def _rows(tables: Tables, sources: Sources) -> dict[str, tuple[Source, str]]:
+    """Of each row of an array the source that has it, and its place there; merging copies none."""
+    own = {
+        id(row): (source, place)
+        for source in sources
+        for place, row in _numbered_rows(source.tables)
+    }
+    return {place: own[id(row)] for place, row in _numbered_rows(tables)}
+
+
+def _numbered_rows(tables: Tables) -> Iterator[tuple[str, Any]]:
+    """Each row of an array, behind its place: "figure.2"."""
+    for array in ARRAYS:
+        rows = tables.get(array)
+        yield from (
+            (f"{array}.{k}", x) for k, x in enumerate(rows if isinstance(rows, list) else [])
+        )
+
+
+def _less(base: Tables, source: Source) -> Tables:
     """What a source inherits, less what its `without` names."""
     names = source.tables.get("without", [])
     place = source.place("", "without")
@@ -212,13 +219,13 @@ def _less(base: Tables, rows: dict[str, list[tuple[Source, int]]], source: Sourc
         raise InputError(f"{place}: without = {shown(names)}: a list of names wanted")
     out = {k: (dict(v) if isinstance(v, dict) else v) for k, v in base.items()}
     for name in names:
-        if not _taken(out, rows, name):
+        if not _taken(out, name):
             told = "nothing that is inherited has this name (TABLE, TABLE.KEY or LIST.ITEM)"
             raise InputError(f"{place}: without {shown(name)}: {told}{_near(base, name)}")
     return out
 
 
-def _taken(tables: Tables, rows: dict[str, list[tuple[Source, int]]], name: str) -> bool:
+def _taken(tables: Tables, name: str) -> bool:
     """Take away a table, a key of it, an entry of a list or a row by its title."""
     top, _, key = name.partition(".")
     here = tables.get(top)
@@ -226,24 +233,21 @@ def _taken(tables: Tables, rows: dict[str, list[tuple[Source, int]]], name: str)
         return False
     if not key:
         del tables[top]
-        rows.pop(top, None)
         return True
-    if isinstance(here, dict):
-        if key in here:
-            del here[key]
-            return True
-        inner, _, item = key.partition(".")
-        listed = here.get(inner)
-        if isinstance(listed, list) and item in listed:
-            here[inner] = [x for x in listed if x != item]
-            return True
-    elif isinstance(here, list):
-        kept = [k for k, x in enumerate(here) if key not in (x, *_titles(x))]
-        tables[top] = [here[k] for k in kept]
-        if top in rows:
-            rows[top] = [rows[top][k] for k in kept]
-        return len(kept) < len(here)
-    return False
+    if isinstance(here, list):
+        tables[top] = [x for x in here if key not in (x, *_titles(x))]
+        return len(tables[top]) < len(here)
+    if not isinstance(here, dict):
+        return False
+    if key in here:
+        del here[key]
+        return True
+    inner, _, item = key.partition(".")
+    listed = here.get(inner)
+    if not isinstance(listed, list) or item not in listed:
+        return False
+    here[inner] = [x for x in listed if x != item]
+    return True
 
 
 def _titles(row: Any) -> list[Any]:
