@@ -21,10 +21,11 @@ struct model {
 #include "comp_file.h"
 #include "mcc_parameters.h"
 #include "path_file.h"
+#include "plan_file.h"
 #include "program_fault.h"
 #include "tool_file.h"
 
-/* Files that are read and that path_file must not replace. */
+/* Files that are read and that path_file and plan_file must not replace. */
 enum { INPUTS = 3 };
 struct inputs {
     struct output_input of[INPUTS];
@@ -40,23 +41,29 @@ static struct inputs inputs_of(const struct fmu *f)
     } };
 }
 
-static int cannot_write(struct fmu *f, const char *why)
+static int cannot_write(struct fmu *f, const char *parameter, const char *name, const char *why)
 {
-    return fmu_fail(f, "path_file: cannot write %s: %s", f->s.v.path_file, why);
+    return fmu_fail(f, "%s: cannot write %s: %s", parameter, name, why);
 }
 
-/* Check before the run, not after it, that path_file can be written. */
+/* Check that a file can be written, if the parameter names one. */
+static int try_to_write(struct fmu *f, const char *parameter, const char *name)
+{
+    const struct inputs in = inputs_of(f);
+    const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
+    const char *why = !name[0]    ? NULL
+                      : path.good ? output_try(path.text, in.of, INPUTS)
+                                  : path.text;
+    return why ? cannot_write(f, parameter, name, why) : 0;
+}
+
+/* Check before the run, not after it, that its files can be written. */
 static int model_open(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
 
-    if (v->path_file[0]) {
-        const struct inputs in = inputs_of(f);
-        const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
-        const char *why = path.good ? output_try(path.text, in.of, INPUTS) : path.text;
-        if (why) {
-            return cannot_write(f, why);
-        }
+    if (try_to_write(f, "path_file", v->path_file) || try_to_write(f, "plan_file", v->plan_file)) {
+        return -1;
     }
     struct program_file *program;
     const int code = open_program(f, "program", v->program, &program);
@@ -208,6 +215,30 @@ static void warn_of_cycle(struct fmu *f)
     }
 }
 
+/* The PC and its library as the parameters say, at rest at the origin. */
+static int set_out(struct fmu *f, const struct machine *machine)
+{
+    const struct vars *v = &f->s.v;
+    const struct pc_config c = config_of(v);
+
+    if (pc_start(&f->s.m.pc, machine, &c, f->blob != NULL) != MCC_NO_ERR) {
+        return fmu_fail(f, "the library refuses the machine parameters");
+    }
+    return (v->comp_file[0] && set_compensation(f)) || set_tools(f) ? -1 : 0;
+}
+
+/* Write plan_file; the library is left at the end of the program. */
+static int write_plan(struct fmu *f)
+{
+    const char *name = f->s.v.plan_file;
+    const struct source source = source_of_program(f);
+    const struct inputs inputs = inputs_of(f);
+    const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
+    task_operate(&f->s.m.pc.mcc, false, f->s.v.override);
+    const char *why = plan_write(path.text, inputs.of, INPUTS, &f->s.m.pc.mcc, &source);
+    return why ? cannot_write(f, "plan_file", name, why) : 0;
+}
+
 static int model_start(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
@@ -217,11 +248,7 @@ static int model_start(struct fmu *f)
     if (check_parameters(f)) {
         return -1;
     }
-    const struct pc_config c = config_of(v);
-    if (pc_start(&m->pc, &machine, &c, f->blob != NULL) != MCC_NO_ERR) {
-        return fmu_fail(f, "the library refuses the machine parameters");
-    }
-    if ((v->comp_file[0] && set_compensation(f)) || set_tools(f)) {
+    if (set_out(f, &machine)) {
         return -1;
     }
     if (f->blob) {
@@ -231,8 +258,11 @@ static int model_start(struct fmu *f)
         if (judge_program(f, "program", v->program, f->blob, &all)) {
             return -1;
         }
+        if (v->plan_file[0] && (write_plan(f) || set_out(f, &machine))) {
+            return -1;
+        }
     }
-    m->bus = c.bus * CLOCK_NS;
+    m->bus = m->pc.config.bus * CLOCK_NS;
     fmu_event(f, "DDA time %.9g s", machine_dda_time(&machine));
     warn_of_cycle(f);
     publish(f);
@@ -329,5 +359,5 @@ static int model_end(struct fmu *f)
     const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
     const char *why =
         path_write(path.text, inputs.of, INPUTS, &in, &program, mcc->trajectory.started);
-    return why ? cannot_write(f, why) : 0;
+    return why ? cannot_write(f, "path_file", v->path_file, why) : 0;
 }

@@ -195,11 +195,18 @@ bool axes_done(const struct axes *a, int axis)
            && (x->order == AXES_STAND || x->side * x->plan.s1 == x->goal);
 }
 
+int axes_last(const struct axes *a)
+{
+    int last = 0;
+    for (int i = 1; i < AXES; i++) {
+        const struct axes_axis *x = &a->axis[i], *y = &a->axis[last];
+        last = x->plan.total - x->t > y->plan.total - y->t ? i : last;
+    }
+    return last;
+}
+
 double axes_left(const struct axes *a)
 {
-    double left = 0.0;
-    for (int i = 0; i < AXES; i++) {
-        left = el_max(left, a->axis[i].plan.total - a->axis[i].t);
-    }
-    return left;
+    const struct axes_axis *last = &a->axis[axes_last(a)];
+    return el_max(0.0, last->plan.total - last->t);
 }

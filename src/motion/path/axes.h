@@ -72,6 +72,9 @@ bool axes_resting(const struct axes *a);
 /* True if the axis rests and has carried out its order. */
 bool axes_done(const struct axes *a, int axis);
 
+/* The axis that is under way longest. */
+int axes_last(const struct axes *a);
+
 /* Time until the last axis rests; axes that run on are left out. [s] */
 double axes_left(const struct axes *a);
 

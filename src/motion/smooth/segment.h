@@ -21,6 +21,7 @@ struct segment {
     double feed;             /* [mm/s] least programmed feed of the commands in it */
     double cap;              /* [mm/s] highest speed any override may bring */
     struct ramp_limits ramp; /* least limits of the commands in it */
+    bool joint;              /* it joins two others at a corner */
     bool rest; /* the motion comes to rest at its end: the next one goes on elsewhere */
     union {
         struct {

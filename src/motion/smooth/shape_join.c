@@ -87,6 +87,7 @@ bool shape_join(struct segment *p, const struct segment_state *a, const struct s
     double before = 0.0;
 
     p->kind = SEGMENT_CURVE;
+    p->joint = true;
     p->length = length;
     for (int i = 0; i < AXES; i++) {
         const double chord = b->point[i] - a->point[i];

@@ -180,6 +180,7 @@ void shape_run_segment(const struct shape_run *r, int32_t k, int32_t *vertex, st
 
     memset(p, 0, sizeof *p);
     p->kind = SEGMENT_CURVE;
+    p->joint = false;
     p->length = t[4] - t[3];
     shape_extract(t, m);
     for (int i = 0; i < AXES; i++) { /* from the first control point, so differences are small */

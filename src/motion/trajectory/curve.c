@@ -383,3 +383,98 @@ void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[A
         high[k] += BOW_NEAR;
     }
 }
+
+/* A limit and the share of it that the motion takes. */
+struct taken {
+    double share;
+    struct limited told;
+};
+
+static void take_more(struct taken *most, double value, double limit, enum limited_by by, int axis)
+{
+    const double share = limit > 0.0 ? fabs(value) / limit : 0.0;
+    if (share > most->share) {
+        *most = (struct taken){ share, { .by = by, .axis = axis } };
+    }
+}
+
+/* The limit of which the motion on a segment takes most; the third derivative is a difference. */
+static struct limited most_taken(const struct curve *c, const struct curve_plan *m,
+                                 const struct segment *p)
+{
+    const struct speed_limits *l = &m->limits;
+    const double v = c->place.rate, a = c->place.gain, j = c->place.twitch;
+    const double u = el_min(el_max(way_of(c) - c->base, 0.0), p->length);
+    const double from = el_max(u - 1e-4 * p->length, 0.0);
+    const double to = el_min(u + 1e-4 * p->length, p->length);
+    struct taken most = { 0.0, { .by = LIMITED_ACCELERATION } };
+    struct segment_state s, before, after;
+    double across = 0.0;
+
+    segment_at(p, u, &s);
+    segment_at(p, from, &before);
+    segment_at(p, to, &after);
+    for (int i = 0; i < AXES; i++) {
+        const double third = (after.bend[i] - before.bend[i]) / (to - from);
+        const double jerk = s.slope[i] * j + 3.0 * s.bend[i] * v * a + third * v * v * v;
+        if (fabs(s.slope[i]) * v >= 0.99 * l->speed[i]) {
+            take_more(&most, s.slope[i] * v, l->speed[i], LIMITED_SPEED, i + 1);
+        }
+        take_more(&most, s.slope[i] * a + s.bend[i] * v * v, l->acc[i], LIMITED_ACCELERATION,
+                  i + 1);
+        take_more(&most, jerk, l->jerk[i], LIMITED_JERK, i + 1);
+        across += s.bend[i] * s.bend[i];
+    }
+    if (!speed_by_axes(l)) {
+        take_more(&most, a, a > 0.0 ? p->ramp.acc : p->ramp.dec, LIMITED_ACCELERATION, 0);
+        take_more(&most, sqrt(across) * v * v, el_min(p->ramp.acc, p->ramp.dec),
+                  LIMITED_ACCELERATION, 0);
+        take_more(&most, j, a > 0.0 ? p->ramp.acc_jerk : p->ramp.dec_jerk, LIMITED_JERK, 0);
+    }
+    return most.told;
+}
+
+/* Whether a corner lies within the way to rest. */
+static bool nears_corner(const struct curve *c, const struct curve_plan *m)
+{
+    double left = speed_profile_stop_way(&m->profile) - c->place.way + (way_of(c) - c->base);
+
+    for (int32_t i = c->at; i < segments_known(m) && left > 0.0; i++) {
+        const struct segment *p = shape_segment(&m->shape, i);
+        if (p->joint) {
+            return true;
+        }
+        left -= p->length;
+    }
+    return false;
+}
+
+static struct limited limited_now(const struct curve *c, const struct curve_plan *m,
+                                  const struct segment *p, double override)
+{
+    const struct limited stop = { .by = LIMITED_STOP }, corner = { .by = LIMITED_CORNER };
+
+    if (c->place.rate >= el_min(p->feed * override, p->cap) * 0.999) {
+        const struct limited most = most_taken(c, m, p);
+        const bool axis = most.by == LIMITED_SPEED && p->feed * override >= p->cap;
+        return axis ? most : (struct limited){ .by = LIMITED_FEED };
+    }
+    if (c->place.gain < 0.0 && speed_profile_nears_end(&m->profile, 0.0)) {
+        return stop;
+    }
+    if (p->joint || (c->place.gain < 0.0 && nears_corner(c, m))) {
+        return corner;
+    }
+    return most_taken(c, m, p);
+}
+
+struct limited curve_limited(const struct curve *c, const struct curve_plan *m, double override)
+{
+    if (c->at >= segments_known(m)) {
+        return (struct limited){ .by = LIMITED_STOP };
+    }
+    const struct segment *p = shape_segment(&m->shape, c->at);
+    struct limited told = limited_now(c, m, p, override);
+    told.feed = p->feed;
+    return told;
+}

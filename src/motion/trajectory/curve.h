@@ -9,6 +9,7 @@
 #ifndef CURVE_H
 #define CURVE_H
 
+#include "limited.h"
 #include "speed_profile.h"
 #include "ring.h"
 #include "shape.h"
@@ -75,6 +76,9 @@ void curve_drop(struct curve *c, struct curve_plan *m);
  * rest by speed_profile_stop_way, or up to 1 nm more. [mm] */
 void curve_stop_extent(const struct curve *c, struct curve_plan *m, double low[AXES],
                        double high[AXES]);
+
+/* What limits the motion, an override being above 0. */
+struct limited curve_limited(const struct curve *c, const struct curve_plan *m, double override);
 
 /* Whether it stands; whether it is at the end of a chain that nothing joins any more. */
 bool curve_rests(const struct curve *c);

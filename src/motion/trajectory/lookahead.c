@@ -367,3 +367,92 @@ void lookahead_to_rest(struct lookahead *t, struct ring *r)
 {
     lookahead_advance(t, r, 0.0, INFINITY);
 }
+
+/* Speeds that differ by less than such a share are the same. */
+static const double SAME = 1e-6;
+
+/* What limits a command on its own to body_limit(). */
+static struct limited limited_body(const struct ring *r, int32_t i, double s,
+                                   const struct mechanism *m, double override)
+{
+    const struct ring_entry *n = ring_peek(r, i);
+    const struct command *c = &n->command;
+    const double bend = path_bend(&c->path);
+    double at[AXES], slope[AXES];
+
+    if (n->body < command_speed(c, override)) {
+        const bool jerk = bend_speed(c, bend, 0.0) > n->body * (1.0 + SAME);
+        return (struct limited){ .by = jerk ? LIMITED_JERK : LIMITED_ACCELERATION };
+    }
+    path_at(&c->path, el_min(el_max(s, 0.0), c->path.length), at, slope);
+    return limited_speed(m, slope, body_limit(n, override));
+}
+
+/* Whether a speed has to fall now to be `limit` so much further on, as the mean wants it. */
+static bool slows_for(const struct lookahead *t, double speed, double limit, double dec, double way)
+{
+    const double brake = el_max(0.0, way - limit * t->smooth);
+    return speed * speed * (1.0 + SAME) >= limit * limit + 2.0 * dec * brake;
+}
+
+/* What ahead of the planned motion keeps it to its speed. */
+static struct limited limited_ahead(const struct lookahead *t, const struct ring *r,
+                                    const struct mechanism *m, double override)
+{
+    double way = border(t, r) - t->s; /* to the start of what is looked at */
+
+    for (int32_t i = t->at + !t->turning; i < t->joined; i++) {
+        const struct ring_entry *n = ring_peek(r, i);
+        const double half = lookahead_half(t, r, i), turn = turn_limit(r, i, override);
+        const double dec = el_min(t->dec, n->command.ramp.dec);
+        if (i > t->at && half > 0.0) {
+            if (turn < t->v * (1.0 - SAME) && slows_for(t, t->v, turn, dec, way)) {
+                return (struct limited){ .by = LIMITED_CORNER };
+            }
+            way += 2.0 * half;
+        }
+        const double body = body_limit(n, override);
+        if (body < t->v * (1.0 - SAME) && slows_for(t, t->v, body, dec, way)) {
+            return limited_body(r, i, 0.0, m, override);
+        }
+        way += n->command.path.length - half - lookahead_half(t, r, i + 1);
+    }
+    return (struct limited){ .by = LIMITED_STOP };
+}
+
+static struct limited limited_now(const struct lookahead *t, const struct ring *r,
+                                  const struct mechanism *m, double override)
+{
+    if (lookahead_at_end(t, r)) {
+        return (struct limited){ .by = LIMITED_STOP };
+    }
+    const struct limit_segment p = next_limit_segment(t, r, override);
+    const double own =
+        t->turning ? turn_limit(r, t->at, override) : body_limit(ring_peek(r, t->at), override);
+    const double way = p.end - t->s;
+    const bool brakes = t->v * t->v * (1.0 + SAME) >= p.leave * p.leave + 2.0 * p.dec * way;
+
+    if (t->v < p.top * (1.0 - SAME) && !brakes) {
+        const bool lags = t->smooth > 0.0 && t->out_v <= 0.0;
+        return (struct limited){ .by = lags ? LIMITED_JERK : LIMITED_ACCELERATION };
+    }
+    if (t->v < own * (1.0 - SAME)) {
+        for (int32_t i = 0; i < t->caps; i++) {
+            if (t->s < t->cap[i].until - t->base && t->v >= t->cap[i].speed * (1.0 - SAME)) {
+                return (struct limited){ .by = LIMITED_CORNER };
+            }
+        }
+        return limited_ahead(t, r, m, override);
+    }
+    return t->turning ? (struct limited){ .by = LIMITED_CORNER }
+                      : limited_body(r, t->at, t->s, m, override);
+}
+
+struct limited lookahead_limited(const struct lookahead *t, const struct ring *r,
+                                 const struct mechanism *m, double override)
+{
+    struct limited told = limited_now(t, r, m, override);
+
+    told.feed = ring_peek(r, t->at)->command.feed;
+    return told;
+}

@@ -15,6 +15,7 @@
 #ifndef LOOKAHEAD_H
 #define LOOKAHEAD_H
 
+#include "limited.h"
 #include "ring.h"
 
 enum {
@@ -86,6 +87,10 @@ void lookahead_drop(struct lookahead *t, struct ring *r);
 
 /* Let the planned motion go to where an override of 0 brings it to rest. */
 void lookahead_to_rest(struct lookahead *t, struct ring *r);
+
+/* What limits the planned motion, an override being above 0. */
+struct limited lookahead_limited(const struct lookahead *t, const struct ring *r,
+                                 const struct mechanism *m, double override);
 
 /* Half length of the corner at the start of a command of the chain; 0: it has none. [mm] */
 double lookahead_half(const struct lookahead *t, const struct ring *r, int32_t i);

@@ -112,3 +112,18 @@ void mix_extent(const struct mix *x, const double rest[AXES], double low[AXES], 
         }
     }
 }
+
+struct limited mix_limited(const struct mix *x, const struct mechanism *m)
+{
+    const struct mix_move *newest = &x->move[x->count - 1];
+    const struct scurve_start now = profile_state(&newest->profile);
+    double at[AXES], slope[AXES];
+
+    if (newest->command.type == COMMAND_DELAY) {
+        return (struct limited){ .by = LIMITED_DWELL };
+    }
+    path_at(&newest->command.path, now.s, at, slope);
+    struct limited told = limited_profile(&newest->profile, limited_speed(m, slope, now.v));
+    told.feed = newest->command.feed;
+    return told;
+}

@@ -6,6 +6,7 @@
 #define MIX_H
 
 #include "command.h"
+#include "limited.h"
 
 struct mix_move {
     struct command command;
@@ -41,6 +42,9 @@ bool mix_rests(const struct mix *x, bool held);
 
 /* A command other than a delay can. */
 bool mix_moves(const struct mix *x);
+
+/* What limits the newest command. */
+struct limited mix_limited(const struct mix *x, const struct mechanism *m);
 
 /* Time until the last comes to its end, or to rest before. [s] */
 double mix_left(const struct mix *x);

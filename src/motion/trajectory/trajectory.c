@@ -586,3 +586,40 @@ bool trajectory_point(struct trajectory *p, const struct trajectory_beside *b,
     point->outputs.spindle = outputs_spindle(&p->surface, p->outputs.spindle, point->place[0]);
     return reached;
 }
+
+/* Axes that move by themselves: what limits the one that is under way longest. */
+static struct limited axes_limited(const struct axes *a)
+{
+    const int last = axes_last(a);
+    struct axes soon = *a;
+    double place, now, then;
+
+    axes_advance(&soon, 1e-6);
+    axes_state(a, last, &place, &now);
+    axes_state(&soon, last, &place, &then);
+    const bool gains = fabs(then) > fabs(now), loses = fabs(then) < fabs(now);
+    return (struct limited){ .by = gains   ? LIMITED_ACCELERATION
+                                   : loses ? LIMITED_STOP
+                                           : LIMITED_SPEED,
+                             .axis = loses ? 0 : last + 1,
+                             .feed = a->axis[last].limits.speed };
+}
+
+struct limited trajectory_limited(const struct trajectory *p, const struct trajectory_beside *b,
+                                  const struct mechanism *m)
+{
+    const double override = in_force(p, false);
+
+    if (brakes(p) || p->stopped || p->confirming || trajectory_waits(p, b->ring)) {
+        return (struct limited){ .by = LIMITED_WAIT };
+    }
+    if (!trajectory_busy(p)) {
+        return (struct limited){ .by = LIMITED_STOP };
+    }
+    switch (p->motion) {
+    case TRAJECTORY_CHAIN: return lookahead_limited(&p->lookahead, b->ring, m, override);
+    case TRAJECTORY_CURVE: return curve_limited(&p->curve, b->curve, override);
+    case TRAJECTORY_AXES:  return axes_limited(&p->axes);
+    default:               return mix_limited(&p->mix, m);
+    }
+}

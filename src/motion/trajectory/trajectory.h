@@ -149,6 +149,10 @@ double trajectory_advance(struct trajectory *p, const struct trajectory_beside *
 bool trajectory_point(struct trajectory *p, const struct trajectory_beside *b,
                       const struct mechanism *m, double dt, struct point *point);
 
+/* What limits the motion at the latest point; at rest, LIMITED_STOP. */
+struct limited trajectory_limited(const struct trajectory *p, const struct trajectory_beside *b,
+                                  const struct mechanism *m);
+
 /* The point is taken. Until then an earlier *p can be put back: chain and curve keep what they
  * need. */
 void trajectory_accept(struct trajectory *p, const struct trajectory_beside *b,

@@ -153,6 +153,7 @@ def archive(folder: Path, out: Path, fmi: int, compiled: CompilerOutput, target:
         for extra in (
             *folder.glob("linear.toml"),
             *folder.glob("causes.toml"),
+            *folder.glob("limits.toml"),
             *out.glob("*.json"),
         ):
             files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()

@@ -1,0 +1,92 @@
+/* plan_file - writes the commanded motion of a whole program, a row for each DDA time, to a NumPy
+ * file, before the run begins. */
+#ifndef PLAN_FILE_H
+#define PLAN_FILE_H
+
+#include "fmu_output.h"
+#include "preview.h"
+
+/* [s] The longest motion that is written: a day. */
+#define PLAN_LONGEST 86400.0
+
+/* A row; its members are those of plan_head(), little-endian, without gaps. */
+struct plan_row {
+    double time;        /* [s] end of the DDA time */
+    double place[AXES]; /* [mm] */
+    double speed, feed; /* [mm/s] along the path: driven, programmed */
+    int32_t line, command;
+    int32_t cause, axis; /* what limits the motion: limited.h */
+};
+
+struct plan_file {
+    FILE *file;
+    double frame; /* [s] DDA time */
+    int64_t rows;
+};
+
+/* The header of format 1.0, always as long. */
+static void plan_head(const struct plan_file *f)
+{
+    enum { LENGTH = 246 }; /* with the ten bytes before it a multiple of 64 */
+    char text[LENGTH + 1];
+    const int n = snprintf(text, sizeof text,
+                           "{'descr': [('time', '<f8'), ('place', '<f8', (%d,)), ('speed', '<f8'), "
+                           "('feed', '<f8'), ('line', '<i4'), ('command', '<i4'), "
+                           "('cause', '<i4'), ('axis', '<i4')], "
+                           "'fortran_order': False, 'shape': (%lld,), }",
+                           AXES, (long long)f->rows);
+
+    memset(text + n, ' ', (size_t)(LENGTH - n));
+    text[LENGTH - 1] = '\n';
+    rewind(f->file);
+    fwrite("\x93NUMPY\x01\x00", 1, 8, f->file);
+    fputc(LENGTH % 256, f->file);
+    fputc(LENGTH / 256, f->file);
+    fwrite(text, 1, LENGTH, f->file);
+}
+
+static void plan_point(void *to, const struct point *p, const struct limited *l)
+{
+    struct plan_file *f = to;
+    struct plan_row row = { .time = (double)(f->rows + 1) * f->frame,
+                            .speed = p->feed,
+                            .feed = l->feed,
+                            .line = p->line,
+                            .command = p->command,
+                            .cause = (int32_t)l->by,
+                            .axis = l->axis };
+
+    memcpy(row.place, p->place, sizeof row.place);
+    fwrite(&row, sizeof row, 1, f->file);
+    f->rows++;
+}
+
+/* Write the plan of a program by a library at rest, which is left where the program ends. Returns
+ * NULL, or what is wrong; then there is no new file and an old one is untouched. */
+static const char *plan_write(const char *name, const struct output_input *input, int inputs,
+                              struct mcc *m, const struct source *s)
+{
+    const double frame = machine_dda_time(&m->machine), most = PLAN_LONGEST / frame;
+    struct output o;
+    int bad;
+    const char *why = output_check(name, input, inputs);
+    why = why ? why : output_begin(&o, name);
+    if (why) {
+        return why;
+    }
+    errno = 0;
+    struct plan_file f = { o.file, frame, 0 };
+    plan_head(&f);
+    const enum preview_end end = preview_run(m, s, (int64_t)most, plan_point, &f);
+    plan_head(&f);
+    why = output_end(&o, true);
+    why = why                   ? why
+          : end == PREVIEW_LONG ? "the program takes more than a day"
+                                : output_show(&o, 1, &bad);
+    if (why) {
+        output_drop(&o, 1);
+    }
+    return why;
+}
+
+#endif
