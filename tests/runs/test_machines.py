@@ -13,6 +13,7 @@ from refusals import refusal
 
 import motionfmu
 from motionfmu.scenarios import package_files
+from motionfmu.scenarios.machine_limits import AxisLimit
 
 MACHINES = ROOT / "src/motionfmu/machines"
 # A program for each machine of the library that takes one, and what it needs beside it.
@@ -171,3 +172,115 @@ def test_the_command_runs_a_program_and_lists_machines(tmp_path: Path) -> None:
     ran = call("run", "square.ngc", "--machine", "mine", "--stop", "0.1")
     assert ran.returncode == 0 and "square: no checks: nothing was judged" in ran.stdout
     assert "hold" not in ran.stdout and "found" not in ran.stdout
+
+
+AXES = """
+[[axis]]
+name = "Z"
+kind = "linear"
+"""
+SPEED = 'speed = { signal = "drives.speed", '
+
+
+def own_machine(folder: Path, text: str) -> motionfmu.Machine:
+    return motionfmu.machine(machine_at(folder, 'extends = "mill3"\n' + text))
+
+
+def limits_of(name: str, **values: object) -> dict[tuple[str, str], AxisLimit]:
+    """The limits of a machine of the library that has these values, by axis and figure."""
+    tables = {"machine": name, "stop": 1.0}
+    plan = motionfmu.scenario(tables)
+    return {(x.axis.name, x.figure): x for x in plan.axis_limits(values)}
+
+
+@pytest.mark.parametrize("name", sorted(package_files.machines()))
+def test_every_machine_says_its_axes_and_what_limits_them(name: str) -> None:
+    axes = motionfmu.machine(name).axes
+    found = limits_of(name)
+    assert axes and {a for a, _ in found} == {a.name for a in axes}
+    for axis in axes:
+        travel, speed = found[axis.name, "travel"], found.get((axis.name, "speed"))
+        assert (travel.low is None) or travel.low < travel.high
+        assert speed is None or speed.limit > 0
+        assert travel.signal.port.shape in ((), (6,))
+
+
+def test_a_limit_is_the_value_of_the_run_in_the_unit_of_the_signal() -> None:
+    rows = limits_of("xy_table", **{"mcc.max_rpm": [900.0, 800.0, 1.0, 1.0, 1.0, 1.0]})
+    assert (rows["X", "speed"].limit, rows["Y", "speed"].limit) == (900.0, 800.0)
+    assert rows["X", "speed"].unit == "rpm" and rows["Y", "speed"].element == 1
+    assert rows["X", "voltage"].limit == 10.0
+    # [rpm] beside a motor speed in rad/s, and degrees beside an angle in rad
+    assert limits_of("first_order")["X", "speed"].limit == pytest.approx(3000 * 2 * np.pi / 60)
+    arm = limits_of("robot6")
+    assert arm["J2", "travel"].low == pytest.approx(np.radians(-155))
+    assert (arm["J6", "acceleration"].unit, arm["J6", "acceleration"].derivative) == ("rad/s2", 1)
+    assert arm["J6", "acceleration"].limit == pytest.approx(np.radians(1500))
+    # the library watches the following error only where its limit is not 0
+    assert rows["X", "following_error"].limit is None
+    watched = limits_of("xy_table", **{"mcc.track_error_limit": 500})
+    assert watched["Y", "following_error"].limit == 500
+
+
+def test_signals_of_limits_are_recorded_unasked(tmp_path: Path) -> None:
+    line = 'lag = { signal = "machine.screw_force", limit = [5, 6, 7], continuous = 2.5 }\n'
+    made = own_machine(tmp_path / "m", "[limits]\n" + line)
+    (tmp_path / "a.ngc").write_text("M2\n")
+    plan = made.scenario(tmp_path / "a.ngc")
+    assert "machine.screw_force" in {e.name for e in plan.ends}
+    rows = [x for x in plan.axis_limits() if x.figure == "lag"]
+    assert [(x.axis.name, x.limit, x.continuous) for x in rows] == [
+        ("X", 5.0, 2.5),
+        ("Y", 6.0, 2.5),
+        ("Z", 7.0, 2.5),
+    ]
+    # an axis that the machine has and a scenario does not use is taken away by its name
+    lone = motionfmu.load(ROOT / "scenarios/compensation")
+    assert [a.name for a in lone.document.axes] == ["X"]
+    # a scenario that moves other rows says so
+    brake = motionfmu.load(ROOT / "scenarios/holding_brake")
+    rows = [x for x in brake.axis_limits() if x.figure == "torque"]
+    assert [(x.axis.name, x.element) for x in rows] == [("Z", 2), ("U", 3)]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "what"),
+    [
+        (AXES, 5, "name = 'Z': axis Z has it, too"),
+        (AXES.replace("Z", "W") + "row = 1\n", 7, "row = 1: axis X has it, too"),
+        (AXES.replace("Z", "W") + "row = 7\n", 7, "machine.table_position has 6 elements: axis W"),
+        (AXES.replace("linear", "round"), 6, "kind = 'round': input should be 'linear' or"),
+        (AXES.replace("Z", "1"), 5, "name = '1': string should match pattern"),
+        (AXES.replace("Z", "W") + "raw = 4\n", 7, "unknown key 'raw'; did you mean 'row'?"),
+        ("[limits]\nspeed = 3\n", 4, "limits.speed = 3: input should be a valid"),
+        ("[limits]\nSpeed = {}\n", 4, "string should match pattern"),
+        (f"[limits]\n{SPEED} limt = 3 }}\n", 4, "unknown key 'limt'; did you mean 'limit'?"),
+        (f"[limits]\n{SPEED} limit = true }}\n", 4, "limits.speed.limit = True: a number, a list"),
+        (f"[limits]\n{SPEED} limit = [1, 2] }}\n", 4, "limit = [1.0, 2.0]: a number for each of 3"),
+        (f"[limits]\n{SPEED} limit = 'mcc.feed' }}\n", 4, "mcc.feed [mm/min] limits speed [rpm]"),
+        (f"[limits]\n{SPEED} low = 'mcc.fed' }}\n", 4, "no variable 'fed'; did you mean 'feed'?"),
+        (f"[limits]\n{SPEED} low = 'mcc.queue' }}\n", 4, "mcc.queue is no parameter (output)"),
+        (
+            f"[limits]\n{SPEED} when = 'mcc.program' }}\n",
+            4,
+            "mcc.program is String: a number wanted",
+        ),
+        ("[limits]\nspeed = { signal = 'mcc.feed' }\n", 4, "mcc.feed is no output (parameter)"),
+        (
+            "[limits]\nspeed = { signal = 'mcc.path_feed' }\n",
+            4,
+            "is a single value: an element for",
+        ),
+        (
+            "[limits.speed]\nderivative = 4\n",
+            4,
+            "limits.speed.derivative = 4: input should be less",
+        ),
+        ('without = ["axis"]\n', 0, "limits of which axes? [[axis]] is missing"),
+    ],
+)
+def test_wrong_axes_and_limits(tmp_path: Path, text: str, line: int, what: str) -> None:
+    (tmp_path / "a.ngc").write_text("M2\n")
+    told = refusal(lambda: own_machine(tmp_path / "m", text).scenario(tmp_path / "a.ngc"))
+    where = f"{tmp_path}/m/machine.toml:{line}: " if line else f"{MACHINES}/xy_table/machine.toml:"
+    assert any(t.startswith(where) and what in t for t in told), told

@@ -29,6 +29,8 @@ class Machine:
         The machine.toml.
     name : str
         Of its folder.
+    axes : list of MachineAxis
+        Name, kind (``linear`` or ``rotary``) and row of each in arrays, from 1.
 
     Raises
     ------
@@ -39,7 +41,8 @@ class Machine:
     def __init__(self, path: str | Path) -> None:
         self.file = machine_file(path, Path.cwd())
         self.name = self.file.parent.name
-        self._signals = self._made({"stop": 1.0}, self.name, "").body.signals
+        document = self._made({"stop": 1.0}, self.name, "")
+        self._signals, self.axes = document.body.signals, document.axes
 
     def __repr__(self) -> str:
         return f"<Machine {self.name}: {self.file}>"

@@ -13,6 +13,7 @@ from motionfmu.scenarios import (
     agreement,
     contour_signals,
     iso9283_signals,
+    machine_limits,
     rates,
     recording,
     system,
@@ -87,7 +88,8 @@ class RunPlan:
         """Look up what is recorded, drawn and checked."""
         resolver, body = self.resolver, self.document.body
         listed = faults.of(lambda: recording.chosen(resolver, body.record.signals)) or []
-        for wanted in (contour_signals, iso9283_signals, view_signals, tool_signals):
+        more = (contour_signals, iso9283_signals, view_signals, tool_signals, machine_limits)
+        for wanted in more:
             with faults.each():
                 listed += recording.chosen(resolver, wanted.wanted(resolver))
         if body.iso9283 is not None:
@@ -236,6 +238,11 @@ class RunPlan:
         if self.document.body.contour is None:
             return None
         return contour_signals.library_of(self.resolver)
+
+    def axis_limits(self, given: Mapping[str, Any] | None = None) -> list[machine_limits.AxisLimit]:
+        """Each figure of the machine's axes, with what limits it in a run with these values."""
+        made = self.resolved(Options(set=given or {}))
+        return machine_limits.axis_limits(self.resolver, made.settings)
 
     def disagreements(self, given: Mapping[str, Any]) -> list[str]:
         """What two FMUs state differently of one thing in a run with the values of `given`."""

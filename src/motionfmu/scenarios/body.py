@@ -1,8 +1,10 @@
 """The tables of a scenario: their keys and types."""
 
-from typing import Annotated, Any
+import math
+from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator
+from pydantic_core import PydanticCustomError
 
 from motionfmu.base.toml_lines import KEY_MAX
 from motionfmu.scenarios.analyses import Iso9283, View, Waveform
@@ -15,6 +17,8 @@ COMPONENTS_MAX = 64
 # A component's name becomes that of an FMU instance and of a file; names of the recorder's own
 # components begin with "_".
 Component = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,63}$")]
+# A figure of the axes, such as speed.
+FigureName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
 # So many names and patterns at most, for each is compared with all variables of all components.
 LISTED_MAX = 1000
 NAMED_MAX = 10_000  # exact names: elements of arrays, where an SSP has FMUs of FMI 2
@@ -106,6 +110,43 @@ class MachineSignals(BaseModel):
     done: Name | None = None
 
 
+class MachineAxis(BaseModel):
+    """An axis of a machine."""
+
+    model_config = _STRICT
+    name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
+    kind: Literal["linear", "rotary"]
+    row: int | None = Field(default=None, ge=1)  # its element of arrays, from 1
+
+
+def _bound(x: Any) -> Any:
+    """A number, one for each axis, or a name, as they come from TOML."""
+    listed = x if isinstance(x, list | tuple) else [x]
+    numbers = all(isinstance(n, int | float) and not isinstance(n, bool) for n in listed)
+    if isinstance(x, str) and 0 < len(x) <= KEY_MAX:
+        return x
+    if not (numbers and listed and all(math.isfinite(n) for n in listed)):
+        told = "a number, a list of one for each axis, or the name of a parameter wanted"
+        raise PydanticCustomError("bound", told)
+    return tuple(map(float, x)) if isinstance(x, list | tuple) else float(x)
+
+
+Bound = Annotated[float | tuple[float, ...] | str, PlainValidator(_bound)]
+
+
+class FigureLimit(BaseModel):
+    """Where the signal of a figure of the axes is, and what limits it."""
+
+    model_config = _STRICT
+    signal: Name
+    derivative: int = Field(default=0, ge=0, le=3)  # the figure is this derivative by time
+    limit: Bound | None = None  # of the figure's size
+    low: Bound | None = None
+    high: Bound | None = None
+    continuous: Bound | None = None  # of its RMS
+    when: Name | None = None  # parameter; where it is 0 or false there is no limit
+
+
 def _listed(x: Any) -> Any:
     """A list of tables of bounds; a single table becomes a list of one."""
     return tuple(x) if isinstance(x, list | tuple) else (x,)
@@ -122,6 +163,8 @@ class Body(BaseModel):
     model_config = _STRICT
     machine: Name | None = None
     signals: MachineSignals = MachineSignals()
+    axis: list[MachineAxis] = Field(default_factory=list, max_length=LISTED_MAX)
+    limits: dict[FigureName, FigureLimit] = Field(default_factory=dict, max_length=FIGURES_MAX)
     stop: Annotated[float, Field(gt=0)] | Name
     limit: float | None = Field(default=None, gt=0)
     settle: float | None = Field(default=None, ge=0)
@@ -154,6 +197,8 @@ MODELS: dict[str, type[BaseModel]] = {
     "contour": Contour,
     "record": Record,
     "signals": MachineSignals,
+    "axis": MachineAxis,
+    "limits": FigureLimit,
     "figure": Figure,
     "plot": Plot,
     "iso9283": Iso9283,

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
-from motionfmu.scenarios.body import Body
+from motionfmu.scenarios.body import Body, MachineAxis
 from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.table_sources import (
     ARRAYS,
@@ -24,7 +24,7 @@ from motionfmu.scenarios.table_sources import (
 )
 
 # Tables whose keys are names that the user chooses.
-OPEN = ("component", "connect", "set", "check")
+OPEN = ("component", "connect", "set", "check", "limits")
 ABOUT = "the first line is a comment that says what the scenario shows"
 # The fewest entries that a list may have, by its key.
 EMPTY = {"signals": 'the name of an output, or a pattern such as "card.*", wanted'}
@@ -53,6 +53,12 @@ class Document:
     def files(self) -> list[Path]:
         """The scenario.toml, those that it extends and its machine's."""
         return [Path(s.name) for s in self.sources if s.lines is not None]
+
+    @property
+    def axes(self) -> list[MachineAxis]:
+        """The machine's axes, each with its row."""
+        listed = enumerate(self.body.axis, 1)
+        return [a if a.row else a.model_copy(update={"row": k}) for k, a in listed]
 
     def beside(self, name: str) -> Path | None:
         """A file of this name beside the scenario, or beside one that it extends."""
@@ -244,11 +250,13 @@ def _missing(found: Any, place: tuple[str, ...], sources: Sources) -> str:
     return f"{_place(sources, *_table_key(place[:-1]))}: {place[-1]} is missing"
 
 
-# CCN 17: each table that pydantic names in its own way has its exception here.
+# CCN 18: each table that pydantic names in its own way has its exception here.
 def _one(found: Any, place: tuple[str, ...], sources: Sources) -> tuple[tuple[str, ...], str]:
     """A fault's place, without pydantic's names for the alternatives of a type, and its text."""
     top = place[0]
-    if top in OPEN and top != "check":
+    if top == "limits":
+        place = place[:3]
+    elif top in OPEN and top != "check":
         place = place[:2]  # what follows is a type, or the place in a list
     elif top in ("stop", "limit", "settle", "step"):
         place = place[:1]
@@ -281,6 +289,8 @@ def _table_key(place: tuple[str, ...]) -> tuple[str, str]:
     if len(place) == 1:
         return "", place[0]
     depth = 1
-    if place[0] in ARRAYS:
+    if place[0] == "limits":
+        depth = 2
+    elif place[0] in ARRAYS:
         depth = 4 if place[2:3] == ("plot",) and len(place) > 3 else 2
     return ".".join(place[:depth]), place[depth] if len(place) > depth else ""

@@ -15,7 +15,7 @@ DEPTH_MAX = 8  # files that extend one another
 # Lists to which a file adds; any other list takes the place of the one it extends.
 JOINED = (("", "leave"), ("record", "signals"))
 # Arrays of tables, to which a file adds, too.
-ARRAYS = ("drive", "figure", "waveform", "contrary")
+ARRAYS = ("axis", "drive", "figure", "waveform", "contrary")
 # Keys that say where tables come from, and are none of theirs.
 ORIGINS = ("extends", "without")
 # What a machine does not say, for it has no job.
@@ -251,8 +251,9 @@ def _taken(tables: Tables, name: str) -> bool:
 
 
 def _titles(row: Any) -> list[Any]:
-    """What names a row of an array: a figure's title, a driven input, what a contrary is off."""
-    return [row.get(key) for key in ("title", "input", "off")] if isinstance(row, dict) else []
+    """What names a row: a figure's title, an axis, a driven input, what a contrary is off."""
+    names = ("title", "name", "input", "off")
+    return [row.get(key) for key in names] if isinstance(row, dict) else []
 
 
 def _near(tables: Tables, name: str) -> str:
