@@ -1,0 +1,221 @@
+"""The commanded motion of a whole program, by the controller of a scenario without its machine."""
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.base.errors import InputError
+from motionfmu.scenarios import fmus
+from motionfmu.scenarios.document import made
+
+if TYPE_CHECKING:
+    from motionfmu.run import Scenario
+
+PROGRAM, FILE = "program", "plan_file"
+# What limits the motion, by the numbers of src/motion/trajectory/limited.h.
+CAUSES = {
+    1: "feed",
+    2: "speed",
+    3: "acceleration",
+    4: "jerk",
+    5: "corner",
+    6: "exact stop",
+    7: "dwell",
+    8: "waiting",
+}
+DWELL = 7
+
+
+@dataclass(frozen=True)
+class Share:
+    """Time for which one limit counts.
+
+    Attributes
+    ----------
+    cause : str
+        A value of `CAUSES`.
+    axis : str
+        The axis whose limit it is; empty for one of the path.
+    time : float
+        [s]
+    """
+
+    cause: str
+    axis: str
+    time: float
+
+
+@dataclass(frozen=True)
+class Block:
+    """A line of the program.
+
+    Attributes
+    ----------
+    line : int
+    time : float
+        [s] while it moves or dwells.
+    lost : float
+        [s] beyond the time at its programmed feed, or of a rapid at its highest speed; a dwell
+        loses none.
+    shares : list of Share
+        The longest first.
+    """
+
+    line: int
+    time: float
+    lost: float
+    shares: list[Share]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The commanded motion of a program.
+
+    Attributes
+    ----------
+    frame : float
+        [s] between two rows.
+    rows : (n,) structured ndarray
+        ``time`` [s], ``place`` (6,) [mm], ``speed`` and programmed ``feed`` along the path [mm/s],
+        ``line``, ``command``, ``cause`` (a key of `CAUSES`), ``axis`` (from 1; 0 of the path).
+    axes : tuple of str
+        Names of the six axes.
+    """
+
+    frame: float
+    rows: NDArray[Any]
+    axes: tuple[str, ...]
+
+    @property
+    def time(self) -> float:
+        """Cycle time [s]."""
+        return len(self.rows) * self.frame
+
+    def shares(self, rows: NDArray[Any] | None = None) -> list[Share]:
+        """Where the time goes, the longest first; the sum is the time of the rows, by default all.
+
+        Parameters
+        ----------
+        rows : structured ndarray, optional
+            Some of `rows`.
+        """
+        found = self.rows if rows is None else rows
+        keys, counts = np.unique(found["cause"] * 8 + found["axis"], return_counts=True)
+        shares = [
+            Share(CAUSES[int(k) // 8], self.axes[k % 8 - 1] if k % 8 else "", int(n) * self.frame)
+            for k, n in zip(keys, counts, strict=True)
+        ]
+        return sorted(shares, key=lambda s: -s.time)
+
+    def blocks(self, most: int | None = None) -> list[Block]:
+        """Lines of the program by what they lose, the most first.
+
+        Parameters
+        ----------
+        most : int, optional
+            So many at most.
+        """
+        rows = self.rows
+        driven = np.divide(
+            rows["speed"], rows["feed"], out=np.zeros(len(rows)), where=rows["feed"] > 0.0
+        )
+        lost = np.where(rows["cause"] == DWELL, 0.0, (1.0 - driven) * self.frame)
+        lines, of = np.unique(rows["line"], return_inverse=True)
+        total, missed = np.bincount(of) * self.frame, np.bincount(of, lost)
+        order = np.argsort(-missed, kind="stable")[:most]
+        return [
+            Block(int(lines[k]), float(total[k]), float(missed[k]), self.shares(rows[of == k]))
+            for k in order
+        ]
+
+    def numbers(self) -> dict[str, Any]:
+        """Cycle time, where it goes, and the ten lines that lose most, for JSON."""
+
+        def listed(shares: Sequence[Share]) -> list[dict[str, Any]]:
+            return [{"cause": s.cause, "axis": s.axis, "time": s.time} for s in shares]
+
+        blocks = [
+            {"line": b.line, "time": b.time, "lost": b.lost, "where": listed(b.shares)}
+            for b in self.blocks(10)
+        ]
+        return {"time": self.time, "where": listed(self.shares()), "blocks": blocks}
+
+
+def controller(scenario: "Scenario") -> str | None:
+    """The component that can plan a program and has one; None if there is none."""
+    settings = {s.end.name: s.values for s in _settings(scenario, {})}
+    for name, fmu in scenario.document.body.component.items():
+        if fmus.is_ours(fmu) and FILE in fmus.ports(fmu):
+            program = settings.get(f"{name}.{PROGRAM}", ("",))
+            if program[0]:
+                return name
+    return None
+
+
+def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
+    """Plan the program of a scenario as its controller will command it.
+
+    Waits for an operator, an input, a probe or an axis' position take no time.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    set : mapping, optional
+        Values by ``component.variable``, stronger than the scenario's.
+
+    Returns
+    -------
+    Plan
+
+    Raises
+    ------
+    InputError
+        No controller of the scenario plans programs, or it refuses one.
+    """
+    name = controller(scenario)
+    if name is None:
+        told = "none of its components plans a part program"
+        raise InputError(f"{scenario.name}: {told}")
+    fmu = scenario.document.body.component[name]
+    values: dict[str, Any] = {}
+    for s in _settings(scenario, set or {}):
+        if s.end.component == name:
+            values[s.end.name] = list(s.values) if s.end.port.shape else s.values[0]
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "plan.npy"
+        tables = {
+            "component": {name: fmu},
+            "step": 1e-3,
+            "stop": 1e-3,
+            "record": {"signals": [f"{name}.done"]},
+            "leave": [f"{name}.*"],
+            "set": values | {f"{name}.{FILE}": str(file)},
+        }
+        from motionfmu.run import Scenario
+
+        alone = Scenario(made(tables, scenario.name, Path.cwd(), ""))
+        try:
+            alone.run(engine="native")
+        except InputError as error:
+            raise scenario.located(error, scenario.resolved(_options({})), set or {}) from None
+        rows = np.load(file)
+    axes = ["X", "Y", "Z", "U", "V", "W"]
+    for axis in scenario.document.axes:
+        if axis.row and axis.row <= len(axes):
+            axes[axis.row - 1] = axis.name
+    return Plan(float(rows["time"][0]) if len(rows) else 0.0, rows, tuple(axes))
+
+
+def _options(set: Mapping[str, Any]) -> Any:
+    from motionfmu.run.run_plan import Options
+
+    return Options(set=set)
+
+
+def _settings(scenario: "Scenario", set: Mapping[str, Any]) -> Sequence[Any]:
+    return scenario.resolved(_options(set)).settings

@@ -1,0 +1,111 @@
+"""Figures of a machine's axes in a run, each beside what limits it."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.run.decimate import Read, blocks, reader
+from motionfmu.run.run_record import RunRecord
+from motionfmu.scenarios.machine_limits import AxisLimit
+
+# Share of a limit from which on a figure counts as at it.
+REACHED = 0.999
+
+
+@dataclass(frozen=True)
+class AxisFigure:
+    """A figure of an axis over a run, in the unit of its limit.
+
+    Attributes
+    ----------
+    limit : AxisLimit
+        Axis, figure, unit and what limits it.
+    low, high : float
+        Least and greatest value.
+    largest, at : float
+        Value of the largest size, and when [s].
+    rms : float
+    time_at_limit : float
+        [s] at or beyond `limit.limit`, `low` or `high`.
+    """
+
+    limit: AxisLimit
+    low: float
+    high: float
+    largest: float
+    at: float
+    rms: float
+    time_at_limit: float
+
+    @property
+    def share(self) -> float | None:
+        """The largest size over the limit; None without one."""
+        return abs(self.largest) / self.limit.limit if self.limit.limit else None
+
+    @property
+    def continuous_share(self) -> float | None:
+        """The RMS over what may last; None where that is not known."""
+        return self.rms / self.limit.continuous if self.limit.continuous else None
+
+    def numbers(self) -> dict[str, Any]:
+        """The same for JSON."""
+        limit = self.limit
+        bounds = {k: getattr(limit, k) for k in ("limit", "low", "high", "continuous")}
+        return {
+            "axis": limit.axis.name,
+            "figure": limit.figure,
+            "unit": limit.unit,
+            "min": self.low,
+            "max": self.high,
+            "largest": self.largest,
+            "at": self.at,
+            "rms": self.rms,
+            "time_at_limit": self.time_at_limit,
+            "limits": {k: v for k, v in bounds.items() if v is not None},
+        }
+
+
+def axis_figures(run: RunRecord, limits: list[AxisLimit]) -> list[AxisFigure]:
+    """Figures whose signal was recorded, from the start to the end of the run."""
+    found = []
+    for limit in limits:
+        name = limit.signal.name
+        if name in run.signals and len(run.time) > limit.derivative + 1:
+            found.append(_figure(run.time, reader(run.signals[name]), limit))
+    return found
+
+
+def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigure:
+    """Go through a signal in blocks; a derivative is a difference of neighbouring samples."""
+    n, step = limit.derivative, float(time[1] - time[0])
+    tail, low, high, squares, count, reached = np.zeros(0), np.inf, -np.inf, 0.0, 0, 0
+    largest, at = 0.0, float(time[0])
+    for block in blocks(len(time), read):
+        raw = np.asarray(block, float)
+        x = raw if raw.ndim == 1 else raw[:, limit.element or 0]
+        x = np.concatenate([tail, x])
+        tail = x[len(x) - n :] if n else tail
+        x = np.diff(x, n) / step**n if n else x
+        if not len(x):
+            continue
+        k = int(np.argmax(np.abs(x)))
+        if abs(x[k]) > abs(largest):
+            largest, at = float(x[k]), float(time[min(count + k + n, len(time) - 1)])
+        low, high = min(low, float(x.min())), max(high, float(x.max()))
+        squares, count = squares + float(x @ x), count + len(x)
+        reached += int(np.count_nonzero(_at_limit(x, limit)))
+    rms = float(np.sqrt(squares / count)) if count else 0.0
+    return AxisFigure(limit, low, high, largest, at, rms, reached * step)
+
+
+def _at_limit(x: NDArray[np.float64], limit: AxisLimit) -> NDArray[np.bool_]:
+    at = np.zeros(len(x), bool)
+    if limit.limit:
+        at |= np.abs(x) >= REACHED * limit.limit
+    if limit.low is not None:
+        at |= x <= limit.low
+    if limit.high is not None:
+        at |= x >= limit.high
+    return at
