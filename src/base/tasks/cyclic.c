@@ -8,7 +8,7 @@ void cyclic_start(struct cyclic *s, const struct cyclic_config *config)
     processor_start(&s->processor, config->tasks);
     s->running = -1;
     for (int i = 0; i < config->tasks; i++) {
-        s->processor.task[i].priority = -config->priority[i];
+        s->processor.task[i].priority = ~config->priority[i]; /* its order, the other way round */
         s->task[i].cycle = config->cycle[i];
         s->task[i].next = config->cycle[i] > 0 ? config->offset[i] : INT64_MAX;
     }

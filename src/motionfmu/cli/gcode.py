@@ -8,7 +8,7 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install, missing
-from motionfmu.cli.common import FAILED, app, bare_table, out, results
+from motionfmu.cli.common import FAILED, Set, app, bare_table, out, results, settings
 
 if TYPE_CHECKING:
     from motionfmu.analysis.gcode import Program
@@ -31,6 +31,11 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         bool, typer.Option("--fanuc", help="As for Fanuc and Haas: P in ms, G65, GOTO.")
     ] = False,
     angles: Annotated[bool, typer.Option("--angles", help="A B C in place of U V W.")] = False,
+    machine: Annotated[
+        str | None,
+        typer.Option(metavar="MACHINE", help="Where its time goes on a machine; see machines."),
+    ] = None,
+    given: Set = [],  # noqa: B006
     strict_feed: Annotated[
         bool, typer.Option("--strict-feed", help="Refuse F above the highest feed.")
     ] = False,
@@ -39,6 +44,11 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
 ) -> None:
     """Check part programs: faults, cycle time, extents, tools; draw their paths."""
+    if machine is not None:
+        good = _on_machine(files, machine, given, folder, as_json)
+        raise typer.Exit(0 if good else FAILED)
+    if given:
+        raise InputError(f"--set {given[0]}: --machine is missing")
     settings: dict[str, Any] = {
         "max_feed": max_feed,
         "speed": rapid / 60.0,
@@ -69,6 +79,55 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         print(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
+
+
+def _on_machine(
+    files: list[Path], machine: str, given: list[str], folder: Path | None, as_json: bool
+) -> bool:
+    """Plan programs as a machine's controller commands them, and tell where their time goes."""
+    from motionfmu.analysis.cycle_time import planned, what_if
+    from motionfmu.report import result_folder
+    from motionfmu.report.cycle_time_section import name_of
+    from motionfmu.report.jobs.gcode_page import clock, plan_page
+    from motionfmu.run import Machine
+
+    values = settings(given)
+    on, told = Machine(machine), {}
+    for file in files:
+        scenario = on.scenario(file, set=values)
+        plan = planned(scenario)
+        lifted = what_if(scenario, plan)
+        found = plan.numbers() | {
+            "what_if": [
+                {"limit": x.title, "axis": x.axis, "set": x.set, "time": x.time, "saved": x.saved}
+                for x in lifted
+            ]
+        }
+        told[str(file)] = found
+        if as_json:
+            continue
+        out.print(f"[bold]{file}[/] on {on.name}  {clock(plan.time)} ({plan.time:.3f} s)")
+        where = bare_table("limited by", "s", "%")
+        for s in plan.shares():
+            where.add_row(name_of(s), f"{s.time:.3f}", f"{100.0 * s.time / plan.time:.1f}")
+        out.print(where)
+        saved = bare_table("a quarter more of", "s", "saves")
+        for x in lifted:
+            if x.saved > 0.0:
+                title = f"{x.title}, {x.axis}" if x.axis else x.title
+                saved.add_row(title, f"{x.time:.3f}", f"{x.saved:.3f}")
+        out.print(saved)
+        target = (folder / f"{file.stem}.gcode") if folder else results(file.stem, "gcode")
+        result_folder.usable(target)
+        with result_folder.whole(target) as part:
+            page = plan_page(f"{file.stem} on {on.name}", plan, lifted)
+            (part / "report.html").write_text(page, encoding="utf-8")
+            text = json.dumps(found, indent=1, allow_nan=False)
+            (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
+        out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+    if as_json:
+        print(json.dumps(told, indent=1, allow_nan=False))
+    return True
 
 
 def _limits(texts: list[str], angles: bool) -> dict[str, Any]:

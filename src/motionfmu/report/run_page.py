@@ -7,6 +7,7 @@ from pathlib import Path
 
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CircularTest
+from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.error_path import ErrorPath, draw
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import (
@@ -135,6 +136,9 @@ def page_text(
     views = add_view(page, scene_of(result, deviations(result) or [from_contour(contour)]))
     add_performance(page, result)
     add_tools(page, result, ran.tools)
+    add_axes(page, ran.axes)
+    if ran.plan is not None:
+        add_cycle_time(page, ran.plan)
     for i, test in enumerate(contour.circles[:CIRCLES_SHOWN]):
         _add_circle(page, f"circle{i}", test)
     add_speed(page, ran)

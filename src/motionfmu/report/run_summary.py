@@ -10,9 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour import ContourResult
+from motionfmu.analysis.cycle_time import Plan, planned
+from motionfmu.analysis.cycle_time.program_plan import controller
 from motionfmu.analysis.linear import LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines
 from motionfmu.base.columns import ROWS
+from motionfmu.base.errors import InputError
 from motionfmu.base.extras import Missing
 from motionfmu.report.html_page import Page
 from motionfmu.report.html_tables import facts
@@ -20,6 +23,7 @@ from motionfmu.report.report_input import ReportInput
 from motionfmu.report.time_charts import Speeds, speed_chart
 from motionfmu.report.view.scene import STANDS, position, tool_signal
 from motionfmu.run import Scenario
+from motionfmu.run.axis_figures import AxisFigure, axis_figures
 from motionfmu.run.decimate import Read, at, blocks, reader
 from motionfmu.run.figures import Chart
 from motionfmu.run.tool_gap import ToolGap, tool_gaps
@@ -51,6 +55,8 @@ class RunSummary:
     speeds: Speeds | None
     gains: tuple[LoopGain, ...]
     tools: tuple[ToolGap, ...]  # each beside its command
+    axes: tuple[AxisFigure, ...] = ()  # of a machine whose limits are known
+    plan: Plan | None = None  # of its program, if the machine names its axes
 
     @property
     def cycle(self) -> float | None:
@@ -67,11 +73,26 @@ class RunSummary:
             "distance": self.distance,
             "position_gains": gains,
             "tools": [tool.numbers() for tool in self.tools],
+            "axes": [axis.numbers() for axis in self.axes],
+            "program": None if self.plan is None else self.plan.numbers(),
         }
 
 
 def summary_of(result: ReportInput, contour: ContourResult | None) -> RunSummary:
     """Find out how a run went."""
+    scenario, given = result.scenario, result.options.get("set", {})
+    axes: tuple[AxisFigure, ...] = ()
+    plan = None
+    if isinstance(scenario, Scenario) and scenario.document.body.axis:
+        axes = tuple(axis_figures(result, scenario.axis_limits(given)))
+        if controller(scenario, given) is not None:
+            with contextlib.suppress(InputError):
+                plan = planned(scenario, given)
+    return replace(_motion_of(result, contour), axes=axes, plan=plan)
+
+
+def _motion_of(result: ReportInput, contour: ContourResult | None) -> RunSummary:
+    """Begin, distance, speeds and gains."""
     scenario, given = result.scenario, result.options.get("set", {})
     gains: tuple[LoopGain, ...] = ()
     with contextlib.suppress(Missing):

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 from html import escape
 
+from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import check_table, warning_list
 from motionfmu.report.iso9283_section import add_iso9283
@@ -50,6 +51,9 @@ def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) ->
     views = add_view(page, scene_of(result, deviations(result)))
     add_performance(page, result)
     add_tools(page, result, ran.tools)
+    add_axes(page, ran.axes)
+    if ran.plan is not None:
+        add_cycle_time(page, ran.plan)
     shown = charts or result.overview()
     add_charts(page, shown, pictures=bool(charts))
     add_speed(page, ran)

@@ -8,7 +8,8 @@ static struct set random_set(uint64_t *seed)
     struct set q = { .wakes = (int)check_random(seed, 0, WAKES),
                      .woken = (int)check_random(seed, 0, 1) };
     for (int i = 0; i < N; i++) {
-        q.c.priority[i] = (int32_t)check_random(seed, 1, 4);
+        static const int32_t numbers[] = { INT32_MIN, -1, 0, INT32_MAX };
+        q.c.priority[i] = numbers[check_random(seed, 0, 3)];
         q.c.cycle[i] = i ? check_random(seed, 5, 60) : 0;
         q.c.offset[i] = i ? check_random(seed, 0, 20) : 0;
         q.time[i] = check_random(seed, 0, 3) ? check_random(seed, 0, 15) : 0;

@@ -121,7 +121,7 @@ def _lifts(
     scenario: "Scenario", set: Mapping[str, Any], factor: float, axes: tuple[str, ...]
 ) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Title, axis and values of each limit that acts."""
-    name = controller(scenario)
+    name = controller(scenario, set)
     if name is None:
         return
     ports = fmus.ports(scenario.document.body.component[name])

@@ -146,9 +146,9 @@ class Plan:
         return {"time": self.time, "where": listed(self.shares()), "blocks": blocks}
 
 
-def controller(scenario: "Scenario") -> str | None:
+def controller(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> str | None:
     """The component that can plan a program and has one; None if there is none."""
-    settings = {s.end.name: s.values for s in _settings(scenario, {})}
+    settings = {s.end.name: s.values for s in _settings(scenario, set or {})}
     for name, fmu in scenario.document.body.component.items():
         if fmus.is_ours(fmu) and FILE in fmus.ports(fmu):
             program = settings.get(f"{name}.{PROGRAM}", ("",))
@@ -177,7 +177,7 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
     InputError
         No controller of the scenario plans programs, or it refuses one.
     """
-    name = controller(scenario)
+    name = controller(scenario, set)
     if name is None:
         told = "none of its components plans a part program"
         raise InputError(f"{scenario.name}: {told}")
@@ -198,11 +198,7 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
         }
         from motionfmu.run import Scenario
 
-        alone = Scenario(made(tables, scenario.name, Path.cwd(), ""))
-        try:
-            alone.run(engine="native")
-        except InputError as error:
-            raise scenario.located(error, scenario.resolved(_options({})), set or {}) from None
+        Scenario(made(tables, scenario.name, Path.cwd(), "")).run(engine="native")
         rows = np.load(file)
     axes = ["X", "Y", "Z", "U", "V", "W"]
     for axis in scenario.document.axes:

@@ -8,7 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.analysis.cycle_time import Lifted, Plan
 from motionfmu.analysis.gcode import Fault, Program, Stroke, Summary
+from motionfmu.report.cycle_time_section import add_cycle_time
 from motionfmu.report.diagram import DOT, Diagram, path_diagram, path_lines
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, table
@@ -73,6 +75,24 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
         told = table(("line", "text", "note"), rows, numeric=3)
         page.section("Notes", "Accepted, and without effect here; each once.", told)
     return page.text(PageFrame(name, "A part program", "program", [], FOOTER))
+
+
+def plan_page(name: str, plan: Plan, lifted: Sequence[Lifted]) -> str:
+    """The HTML page of a program as a machine's controller commands it."""
+    page = Page()
+    rows = [("Cycle time", clock(plan.time), f"{plan.time:.3f} s")]
+    rows += [
+        (s.cause.capitalize() + (f" of {s.axis}" if s.axis else ""), clock(s.time),
+         f"{100.0 * s.time / plan.time:.0f} % of the time")
+        for s in plan.shares()[:4]
+    ]  # fmt: skip
+    page.sections.append(cards(rows))
+    add_cycle_time(page, plan, lifted)
+    footer = (
+        "The controller's own planner, without the machine. Every number is in"
+        ' <a href="result.json">result.json</a>.'
+    )
+    return page.text(PageFrame(name, "A part program on a machine", "program", [], footer))
 
 
 def _extents(summary: Summary) -> str:

@@ -1,0 +1,151 @@
+"""Where the time of a program goes, what limits the axes, and what would make it shorter."""
+
+from collections.abc import Sequence
+from html import escape
+
+import numpy as np
+
+from motionfmu.analysis.cycle_time import CAUSES, Lifted, Plan, Share
+from motionfmu.report.diagram import Diagram, path_diagram, path_lines
+from motionfmu.report.html_page import Page
+from motionfmu.report.html_tables import table
+from motionfmu.report.numbers import figure
+from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID
+from motionfmu.run.axis_figures import AxisFigure
+
+HEIGHT = 500  # [pixel] of the path
+POINTS = 20_000  # of the path, at most
+BLOCKS = 10
+COLORS = {
+    "feed": AXES[0],
+    "speed": AXES[2],
+    "acceleration": AXES[1],
+    "jerk": AXES[3],
+    "corner": HEAT[3],
+    "exact stop": INK,
+    "dwell": RAPID,
+    "waiting": MUTED,
+}
+WORDS = {
+    "feed": "programmed feed, or the highest of the machine",
+    "speed": "highest speed of an axis",
+    "acceleration": "gains speed, or holds it on a bend, with all the acceleration there is",
+    "jerk": "acceleration changes as fast as it may",
+    "corner": "slows down for the tolerance of a corner, or is in it",
+    "exact stop": "slows down to rest",
+    "dwell": "",
+    "waiting": "hold, operator",
+}
+SPELLING = {"N.m": "N·m", "1": ""}
+
+
+def name_of(share: Share) -> str:
+    """What limits, in words."""
+    return f"{share.cause} of {share.axis}" if share.axis else share.cause
+
+
+def add_cycle_time(page: Page, plan: Plan, lifted: Sequence[Lifted] = ()) -> None:
+    """Add sections on where the time goes; with limits lifted, on what they would save."""
+    if not plan.time:
+        return
+    rows = [
+        (escape(name_of(s)), WORDS[s.cause], f"{s.time:.3f}", f"{100.0 * s.time / plan.time:.1f}")
+        for s in plan.shares()
+    ]
+    rows.append(("all", "", f"{plan.time:.3f}", "100.0"))
+    note = (
+        "What keeps the program from being faster, at each instant of its commanded motion. Waits"
+        " for an operator, an input, a probe or the position of an axis are not in it."
+    )
+    content = table(("limited by", "", "s", "%"), rows, numeric=2)
+    content += page.place("limited", path_by_cause(plan))
+    page.section("Where the time goes", note, content)
+    blocks = [
+        (
+            str(b.line),
+            ", ".join(f"{escape(name_of(s))} {s.time:.3f} s" for s in b.shares[:3]),
+            f"{b.time:.3f}",
+            f"{b.lost:.3f}",
+        )
+        for b in plan.blocks(BLOCKS)
+    ]
+    note = "Lines that take longest beyond the time at their programmed feed; dwells lose none."
+    page.section(
+        "Slowest lines", note, table(("line", "limited by", "s", "lost [s]"), blocks, numeric=2)
+    )
+    if lifted:
+        note = "The cycle time if this limit alone were a quarter higher."
+        rows = [
+            (escape(f"{x.title}, {x.axis}" if x.axis else x.title), f"{x.time:.3f}",
+             f"{x.saved:.3f}", f"{100.0 * x.saved / plan.time:.1f}")
+            for x in lifted
+        ]  # fmt: skip
+        page.section("What if", note, table(("limit", "s", "saved [s]", "%"), rows))
+
+
+def path_by_cause(plan: Plan) -> Diagram:
+    """The path, coloured by what limits the motion on it."""
+    rows = plan.rows[:: max(1, len(plan.rows) // POINTS)]
+    place, cause = rows["place"][:, :3], rows["cause"]
+    width = 3 if np.ptp(place[:, 2]) > 1e-9 else 2
+    lines = []
+    shares: dict[str, float] = {}
+    for share in plan.shares():
+        shares[share.cause] = shares.get(share.cause, 0.0) + share.time
+    for number, name in CAUSES.items():
+        own = cause == number
+        if name not in shares or not own.any():
+            continue
+        points = np.where(own[:, None], place, np.nan)
+        before = np.flatnonzero(own[1:] & ~own[:-1])
+        points[before] = place[before]  # from where the limit before it ended
+        told = [
+            f"line {n}, {v * 60.0:.4g} mm/min"
+            for n, v in zip(rows["line"], rows["speed"], strict=True)
+        ]
+        lines.append(
+            path_lines(points[:, :width], name=name, color=COLORS[name], width=2.2, hover=told)
+        )
+    return path_diagram("XYZ"[:width], lines, HEIGHT)
+
+
+def add_axes(page: Page, found: Sequence[AxisFigure]) -> None:
+    """Add a table of the axes' figures, each beside what limits it."""
+    if not found:
+        return
+    names = "figure axis least greatest RMS limit share at_it_[s] continuous"
+    heads = [name.replace("_", " ") for name in names.split()]
+    rows = []
+    for f in found:
+        unit = SPELLING.get(f.limit.unit, f.limit.unit)
+        title = f.limit.figure.replace("_", " ") + (f" [{unit}]" if unit else "")
+        rows.append(
+            (
+                escape(title),
+                escape(f.limit.axis.name),
+                figure(f.low),
+                figure(f.high),
+                figure(f.rms),
+                bounds(f),
+                "" if f.share is None else f"{100.0 * f.share:.0f} %",
+                f"{f.time_at_limit:.3f}" if bounds(f) else "",
+                "" if f.continuous_share is None else f"{100.0 * f.continuous_share:.0f} %",
+            )
+        )
+    note = (
+        "Each figure over the whole run beside what limits it. <b>Continuous</b> is the RMS over"
+        " what the axis bears for ever."
+    )
+    page.section("Axes and their limits", note, table(heads, rows, numeric=2))
+
+
+def bounds(f: AxisFigure) -> str:
+    """The limits of a figure in words; empty without."""
+    limit = f.limit
+    parts = []
+    if limit.limit is not None:
+        parts.append(figure(limit.limit))
+    if limit.low is not None or limit.high is not None:
+        ends = ("" if x is None else figure(x) for x in (limit.low, limit.high))
+        parts.append(" to ".join(ends))
+    return ", ".join(parts)

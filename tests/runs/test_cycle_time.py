@@ -1,0 +1,126 @@
+"""Where a program's time goes, against closed forms, against runs, and against runs with limits lifted."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from console import command
+from few_cases import few
+
+import motionfmu
+from motionfmu.analysis.cycle_time import planned, what_if
+from motionfmu.run.axis_figures import axis_figures
+
+# F6000 with ramps of 0.1 s: 100 mm/s, 1000 mm/s2; rapids 500 mm/s.
+BY_HAND = {
+    "feed": ("G1 X50 F3000", 1.1, {("feed", ""): 0.9, ("acceleration", ""): 0.1}),
+    "speed": ("G0 Y250", 0.6, {("speed", "Y"): 0.4, ("exact stop", ""): 0.1}),
+    "dwell": ("G4 P0.5", 0.5, {("dwell", ""): 0.5}),
+    "stop": ("G1 X1 F6000", 0.0632, {("exact stop", ""): 0.0316, ("acceleration", ""): 0.0316}),
+}
+FRAME = 1.024e-3
+
+
+def on_table(tmp_path: Path, text: str, **given) -> motionfmu.Scenario:
+    file = tmp_path / "part.ngc"
+    file.write_text(f"{text}\nM2\n")
+    return motionfmu.machine("xy_table").scenario(file, **given)
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_each_cause_by_a_program_made_for_it(name, tmp_path):
+    text, time, shares = BY_HAND[name]
+    plan = planned(on_table(tmp_path, text))
+    assert plan.time == pytest.approx(time, abs=2 * FRAME)
+    found = {(s.cause, s.axis): s.time for s in plan.shares()}
+    for key, expected in shares.items():
+        assert found[key] == pytest.approx(expected, abs=2 * FRAME)
+
+
+def test_the_sum_is_the_cycle_time_and_lines_are_parts_of_it():
+    plan = planned(motionfmu.load("scenarios/pocket"))
+    assert sum(s.time for s in plan.shares()) == pytest.approx(plan.time, abs=1e-9)
+    blocks = plan.blocks()
+    assert sum(b.time for b in blocks) == pytest.approx(plan.time, abs=1e-9)
+    assert all(a.lost >= b.lost for a, b in zip(blocks, blocks[1:], strict=False))
+    for block in blocks:
+        rows = plan.rows[plan.rows["line"] == block.line]
+        assert block.time == pytest.approx(len(rows) * plan.frame, abs=1e-12)
+
+
+def test_lost_time_is_what_the_programmed_feed_would_save(tmp_path):
+    plan = planned(on_table(tmp_path, "G1 X50 F6000\nG4 P1\nX0 F600"))
+    lost = {b.line: b.lost for b in plan.blocks()}
+    assert lost == pytest.approx({1: 0.1, 2: 0.0, 3: 0.1}, abs=2 * FRAME)
+
+
+PROGRAMS = few(["circle", "pocket", "lookahead", "square", "spline", "gear", "short_lines"], 3)
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_the_plan_takes_as_long_as_the_run(name):
+    scenario = motionfmu.load(f"scenarios/{name}")
+    result = scenario.run()
+    assert planned(scenario).time == pytest.approx(result.done_at, rel=0.01)
+
+
+@pytest.mark.parametrize("lift", ["Acceleration of the ramps", "Speed of the motor"])
+def test_a_lifted_limit_against_a_real_run(lift, tmp_path):
+    text = "G0 X100 Y40\nG1 X0 F9000\nG64 P0.05\nY0\nX60\nG0 X0\nX90\nX0"
+    scenario = on_table(tmp_path, text, set={"mcc.max_rpm": 900})
+    base = scenario.run().done_at
+    one = next(x for x in what_if(scenario) if x.title == lift)
+    real = scenario.run(set=one.set).done_at
+    assert one.saved > 0.02
+    assert one.time == pytest.approx(real, rel=0.02)
+    assert one.saved == pytest.approx(base - real, abs=0.02 * base)
+
+
+def test_feeds_lifted_are_those_of_a_program_written_so(tmp_path):
+    text = "G1 X60 F{}\nY20\nX0"
+    lifted = {x.title: x.time for x in what_if(on_table(tmp_path, text.format(1000)))}
+    fast = planned(on_table(tmp_path, text.format(1250)))
+    assert lifted["Programmed feeds"] == pytest.approx(fast.time, abs=5 * FRAME)
+
+
+def test_what_no_controller_plans_is_told():
+    with pytest.raises(motionfmu.InputError, match="hydraulic_valve: none of its components plans"):
+        planned(motionfmu.load("scenarios/hydraulic_valve"))
+    with pytest.raises(motionfmu.InputError, match="share = 0: above 0 wanted"):
+        what_if(motionfmu.load("scenarios/circle"), share=0.0)
+
+
+def test_a_program_that_is_refused_names_file_and_line(tmp_path):
+    with pytest.raises(motionfmu.InputError, match=r"part.ngc: line 1: .*Q7"):
+        planned(on_table(tmp_path, "G1 X50 Q7"))
+
+
+@pytest.mark.parametrize("name", ["circle", "pocket", "robot_line"])
+def test_figures_of_axes_by_brute_force(name):
+    scenario = motionfmu.load(f"scenarios/{name}")
+    result = scenario.run()
+    found = axis_figures(result, scenario.axis_limits())
+    assert {f.limit.axis.name for f in found} == {a.name for a in scenario.document.axes}
+    for f in found:
+        x = np.asarray(result[f.limit.signal.name], float)
+        x = x[:, f.limit.element] if x.ndim > 1 else x
+        for _ in range(f.limit.derivative):
+            x = (x[1:] - x[:-1]) / (result.time[1] - result.time[0])
+        assert (f.low, f.high) == (x.min(), x.max())
+        assert abs(f.largest) == np.abs(x).max()
+        assert f.rms == pytest.approx(np.sqrt((x**2).mean()), rel=1e-9, abs=1e-300)
+        if f.limit.limit:
+            assert f.share == np.abs(x).max() / f.limit.limit
+            at = (np.abs(x) >= 0.999 * f.limit.limit).sum() * (result.time[1] - result.time[0])
+            assert f.time_at_limit >= at - 1e-12
+
+
+def test_command(tmp_path):
+    file = tmp_path / "part.ngc"
+    file.write_text("G1 X50 F3000\nG4 P0.5\nM2\n")
+    ran = command("gcode", file, "--machine", "xy_table", "--out", tmp_path).stdout
+    assert "1.6 s" in ran and "exact stop" in ran and "Programmed feeds" in ran
+    told = json.loads((tmp_path / "part.gcode/result.json").read_text())
+    assert told["time"] == pytest.approx(1.6, abs=2 * FRAME)
+    assert sum(s["time"] for s in told["where"]) == pytest.approx(told["time"], abs=1e-9)
