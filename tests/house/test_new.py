@@ -85,7 +85,8 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
 def test_a_new_scenario_holds_and_fails_where_it_must(project: Path) -> None:
     folder = project / "scenarios/lag_axis"
     assert (folder / "README.md").read_text().startswith("# lag_axis\n")
-    cases = [case for off in (False, True) for case in suite.judged(folder, {}, off)]
+    ways = [suite.SuiteWays(contraries=off) for off in (False, True)]
+    cases = [case for way in ways for case in suite.judged(folder, {}, way)]
     assert len(cases) == 3 and all(case.ok for case in cases), cases
     assert all(case.off for case in cases[1:])
 

@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.base.errors import InputError
-from motionfmu.cli.common import FAILED, WRONG, app, out, run_shown
+from motionfmu.cli.common import FAILED, WRONG, OnMachine, app, out, run_shown
 from motionfmu.cli.run import Engine, Fmi, verdicts, warnings
 
 if TYPE_CHECKING:
+    from motionfmu.run import suite
     from motionfmu.run.suite import Case
 
 
@@ -24,8 +25,9 @@ if TYPE_CHECKING:
 def check(  # noqa: PLR0913  (each is an option of the command)
     paths: Annotated[
         list[Path] | None,
-        typer.Argument(help="Scenarios, or folders of scenarios; ./scenarios if none."),
+        typer.Argument(help="Scenarios, or folders of some; ./scenarios if none."),
     ] = None,
+    machine: OnMachine = None,
     engine: Engine = None,
     fmi: Fmi = None,
     contrary: Annotated[
@@ -40,15 +42,15 @@ def check(  # noqa: PLR0913  (each is an option of the command)
 
     from motionfmu.run import suite
 
-    if not paths and not Path("scenarios").is_dir():
-        raise InputError("no scenario here: name one of `motionfmu list`, or a folder of some")
     if junit and (junit.is_dir() or not junit.absolute().parent.is_dir()):
         raise InputError(f"--junit {junit}: a file in a folder that exists wanted")
-    chosen = suite.found(paths or [Path("scenarios")])
+    if machine and contrary:
+        raise InputError("--contrary is for scenarios: a machine has no [[contrary]]")
+    chosen = _chosen(paths or [], machine)
     options = {"engine": engine, "fmi": fmi}
     started, begin = datetime.now(), time.perf_counter()
     cases: list[Case] = []
-    for some in _judged(chosen, options, contrary, jobs):
+    for some in _judged(chosen, options, suite.SuiteWays(contrary, machine), jobs):
         cases += some
         for case in some:
             _tell(case, quiet=as_json)
@@ -62,16 +64,27 @@ def check(  # noqa: PLR0913  (each is an option of the command)
         raise typer.Exit(WRONG if any(case.error for case in cases) else FAILED)
 
 
+def _chosen(paths: list[Path], machine: str | None) -> list[Path]:
+    """The scenarios or, with a machine, the programs that the command line means."""
+    from motionfmu.run import suite
+
+    if machine and not paths:
+        raise InputError(f"--machine {machine}: which programs?")
+    if not paths and not Path("scenarios").is_dir():
+        raise InputError("no scenario here: name one of `motionfmu list`, or a folder of some")
+    return paths if machine else suite.found(paths or [Path("scenarios")])
+
+
 def _judged(
-    paths: Sequence[Path], options: dict[str, Any], contraries: bool, jobs: int
+    paths: Sequence[Path], options: dict[str, Any], ways: "suite.SuiteWays", jobs: int
 ) -> "Iterator[list[Case]]":
     from motionfmu.run import suite
 
     if jobs > 1:
-        yield from suite.together(paths, options, contraries, min(jobs, len(paths)))
+        yield from suite.together(paths, options, ways, min(jobs, len(paths)))
         return
     for path in paths:
-        yield suite.judged(path, options, contraries, lambda s, **given: run_shown(s, given))
+        yield suite.judged(path, options, ways, lambda s, **given: run_shown(s, given))
 
 
 def _tell(case: "Case", quiet: bool) -> None:

@@ -92,6 +92,21 @@ Set = Annotated[
 ]
 
 
+OnMachine = Annotated[
+    str | None,
+    typer.Option(
+        metavar="MACHINE", help="PATH is a program: put it on a machine of `motionfmu machines`."
+    ),
+]
+
+
+def loaded(path: Path, machine: str | None) -> "Scenario":
+    """The scenario that a path means; with a machine, the program there on that machine."""
+    from motionfmu import run
+
+    return run.load(path) if machine is None else run.machine(machine).scenario(path)
+
+
 def setting(text: str) -> tuple[str, Any]:
     """Read ``comp.var=value``; the value is TOML, a bare word is text."""
     name, equals, value = text.partition("=")

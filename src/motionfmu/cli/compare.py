@@ -6,10 +6,21 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from motionfmu.cli.common import FAILED, Set, app, bare_table, out, results, settings
+from motionfmu.cli.common import (
+    FAILED,
+    OnMachine,
+    Set,
+    app,
+    bare_table,
+    loaded,
+    out,
+    results,
+    settings,
+)
 
 if TYPE_CHECKING:
     from motionfmu.compare import Comparison
+    from motionfmu.run import Scenario
 
 Run = Annotated[Path, typer.Argument(help="Folder of a run's result, or a scenario to run.")]
 SIGNALS = 8  # are told on the console
@@ -20,6 +31,7 @@ NUMBERS = (("error.max", "largest contour error"), ("error.rms", "RMS contour er
 def compare(  # noqa: PLR0913  (each is an option of the command)
     a: Run,
     b: Run,
+    machine: OnMachine = None,
     signals: Annotated[
         list[str], typer.Option(metavar="PATTERN", help="Signals, as 'card.*'; all if none.")
     ] = [],  # noqa: B006
@@ -31,6 +43,8 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Lay run B over run A: signals, contour, verdicts; status 1 if a verdict is worse.
 
+    With --machine both may be programs.
+
     --set is for the run of B: compare scenarios/circle scenarios/circle --set mcc.p_gain=300.
     """
     from motionfmu import compare as pairs
@@ -38,7 +52,8 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
 
     if folder:
         result_folder.usable(folder)
-    found = pairs.compare(a, b, signals or ("*",), settings(set_))
+    left, right = _side(a, machine), _side(b, machine)
+    found = pairs.compare(left, right, signals or ("*",), settings(set_))
     shown = None
     if folder or not as_json:
         target = folder or results(found.a.numbers["scenario"], "compare")
@@ -50,6 +65,11 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
         out.print(f"report: {shown}", soft_wrap=True)
     if not found.ok:
         raise typer.Exit(FAILED)
+
+
+def _side(path: Path, machine: str | None) -> "Path | Scenario":
+    """A path, or with a machine the program there on it, if it is no folder."""
+    return path if machine is None or path.is_dir() else loaded(path, machine)
 
 
 def _tell(found: "Comparison") -> None:

@@ -2,16 +2,18 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    OnMachine,
     ScenarioPath,
     Set,
     app,
     bare_table,
+    loaded,
     out,
     progress_bar,
     results,
@@ -19,12 +21,16 @@ from motionfmu.cli.common import (
     settings,
 )
 
+if TYPE_CHECKING:
+    from motionfmu.run import Scenario
+
 T = TypeVar("T")
 
 
 @app.command()
-def contour(
+def contour(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
+    machine: OnMachine = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
     figures: Annotated[
@@ -38,10 +44,8 @@ def contour(
 
     A scenario without a contour, or with --iso9283, has the deviation of its tool path explained.
     """
-    from motionfmu.run import load
-
     given = settings(set_)
-    scenario = load(path)
+    scenario = loaded(path, machine)
     body = scenario.document.body
     of_path = path_ or (body.contour is None and body.iso9283 is not None)
     if figures:
@@ -53,30 +57,28 @@ def contour(
         out.print(table)
         return
     needed("report")
-    (_explain_path if of_path else _explain)(path, given, folder)
+    (_explain_path if of_path else _explain)(scenario, given, folder)
 
 
-def _with_bar(work: Callable[..., T], name: str, path: Path, settings: dict[str, Any]) -> T:
+def _with_bar(work: Callable[..., T], scenario: "Scenario", settings: dict[str, Any]) -> T:
     """What an explanation of a scenario finds; a bar shows how far it is."""
     with progress_bar(*bar_columns()) as bar:
-        task = bar.add_task(name, total=1.0)
+        task = bar.add_task(scenario.name, total=1.0)
         return work(
-            path,
+            scenario,
             set=settings,
             progress=lambda what, share: bar.update(task, completed=share, description=what),
         )
 
 
-def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
+def _explain_path(scenario: "Scenario", settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.analysis.explain import explain_path
     from motionfmu.report import result_folder
     from motionfmu.report.cause_pages.path_causes_page import HEADS, write_path_explanation
     from motionfmu.report.numbers import length
-    from motionfmu.scenarios.table_sources import scenario_file
 
-    name = scenario_file(path).parent.name
-    target = result_folder.usable(folder or results(name, "iso9283"))
-    found = _with_bar(explain_path, name, path, settings)
+    target = result_folder.usable(folder or results(scenario.name, "iso9283"))
+    found = _with_bar(explain_path, scenario, settings)
     kinds = [n for n in HEADS if n in found.figures]
     table = bare_table("cause")
     for heading in (*(HEADS[n] for n in kinds), "AT_P without"):
@@ -101,16 +103,14 @@ def bar_columns() -> tuple[Any, ...]:
     return BarColumn(), TaskProgressColumn(), TextColumn("{task.description}")
 
 
-def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
+def _explain(scenario: "Scenario", settings: dict[str, Any], folder: Path | None) -> None:
     from motionfmu.analysis.explain import explain
     from motionfmu.report import result_folder
     from motionfmu.report.cause_pages.explain_page import write_explanation
     from motionfmu.report.numbers import length
-    from motionfmu.scenarios.table_sources import scenario_file
 
-    name = scenario_file(path).parent.name
-    target = result_folder.usable(folder or results(name, "contour"))
-    found = _with_bar(explain, name, path, settings)
+    target = result_folder.usable(folder or results(scenario.name, "contour"))
+    found = _with_bar(explain, scenario, settings)
     table = bare_table("cause")
     for heading in ("largest", "99 %", "theory", "error without"):
         table.add_column(heading, justify="right")

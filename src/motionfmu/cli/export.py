@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from motionfmu.base.errors import InputError
-from motionfmu.cli.common import Set, app, settings
+from motionfmu.cli.common import OnMachine, Set, app, loaded, settings
 from motionfmu.cli.run import warnings
 
 
@@ -16,6 +16,7 @@ def export(  # noqa: PLR0913  (each is an option)
     path: Annotated[
         Path, typer.Argument(help="Folder of a scenario, its scenario.toml, or an FMU's name.")
     ],
+    machine: OnMachine = None,
     target: Annotated[
         Path | None, typer.Option("--out", "-o", help="The file; NAME.fmu, NAME.ssp if not given.")
     ] = None,
@@ -47,7 +48,7 @@ def export(  # noqa: PLR0913  (each is an option)
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
     values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
     """
-    if _is_fmu(path):
+    if machine is None and _is_fmu(path):
         _pack(path.name, target, fmi or 3, program, settings(set_))
         return
     if program is not None:
@@ -55,9 +56,8 @@ def export(  # noqa: PLR0913  (each is an option)
             "--program is for an FMU alone; of a scenario --set COMPONENT.program=FILE"
         )
     from motionfmu.base.platforms import named
-    from motionfmu.run import load
 
-    scenario = load(path)
+    scenario = loaded(path, machine)
     step = scenario.document.body.step
     if not ssp:
         from motionfmu.export import Choice, as_fmu

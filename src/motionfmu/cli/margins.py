@@ -12,10 +12,12 @@ import typer
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    OnMachine,
     ScenarioPath,
     Set,
     app,
     bare_table,
+    loaded,
     out,
     progress_bar,
     results,
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 @app.command()
 def margins(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
+    machine: OnMachine = None,
     axis: Annotated[int, typer.Option(help="Axis, from 1.")] = 1,
     at: Annotated[
         list[str],
@@ -61,7 +64,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     if gain is not None and loop is None:
         raise InputError(f"--gain {gain}: say with --loop which loop it belongs to")
     point = dict(setting(text) for text in at)
-    linear = model(path, axis, point, settings(set_))
+    linear = model(loaded(path, machine), axis, point, settings(set_))
     whence = "stated"
     if not point:
         found, whence = _of_the_program(linear)

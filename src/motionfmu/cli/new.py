@@ -1,15 +1,15 @@
-"""The commands that make a new FMU or scenario from templates that work."""
+"""The commands that make a new FMU, scenario or machine of one that works."""
 
 import contextlib
 import os
 import re
-import shutil
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.new_folder import new_folder
 from motionfmu.cli.common import Group, app
 
 TEMPLATES = Path(__file__).parent / "templates"
@@ -18,7 +18,7 @@ Name = Annotated[str, typer.Argument(help="Small letters, digits and _; its fold
 new = typer.Typer(
     cls=Group,
     rich_markup_mode=None,
-    help="Make a new FMU or scenario that works, to be changed.",
+    help="Make a new FMU, scenario or machine that works, to be changed.",
     no_args_is_help=True,
 )
 app.add_typer(new, name="new")
@@ -51,6 +51,23 @@ def scenario(name: Name) -> None:
     print(f"next: motionfmu run {folder}; motionfmu check {folder} --contrary")
 
 
+@new.command()
+def machine(
+    name: Name,
+    like: Annotated[str, typer.Option(metavar="MACHINE", help="One of `motionfmu machines`.")],
+) -> None:
+    """Make machines/NAME, a machine like another one: all its values in one file, to be changed."""
+    from motionfmu import run
+    from motionfmu.run.machine_copy import copy_machine
+
+    _usable(name)
+    folder = Path("machines") / name
+    _free(folder)
+    copy_machine(run.machine(like), folder)
+    print(f"{folder}: {', '.join(sorted(p.name for p in folder.iterdir()))}")
+    print(f"next: motionfmu run PROGRAM --machine {name}")
+
+
 def _usable(name: str) -> None:
     if len(name) > 48 or not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", name):
         told = "small letters and digits, in parts with _ between, 48 at most, wanted"
@@ -72,20 +89,13 @@ def rendered(template: Path, name: str) -> str:
 
 def _make(templates: Path, folder: Path, name: str, elsewhere: dict[str, Path]) -> None:
     """Write a folder whole or not at all, and the files that stand elsewhere."""
-    part = folder.with_name(f".{folder.name}.part{os.getpid()}")
     try:
-        part.mkdir()
-        for template in templates.iterdir():
-            target = elsewhere.get(template.name, part / template.name)
-            target.write_text(rendered(template, name), encoding="utf-8")
-        part.rename(folder)
-    except BaseException as error:
+        with new_folder(folder) as part:
+            for template in templates.iterdir():
+                target = elsewhere.get(template.name, part / template.name)
+                target.write_text(rendered(template, name), encoding="utf-8")
+    except BaseException:
         for file in elsewhere.values():
             with contextlib.suppress(OSError):
                 file.unlink(missing_ok=True)
-        if isinstance(error, OSError):
-            told = error.strerror or error
-            raise InputError(f"cannot write {folder}: {told}") from None
         raise
-    finally:
-        shutil.rmtree(part, ignore_errors=True)

@@ -11,10 +11,12 @@ from motionfmu.base.extras import needed
 from motionfmu.cli import console_text
 from motionfmu.cli.common import (
     FAILED,
+    OnMachine,
     ScenarioPath,
     Set,
     app,
     files_of,
+    loaded,
     results,
     run_shown,
     settings,
@@ -24,16 +26,9 @@ from motionfmu.cli.common import (
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from motionfmu.run import Scenario
     from motionfmu.run.checks import Verdict
     from motionfmu.run.result import Result
 
-OnMachine = Annotated[
-    str | None,
-    typer.Option(
-        metavar="MACHINE", help="PATH is a program: run it on a machine of `motionfmu machines`."
-    ),
-]
 Engine = Annotated[str | None, typer.Option(help="fused, native, python or fmpy.")]
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 if not given.")]
 
@@ -75,13 +70,6 @@ def _ends(result: "Result") -> list[str]:
     return [f"ended: {result.stopped}{told}"]
 
 
-def loaded(path: Path, machine: str | None) -> "Scenario":
-    """The scenario that a path means; with a machine, the program there on that machine."""
-    from motionfmu import run
-
-    return run.load(path) if machine is None else run.machine(machine).scenario(path)
-
-
 def _judgement(result: "Result") -> str:
     """The verdict in words; a run of which nothing is asked has none."""
     if not result.checks:
@@ -109,14 +97,28 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     pictures: Annotated[
         bool, typer.Option("--pictures", help="Also write the report's pictures, PNG and SVG.")
     ] = False,
+    save_as: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="With --machine: also write it there as a scenario."),
+    ] = None,
 ) -> None:
     """Run a scenario, or a program on a machine, judge it and write its report."""
     from motionfmu.report import result_folder
+    from motionfmu.run.run_plan import Options
 
     if pictures:
         needed("report")
+    if save_as and machine is None:
+        raise InputError(f"--save-as {save_as}: it goes with --machine")
     scenario = loaded(path, machine)
     target = result_folder.usable(folder or results(scenario.name))
+    if save_as and machine:
+        from motionfmu.run.saved_scenario import save_scenario
+
+        save_scenario(
+            scenario, save_as, Options(set=settings(set_), stop=stop, step=step, every=every)
+        )
+        print(f"scenario: {save_as}")
     options: dict[str, Any] = {
         "engine": engine,
         "fmi": fmi,

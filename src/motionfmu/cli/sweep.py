@@ -9,6 +9,7 @@ import typer
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     FAILED,
+    OnMachine,
     Set,
     Stopped,
     app,
@@ -57,6 +58,7 @@ def _sweep(study: "Study", folder: Path, ways: "Ways") -> "Outcome":
 @app.command()
 def sweep(  # noqa: PLR0913  (each is an option of the command)
     path: Annotated[Path, typer.Argument(help="A study's TOML file, or a scenario.")],
+    machine: OnMachine = None,
     vary: Annotated[
         list[str],
         typer.Option(metavar="COMP.VAR=LO:HI:N", help="Or LO:HI, LO:HI:N:log, a list a,b,c."),
@@ -85,6 +87,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
 
     given: dict[str, Any] = {"sampling": sampling, "runs": runs, "seed": seed, "cost": cost}
     given |= {"tuned": tuned, "stop": stop, "step": step, "results": result or None}
+    given["machine"] = machine
     given["set"] = settings(set_) or None
     given["axis"] = dict(option(text) for text in vary) or None
     chosen = sweeps.study(path, given)

@@ -8,10 +8,12 @@ import typer
 
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    OnMachine,
     ScenarioPath,
     Set,
     app,
     bare_table,
+    loaded,
     out,
     progress_bar,
     results,
@@ -23,11 +25,13 @@ if TYPE_CHECKING:
     from motionfmu.study.tune import Problem, Tuned
 
 
+# CCN 16: each option of the command in the order in which it acts.
 @app.command()
 def tune(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
+    machine: OnMachine = None,
     file: Annotated[
-        Path | None, typer.Option("--problem", help="Options; else tune.toml beside the scenario.")
+        Path | None, typer.Option("--problem", help="Options; else tune.toml beside the PATH.")
     ] = None,
     velocity: Annotated[bool, typer.Option("--velocity", help="The velocity loop too.")] = False,
     forward: Annotated[bool, typer.Option("--feed-forward", help="Feed-forward too.")] = False,
@@ -44,12 +48,11 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.analysis.linear.gains import in_lines
     from motionfmu.report import result_folder
     from motionfmu.report.loop_pages.tune_page import page_text
-    from motionfmu.run import load
     from motionfmu.study.tune import problem, read
     from motionfmu.study.tune.tuning_words import plant_text
 
-    scenario = load(path)
-    beside = scenario.document.file.parent / "tune.toml"
+    scenario = loaded(path, machine)
+    beside = (scenario.document.file if machine is None else path).parent / "tune.toml"
     values = read(file or beside, scenario) if file or beside.is_file() else {}
     values |= {"velocity": True} if velocity else {}
     values |= {"feed_forward": True} if forward else {}

@@ -93,6 +93,21 @@ class Machine:
         about = f"{file.name} on {self.name}"
         return Scenario(self._made(given | tables | {"set": values}, file.stem, about))
 
+    def plan(self) -> Scenario:
+        """The machine without a program, checked against its FMUs.
+
+        Returns
+        -------
+        Scenario
+            It shows what the machine is made of, and its `axis_limits`.
+
+        Raises
+        ------
+        InputError
+            Something in the machine's file is wrong.
+        """
+        return Scenario(self._made({"stop": 1.0}, self.name, ""))
+
     def run(
         self, program: str | Path, *, set: Mapping[str, Any] | None = None, **options: Any
     ) -> Result:

@@ -19,12 +19,21 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
+from motionfmu.run.machine_program import machine
 from motionfmu.run.runner import load
 from motionfmu.scenarios import package_files
 
 FILE = "scenario.toml"
 PATIENCE = 10  # [s] for a process to remove its files when it is told to end
 Run = Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class SuiteWays:
+    """What is judged of each path."""
+
+    contraries: bool = False  # each [[contrary]] instead of the scenario
+    machine: str | None = None  # the paths are programs on this machine
 
 
 @dataclass(frozen=True)
@@ -73,16 +82,16 @@ def _run(scenario: Any, **options: Any) -> Any:
 
 
 def judged(
-    path: Path, options: Mapping[str, Any], contraries: bool = False, run: Run = _run
+    path: Path, options: Mapping[str, Any], ways: SuiteWays = SuiteWays(), run: Run = _run
 ) -> list[Case]:
     """Run a scenario, or each of its contraries; `run` runs one with options."""
     folder = path.parent if path.name == FILE else path
-    bare = Case(folder.resolve().name, str(folder))
+    bare = Case(path.stem, str(path)) if ways.machine else Case(folder.resolve().name, str(folder))
     start = time.perf_counter()
     try:
-        scenario = load(path)
+        scenario = machine(ways.machine).scenario(path) if ways.machine else load(path)
         bare = replace(bare, scenario=scenario.name)
-        if not contraries:
+        if not ways.contraries:
             result = run(scenario, **options)
             used = time.perf_counter() - start
             told = tuple(result.checks), tuple(result.warnings)
@@ -143,7 +152,7 @@ def serve(pipe: int) -> None:
 
 
 def together(
-    paths: Sequence[Path], options: Mapping[str, Any], contraries: bool, workers: int
+    paths: Sequence[Path], options: Mapping[str, Any], ways: SuiteWays, workers: int
 ) -> Iterator[list[Case]]:
     """Cases of each scenario, in the order of the paths, whatever the number of processes."""
     running: list[_SuiteWorker] = []
@@ -157,7 +166,7 @@ def together(
                     return []
                 worker = own.worker = _SuiteWorker(temporary)
                 running.append(worker)
-        cases = worker.judged(path, options, contraries)
+        cases = worker.judged(path, options, ways)
         if cases is not None:
             return cases
         own.worker = None

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.base.errors import Faults, InputError
-from motionfmu.run import Scenario, load
+from motionfmu.run import Scenario, load, machine
 from motionfmu.scenarios import fmus
+from motionfmu.scenarios.table_sources import machine_file
 from motionfmu.study import study_axes as ax
 from motionfmu.study.study_columns import Column
 from motionfmu.study.study_file import StudyFile, read
@@ -20,7 +21,8 @@ from motionfmu.study.study_resolver import StudyResolver
 class WorkerJob:
     """All that a worker needs to know of a study, except its points."""
 
-    scenario: str  # path of the scenario.toml
+    scenario: str  # path of the scenario.toml, or of a program
+    machine: str  # path of the machine.toml of a program, else empty
     digest: str  # hash of its files and FMUs; a worker whose files differ refuses the study
     named: tuple[str, ...]  # texts among the study's values, which may name files
     axes: tuple[str, ...]
@@ -118,7 +120,8 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
         columns=columns,
         points=ax.points(chosen, body.sampling, runs, body.seed),
         job=WorkerJob(
-            scenario=str(scenario.document.file),
+            scenario=str(file.folder.resolve() / (body.program or scenario.document.file)),
+            machine=str(machine_file(body.machine, file.folder)) if body.machine else "",
             digest=digest(scenario, _texts(chosen, body.set)),
             named=_texts(chosen, body.set),
             axes=tuple(a.name for a in chosen),
@@ -135,12 +138,28 @@ def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:
 
 
 def _scenario(file: StudyFile) -> Scenario:
-    origin, place = file.origin, Path(file.body.scenario)
+    origin, body = file.origin, file.body
+    place = Path(body.scenario)
+    if body.machine or body.program:
+        for key in ("machine", "program"):
+            if getattr(body, key) is None:
+                raise origin.error(f"{key} is missing: a machine and a program wanted")
+        return _on_machine(file, str(body.machine), str(body.program))
     try:
         return load(place if "scenario" in origin.given else file.folder / place)
     except InputError as error:
         if ": no such scenario" in str(error):
             raise origin.error(str(error), "", "scenario") from None
+        raise
+
+
+def _on_machine(file: StudyFile, name: str, program: str) -> Scenario:
+    try:
+        return machine(machine_file(name, file.folder)).scenario(file.folder / program)
+    except InputError as error:
+        key = "program" if ": no such program" in str(error) else "machine"
+        if "no such" in str(error):
+            raise file.origin.error(str(error), "", key) from None
         raise
 
 

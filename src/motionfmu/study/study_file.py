@@ -26,6 +26,8 @@ class StudyBody(BaseModel):
 
     model_config = _STRICT
     scenario: Place = "."
+    machine: Place | None = None  # in place of a scenario: the machine of a program
+    program: Place | None = None
     sampling: Literal["grid", "random", "latin"] = "grid"
     runs: int | None = Field(default=None, ge=1)
     seed: int = Field(default=0, ge=0)
@@ -74,6 +76,11 @@ def read(path: Path, given: Mapping[str, Any], faults: Faults) -> StudyFile:
     Keys given count instead of those written there. What is wrong with keys and their types goes to
     the faults, with file, line and value; a file that cannot be read is an InputError.
     """
+    if "machine" in given:
+        keys = {**given, "program": str(path)}
+        origin = Origin(None, Lines(""), frozenset(keys))
+        body, damaged = _body(origin, keys, faults)
+        return StudyFile(origin, body, "", Path(), damaged)
     if package_files.is_name(path) and not path.suffix:
         path = scenario_file(path).parent
     if is_file(path / FILE):

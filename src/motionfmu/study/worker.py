@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.run import load
+from motionfmu.run import load, machine
 from motionfmu.run.session import Session
 from motionfmu.study.study_axes import Point
 from motionfmu.study.study_columns import column, signals
@@ -43,7 +43,9 @@ class Worker:
 
     def __init__(self, job: WorkerJob) -> None:
         self.job = job
-        scenario = load(job.scenario)
+        scenario = (
+            machine(job.machine).scenario(job.scenario) if job.machine else load(job.scenario)
+        )
         if digest(scenario, job.named) != job.digest:
             raise InputError(f"{job.scenario}: a worker has other files or FMUs than the study")
         self._columns = [column(scenario, name) for name in job.columns]

@@ -1,0 +1,77 @@
+"""A program on a machine written as a scenario of its own."""
+
+import filecmp
+import os
+import shutil
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from motionfmu.analysis.gcode.subprogram_files import called
+from motionfmu.base.errors import InputError
+from motionfmu.base.new_folder import new_folder
+from motionfmu.run.run_plan import Options, RunPlan
+from motionfmu.scenarios import package_files
+from motionfmu.scenarios.system import Resolver
+from motionfmu.scenarios.toml_text import pair_lines, table_lines
+
+# Endings of part programs, which may call other files.
+GCODE = (".ngc", ".nc", ".tap", ".gcode")
+
+
+def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
+    """Write a scenario.toml and the files that it reads; the folder must not be there."""
+    document = plan.document
+    tables = _tables(document.sources[0].tables, options)
+    machine = Path(tables.pop("machine"))
+    files = read_files(plan.resolver, tables["set"])
+    tables["set"] |= {name: file.name for name, file in files.items()}
+    with new_folder(folder) as part:
+        for file in [*files.values(), *(c for f in files.values() for c in _called(f))]:
+            if (part / file.name).exists() and not filecmp.cmp(file, part / file.name, False):
+                raise InputError(f"{folder}: two files {file.name} would stand there")
+            shutil.copyfile(file, part / file.name)
+        top = {"machine": _machine_name(machine, folder.absolute())}
+        top |= {k: v for k, v in tables.items() if not isinstance(v, dict | list)}
+        lines = [f"# {document.about}."]
+        for key, value in top.items():
+            lines += pair_lines(key, value)
+        for name, table in tables.items():
+            if isinstance(table, dict | list):
+                lines += table_lines(name, table)
+        (part / package_files.SCENARIO).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _tables(own: Mapping[str, Any], options: Options) -> dict[str, Any]:
+    """The tables of a scenario that runs as these options say."""
+    tables = {k: v for k, v in own.items() if options.stop is None or k not in ("limit", "settle")}
+    tables["set"] = {**own.get("set", {}), **options.set}
+    given = {"stop": options.stop, "step": options.step}
+    tables |= {k: v for k, v in given.items() if v is not None}
+    if options.every is not None:
+        tables["record"] = {**own.get("record", {}), "every": options.every}
+    return tables
+
+
+def _machine_name(file: Path, folder: Path) -> str:
+    """How a scenario in a folder names a machine: by its name in the library, else by its path."""
+    if file.parent.parent == package_files.PACKAGE / "machines":
+        return file.parent.name
+    return os.path.relpath(file.parent, folder)
+
+
+def _called(file: Path) -> list[Path]:
+    """Files that a part program calls."""
+    return called(file) if file.suffix in GCODE else []
+
+
+def read_files(resolver: Resolver, values: Mapping[str, Any]) -> dict[str, Path]:
+    """Files that values name and FMUs read, by the names of the values."""
+    found = {}
+    for name, value in values.items():
+        whole, _ = resolver.split(name)
+        end = resolver.end(whole, "set", name)
+        file = resolver.document.beside(value) if isinstance(value, str) else None
+        if end.port.file == "read" and file:
+            found[name] = file
+    return found
