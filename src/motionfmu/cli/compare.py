@@ -54,10 +54,11 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
 
 def _tell(found: "Comparison") -> None:
     from motionfmu.compare.words import GONE, change_text, text_of
+    from motionfmu.run.checks import tally
 
     for name, x in (("A", found.a), ("B", found.b)):
-        held, count = sum(c["ok"] for c in x.numbers["checks"]), len(x.numbers["checks"])
-        out.print(f"{name}: {x.name}, {held} of {count} checks hold", markup=False, soft_wrap=True)
+        judged = tally(c["ok"] for c in x.numbers["checks"]).words
+        out.print(f"{name}: {x.name}, {judged}", markup=False, soft_wrap=True)
     for d in found.different:
         out.print(f"  {d.what}: {d.a} → {d.b}", markup=False, soft_wrap=True)
     known = {n.name: n for n in found.table("contour")}

@@ -1,6 +1,7 @@
 """The command that runs a scenario, and how verdicts are shown."""
 
 import contextlib
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -38,18 +39,35 @@ Engine = Annotated[str | None, typer.Option(help="fused, native, python or fmpy.
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 if not given.")]
 
 
+# Word and colour of a verdict; None is an expected number that is not judged.
+_MARKS = {
+    True: ("ok", console_text.GREEN),
+    False: ("FAILED", console_text.RED),
+    None: ("expected", console_text.DIM),
+}
+
+
 def verdicts(checks: "Sequence[Verdict]") -> None:
-    """Each number with its bounds, and why there are numbers missing."""
-    from motionfmu.run.checks import of_one_number, together
+    """Each number with its bounds; of one that is not judged the difference; missing numbers."""
+    from motionfmu.run.checks import beyond, of_one_number, together
 
     rows = []
     for same in of_one_number(checks):
         v, bounds = same[0], together([c.bounds for c in same])
-        mark, style = ("ok", console_text.GREEN) if v.ok else ("FAILED", console_text.RED)
+        mark, style = _MARKS[v.ok]
+        if v.ok is None and not v.reason:
+            bounds += f"; {difference(beyond(same))}"
         rows.append(((mark, v.name, "none" if v.reason else f"{v.value:.6g}", bounds), style))
     print(console_text.table(("", "check", "found", "asked"), rows))
     for reason, names in _reasons(checks).items():
         print(f"{', '.join(names)}: {reason}")
+
+
+def difference(size: float) -> str:
+    """How far a number lies beyond what is expected, in words."""
+    if math.isnan(size):
+        return "not as expected"
+    return f"differs by {size:+.4g}" if size else "as expected"
 
 
 def warnings(texts: "Sequence[str]") -> None:
@@ -80,13 +98,6 @@ def loaded(path: Path, machine: str | None) -> "Scenario":
     from motionfmu import run
 
     return run.load(path) if machine is None else run.machine(machine).scenario(path)
-
-
-def _judgement(result: "Result") -> str:
-    """The verdict in words; a run of which nothing is asked has none."""
-    if not result.checks:
-        return "no checks: nothing was judged"
-    return "all checks hold" if result.ok else "a check FAILED"
 
 
 @app.command()
@@ -142,7 +153,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         print(f"not as written: {line}")
     for line in _ends(result):
         print(line)
-    print(f"{scenario.name}: {_judgement(result)}")
+    print(f"{scenario.name}: {result.judgement}")
     print(f"report: {shown}")
     if not result.ok:
         raise typer.Exit(FAILED)

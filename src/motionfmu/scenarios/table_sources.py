@@ -19,7 +19,7 @@ ARRAYS = ("drive", "figure", "waveform", "contrary")
 # Keys that say where tables come from, and are none of theirs.
 ORIGINS = ("extends", "without")
 # What a machine does not say, for it has no job.
-NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "contrary")
+NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "expect", "contrary")
 
 
 @dataclass(frozen=True)
