@@ -48,7 +48,7 @@ def test_a_run_that_ends_before_its_circle_is_status_1_with_a_whole_result(tmp_p
     assert "degrees of it" in reason
     assert reason in done.stdout and found["ok"] is False
     shown = (out / "report.html").read_text()
-    told = re.escape(f"{escape(reason)}</div></td>") + "<td[^>]*>none</td>"
+    told = re.escape(f"{escape(reason)}</div></td>") + "<td[^>]*>[^<]*</td><td[^>]*>none</td>"
     assert re.search(rf"{re.escape(name)}<div.*?{told}", shown)
     assert ">nan<" not in shown
     good = [c for c in found["checks"] if not c["reason"]]

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.base.errors import InputError
-from motionfmu.cli.common import FAILED, WRONG, app, out, run_shown
+from motionfmu.cli.common import FAILED, WRONG, app, give, mode, out, run_shown
 from motionfmu.cli.run import Engine, Fmi, verdicts, warnings
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def check(  # noqa: PLR0913  (each is an option of the command)
     if junit:
         _write_junit(junit, cases, started)
     if as_json:
-        print(json.dumps(_numbers(cases, time.perf_counter() - begin), indent=1, allow_nan=False))
+        give(json.dumps(_numbers(cases, time.perf_counter() - begin), indent=1, allow_nan=False))
     print(told, file=sys.stderr if as_json else sys.stdout)
     if not all(case.ok for case in cases):
         raise typer.Exit(WRONG if any(case.error for case in cases) else FAILED)
@@ -97,7 +97,7 @@ def _tell(case: "Case", quiet: bool) -> None:
                 why = f" ({v.reason})" if v.reason else ""
                 text = f"    fails: {v.name} = {v.value:.6g}{why}, asked {v.bounds}"
                 out.print(text, markup=False, soft_wrap=True)
-    elif not case.ok and not case.error:
+    elif case.checks and (mode.verbose or not case.ok):
         verdicts(case.checks)
 
 

@@ -6,7 +6,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from motionfmu.cli.common import FAILED, Set, app, bare_table, out, results, settings
+from motionfmu.cli.common import (
+    FAILED,
+    Folder,
+    Set,
+    app,
+    bare_table,
+    give,
+    out,
+    report,
+    results,
+    settings,
+)
 
 if TYPE_CHECKING:
     from motionfmu.compare import Comparison
@@ -24,7 +35,7 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
         list[str], typer.Option(metavar="PATTERN", help="Signals, as 'card.*'; all if none.")
     ] = [],  # noqa: B006
     set_: Set = [],  # noqa: B006
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; without --out nothing is written.")
     ] = False,
@@ -44,10 +55,10 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
         target = folder or results(found.a.numbers["scenario"], "compare")
         shown = found.save(target)
     if as_json:
-        print(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
+        give(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
     else:
         _tell(found)
-        out.print(f"report: {shown}", soft_wrap=True)
+        report(shown)
     if not found.ok:
         raise typer.Exit(FAILED)
 

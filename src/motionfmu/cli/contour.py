@@ -8,12 +8,14 @@ import typer
 
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    Folder,
     ScenarioPath,
     Set,
     app,
     bare_table,
     out,
     progress_bar,
+    report,
     results,
     run_shown,
     settings,
@@ -26,7 +28,7 @@ T = TypeVar("T")
 def contour(
     path: ScenarioPath,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     figures: Annotated[
         bool, typer.Option("--figures", help="Only print the figures of one run.")
     ] = False,
@@ -91,7 +93,7 @@ def _explain_path(path: Path, settings: dict[str, Any], folder: Path | None) -> 
             out.print(f"[bold]{e.title}[/] not judged: {e.how.replace('[', chr(92) + '[')}")
     with result_folder.whole(target) as part:
         shown = write_path_explanation(found, part).name
-    out.print(f"report: {target / shown}", soft_wrap=True)
+    report(target / shown)
 
 
 def bar_columns() -> tuple[Any, ...]:
@@ -132,7 +134,7 @@ def _explain(path: Path, settings: dict[str, Any], folder: Path | None) -> None:
             out.print(f"  {words}")
     with result_folder.whole(target) as part:
         shown = write_explanation(found, part).name
-    out.print(f"report: {target / shown}", soft_wrap=True)
+    report(target / shown)
 
 
 def _flat(value: Any, name: str = "") -> list[tuple[str, str]]:

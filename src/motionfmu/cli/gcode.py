@@ -8,7 +8,7 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install, missing
-from motionfmu.cli.common import FAILED, app, bare_table, out, results
+from motionfmu.cli.common import FAILED, Folder, app, bare_table, give, out, report, results
 
 if TYPE_CHECKING:
     from motionfmu.analysis.gcode import Program
@@ -35,7 +35,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         bool, typer.Option("--strict-feed", help="Refuse F above the highest feed.")
     ] = False,
     delete: Annotated[bool, typer.Option("--block-delete", help="Pass over lines with /.")] = False,
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
 ) -> None:
     """Check part programs: faults, cycle time, extents, tools; draw their paths."""
@@ -66,7 +66,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
             target = (folder / f"{file.stem}.gcode") if folder else results(file.stem, "gcode")
             _show(file, program, target)
     if as_json:
-        print(json.dumps(told, indent=1, allow_nan=False))
+        give(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
 
@@ -145,4 +145,4 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         (part / result_folder.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     if without:
         out.print(f"no picture: {install('report')}", markup=False)
-    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+    report(target / "report.html")

@@ -12,10 +12,14 @@ from motionfmu.base.extras import needed
 from motionfmu.cli import console_text
 from motionfmu.cli.common import (
     FAILED,
+    Folder,
     ScenarioPath,
     Set,
     app,
+    detail,
     files_of,
+    give,
+    report,
     results,
     run_shown,
     settings,
@@ -100,6 +104,20 @@ def loaded(path: Path, machine: str | None) -> "Scenario":
     return run.load(path) if machine is None else run.machine(machine).scenario(path)
 
 
+def _tell(result: "Result", early: "Sequence[str]") -> None:
+    """Print verdict, warnings that were not told early, what was not as written, the end."""
+    if result.checks:
+        verdicts(result.checks)
+    warnings([told for told in result.warnings if told not in early])
+    for line in result.overrides:
+        print(f"not as written: {line}")
+    detail(f"engine: {result.options.get('engine')}, FMI {result.options.get('fmi')}")
+    detail(f"recorded: {result.size}")
+    for line in _ends(result):
+        print(line)
+    print(f"{result.name}: {result.judgement}")
+
+
 @app.command()
 def run(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
@@ -112,7 +130,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     every: Annotated[
         int | None, typer.Option(min=1, help="Record one of so many steps, not as the scenario.")
     ] = None,
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
     signals: Annotated[
         bool, typer.Option(help="Keep signals/, a file for each; they may be large.")
@@ -120,9 +138,13 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     pictures: Annotated[
         bool, typer.Option("--pictures", help="Also write the report's pictures, PNG and SVG.")
     ] = False,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print result.json; without --out nothing is written.")
+    ] = False,
 ) -> None:
     """Run a scenario, or a program on a machine, judge it and write its report."""
     from motionfmu.report import result_folder
+    from motionfmu.run.result_files import json_of
 
     if pictures:
         needed("report")
@@ -139,21 +161,20 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     early: list[str] = []
     with contextlib.suppress(InputError):  # the run tells it, with all else that is wrong
         early = scenario.disagreements(options["set"])
-    warnings(early)
+    warnings([] if as_json else early)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": result_folder.near(target)}
     )
     kept = result_folder.Kept(csv, signals, pictures)
-    shown = result_folder.save(result, target, kept, under_way)
-    under_way("")
-    if result.checks:
-        verdicts(result.checks)
-    warnings([told for told in result.warnings if told not in early])
-    for line in result.overrides:
-        print(f"not as written: {line}")
-    for line in _ends(result):
-        print(line)
-    print(f"{scenario.name}: {result.judgement}")
-    print(f"report: {shown}")
+    shown = None
+    if folder or not as_json:
+        shown = result_folder.save(result, target, kept, under_way)
+        under_way("")
+    if as_json:
+        give(json_of(result_folder.all_numbers(result)))
+    else:
+        _tell(result, early)
+    if shown is not None and not as_json:
+        report(shown)
     if not result.ok:
         raise typer.Exit(FAILED)

@@ -8,12 +8,14 @@ import typer
 
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    Folder,
     ScenarioPath,
     Set,
     app,
     bare_table,
     out,
     progress_bar,
+    report,
     results,
     settings,
 )
@@ -37,7 +39,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
         typer.Option(help="contour_rms, contour_max, error_rms, error_max, ise, iae or itae."),
     ] = None,
     set_: Set = [],  # noqa: B006
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
     needed("tune")
@@ -80,7 +82,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     for text in tuned.stopped_by:
         out.print(f"stopped by: {text}")
     out.print(f"gains: {target / 'gains.toml'}", soft_wrap=True)
-    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+    report(target / "report.html")
 
 
 def _tune(scenario: "Scenario", asked: "Problem", given: dict[str, Any]) -> "Tuned":

@@ -50,13 +50,22 @@ STYLE = """
 """
 
 
+class NotebookFigure(Figure):
+    """A figure that a notebook shows, also one in which nothing has loaded pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        file = io.BytesIO()
+        self.savefig(file, format="png", dpi=2 * WIDTH / self.get_figwidth())
+        return file.getvalue()
+
+
 def plot(
     result: Result,
     names: Sequence[str | tuple[str, ...]],
     window: tuple[float, float] | None,
 ) -> Figure:
     """The figure of `Result.plot`."""
-    make: Callable[..., Figure] = Figure
+    make: Callable[..., Figure] = NotebookFigure
     windows = backend_registry.list_builtin(BackendFilter.INTERACTIVE)
     if matplotlib.get_backend().lower() in (name.lower() for name in windows):
         from matplotlib import pyplot
