@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperCommand, TyperGroup, TyperOption
+from typer.core import TyperCommand, TyperGroup
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of, text_of, word
@@ -44,18 +44,19 @@ class Mode:
 mode = Mode()
 
 
-def _chosen(ctx: Any, option: Any, value: bool) -> None:
+def _chosen(ctx: typer.Context, option: typer.CallbackParam, value: bool) -> None:
     """Take a habit of all commands; it ends with the command."""
-    setattr(mode, option.name, value)
+    name = str(option.name)
+    setattr(mode, name, value)
     if not value:
         return
-    ctx.call_on_close(lambda: setattr(mode, option.name, False))
-    if option.name == "quiet":
-        silence = open(os.devnull, "w")
-        ctx.call_on_close(lambda usual=sys.stdout: setattr(sys, "stdout", usual))
+    ctx.call_on_close(lambda: setattr(mode, name, False))
+    if name == "quiet":
+        usual, silence = sys.stdout, open(os.devnull, "w", encoding="utf-8")
         ctx.call_on_close(silence.close)
+        ctx.call_on_close(lambda: setattr(sys, "stdout", usual))
         sys.stdout = silence
-    if option.name == "verbose":
+    if name == "verbose":
         began = time.perf_counter()
         ctx.call_on_close(lambda: _took(time.perf_counter() - began))
 
@@ -64,26 +65,36 @@ def _took(seconds: float) -> None:
     print(f"took {seconds:.2f} s", file=sys.stderr)
 
 
-def _habit(names: list[str], told: str) -> TyperOption:
-    return TyperOption(
-        param_decls=names,
-        type_descriptor=bool,
-        is_flag=True,
-        default=False,
-        expose_value=False,
-        callback=_chosen,
-        help=told,
-    )
+def _habit(told: str, *names: str) -> Any:
+    return typer.Option(*names, callback=_chosen, expose_value=False, help=told)
+
+
+@functools.cache
+def _habits() -> list[Any]:
+    """The options of a command that has nothing but habits."""
+    one = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+    @one.command()
+    def nothing(
+        quiet: Annotated[
+            bool, _habit("Print nothing; the status says it.", "-q", "--quiet")
+        ] = False,
+        verbose: Annotated[
+            bool, _habit("Tell more, and how long it took.", "-v", "--verbose")
+        ] = False,
+        open: Annotated[bool, _habit("Open the report in the browser.", "--open")] = False,
+    ) -> None:
+        pass
+
+    return list(typer.main.get_command(one).params)
 
 
 class Command(TyperCommand):
     """A command with the habits of all: -q and -v, and --open if it writes a result folder."""
 
     def __init__(self, *args: Any, params: list[Any] | None = None, **more: Any) -> None:
-        own = [_habit(["-q", "--quiet"], "Print nothing; the exit status says it.")]
-        own.append(_habit(["-v", "--verbose"], "Tell more, and how long it took."))
-        if any(p.name == "folder" for p in params or ()):
-            own.append(_habit(["--open"], "Open the report in the browser."))
+        paged = any(p.name == "folder" for p in params or ())
+        own = [option for option in _habits() if paged or option.name != "open"]
         super().__init__(*args, params=[*(params or ()), *own], **more)
 
 

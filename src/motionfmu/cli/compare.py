@@ -50,15 +50,15 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
     if folder:
         result_folder.usable(folder)
     found = pairs.compare(a, b, signals or ("*",), settings(set_))
-    shown = None
+    page = None
     if folder or not as_json:
-        target = folder or results(found.a.numbers["scenario"], "compare")
-        shown = found.save(target)
+        page = found.save(folder or results(found.a.numbers["scenario"], "compare"))
     if as_json:
         give(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
     else:
         _tell(found)
-        report(shown)
+        assert page is not None
+        report(page)
     if not found.ok:
         raise typer.Exit(FAILED)
 

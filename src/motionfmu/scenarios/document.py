@@ -19,6 +19,7 @@ from motionfmu.scenarios.table_sources import (
     Sources,
     Tables,
     chain,
+    in_rows,
     merged,
     of_file,
 )
@@ -93,13 +94,13 @@ def read(path: str | Path) -> Document:
 
 def made(tables: Mapping[str, Any], name: str, folder: Path, about: str) -> Document:
     """The document of a dictionary; texts name files beside a folder."""
-    own = Source(f"<{name}>", folder, plain(tables), None, about)
+    own = Source(f"<{name}>", folder, in_rows(plain(tables)), None, about)
     return parsed(chain(own), name)
 
 
 def changed(document: Document, tables: Mapping[str, Any], name: str) -> Document:
     """A document with other tables, merged as those of a file that extends it."""
-    own = Source(f"<{name}>", document.sources[0].folder, plain(tables), None, document.about)
+    own = Source(f"<{name}>", document.sources[0].folder, in_rows(plain(tables)), None, document.about)
     return replace(parsed([own, *document.sources], name), changed=True)
 
 
