@@ -68,7 +68,7 @@ def _lines(lines: int, folder: Path) -> Spent:
     """The demo's machine on a spiral."""
     scenario = folder / "spiral"
     scenario.mkdir()
-    demo = (DEMO / "scenario.toml").read_text().partition("[check]")[0]
+    demo = (DEMO / "scenario.toml").read_text().partition("[expect]")[0]
     check = '[check]\n"mcc.done" = { final = true }\n"mcc.error" = { absmax = 0 }\n'
     (scenario / "scenario.toml").write_text(demo + check)
     (scenario / "circle.ngc").write_text(_spiral(lines))

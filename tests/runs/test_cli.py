@@ -28,9 +28,11 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_run_writes_a_whole_result_and_says_where(demo: tuple[Path, str]) -> None:
     folder, text = demo
     assert f"report: {folder}/report.html" in text
-    assert "circle: all checks hold" in text
+    assert "circle: all 4 checks hold, 9 expected not judged" in text
     (radius,) = (line for line in text.splitlines() if "contour.error.max" in line)
-    assert re.fullmatch(r" ok  contour.error.max +0\.0\d+ +>= 0\.044 and <= 0\.047", radius)
+    assert re.fullmatch(
+        r" expected  contour.error.max +0\.0\d+ +>= 0\.044 and <= 0\.047; as expected", radius
+    )
     names = {p.name for p in folder.iterdir()}
     assert names == {
         "signals",
@@ -75,12 +77,16 @@ def test_the_report_needs_no_network(demo: tuple[Path, str]) -> None:
 
 
 def test_a_failed_check_is_status_1_and_named(tmp_path: Path) -> None:
-    out = tmp_path / "circle"
-    done = within("run", "scenarios/mismatch_line", "--set", "mcc.p_gain=200", "--out", out)
+    out, mine = tmp_path / "circle", tmp_path / "mine"
+    mine.mkdir()
+    limit = '[check]\n"contour.error.max" = { min = 0.2608 }\n'
+    text = f'# A limit.\nextends = "{ROOT}/scenarios/mismatch_line"\n{limit}'
+    (mine / "scenario.toml").write_text(text)
+    done = within("run", mine, "--set", "mcc.p_gain=200", "--out", out)
     assert done.returncode == 1
     assert "not as written: mcc.p_gain = 200 (scenario: [200, 160, 0, 0, 0, 0])" in done.stdout
     assert "ended: stop = 2 s; the program was done at 1." in done.stdout
-    assert "a check FAILED" in done.stdout and (out / "report.html").is_file()
+    assert "mine: 1 of 6 checks FAILED" in done.stdout and (out / "report.html").is_file()
     row = next(r for r in done.stdout.splitlines() if "FAILED" in r and "contour.error.max" in r)
     assert ">= 0.2608" in row
 

@@ -267,9 +267,15 @@ def test_the_console_says_it_and_its_status_is_the_verdict(
     folders: tuple[Path, Path], tmp_path: Path
 ) -> None:
     a, b = folders
-    worse = within("compare", a, b, "--json")
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    base = Path(__file__).parents[2] / "scenarios/circle_theory"
+    limit = '[check]\n"contour.circles.0.ccw.radius_change" = { max = -0.0530 }\n'
+    text = f'# A limit.\nextends = "{base}"\n{limit}'
+    (mine / "scenario.toml").write_text(text)
+    worse = within("compare", mine, mine, "--set", "mcc.p_gain=300", "--json")
     told = json.loads(worse.stdout)
-    assert worse.returncode == 1 and not told["ok"] and not list(tmp_path.iterdir())
+    assert worse.returncode == 1 and not told["ok"] and len(list(tmp_path.iterdir())) == 1
     failed = {c["name"] for c in told["checks"] if c["worse"]}
     assert failed == {*told["worse"]} and any("radius_change" in n for n in failed)
     for c in told["checks"]:

@@ -175,7 +175,11 @@ WRONG = [
     ('off = ""\nset = { "mcc.seed" = 2 }\nfails = ["mcc.error"]', 1, "contrary.0.off = ''"),
     ('off = "x"\nset = { "mcc.seed" = 2 }\nfails = []', 3, "contrary.0.fails = []"),
     ('off = "x"\nset = { "mcc.seed" = 2 }', 0, "fails is missing"),
-    ('off = "x"\nset = { "mcc.seed" = 2 }\nfails = ["mcc.done"]', 3, "mcc.done is not in [check]"),
+    (
+        'off = "x"\nset = { "mcc.seed" = 2 }\nfails = ["mcc.done"]',
+        3,
+        "mcc.done is not in [check] or [expect]",
+    ),
     ('off = "x"\nset = { "mcc.sed" = 2 }\nfails = ["mcc.error"]', 2, "did you mean 'seed'?"),
     ('off = "x"\nset = { "mcc.seed" = 0.5 }\nfails = ["mcc.error"]', 2, "mcc.seed = 0.5: Int32"),
     ('off = "x"\nset = { "mcc.done" = true }\nfails = ["mcc.error"]', 2, "is an output"),

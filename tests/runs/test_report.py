@@ -202,10 +202,10 @@ def test_a_page_of_many_corners_shows_the_worst_and_opens_the_others() -> None:
 
 
 def test_the_page_tells_a_failed_check(tmp_path: Path) -> None:
-    gains = {"mcc.p_gain": 200}
-    result = motionfmu.load(ROOT / "scenarios/mismatch_line").run(set=gains)
+    limit = {"contour.error.max": {"max": 0.1}}
+    result = motionfmu.load(ROOT / "scenarios/mismatch_line").changed(check=limit).run()
     page = write_report(result, result.contour(), tmp_path).read_text()
-    assert re.search(r"✗ \d of \d+ checks failed", page)
+    assert re.search(r"✗ 1 of \d+ checks FAILED", page)
 
 
 @pytest.mark.parametrize(

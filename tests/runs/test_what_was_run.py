@@ -79,9 +79,8 @@ def test_the_circle_the_other_way_round_is_no_corner(circle) -> None:
     assert "<h3>Worst lines</h3>" in page
     assert 'class="two"><div><h2>' not in page  # nor half a page left empty
     # in words beside the name, with its unit
-    row = re.search(
-        r'contour\.error\.max<div class="sub">(.*?)</div>.*?<td class="key">(.*?)<', page
-    )
+    cells = r'<div class="sub">(.*?)</div>.*?<td class="n">.*?<td class="n">(.*?)<'
+    row = re.search(rf"contour\.error\.max{cells}", page)
     assert row and row[1] == "Contour error, largest" and row[2].endswith(" µm")
     assert "<h2>Torque command to the current loop (drives.torque)</h2>" in page
 

@@ -50,7 +50,7 @@ def scenario(folder: Path, table: str, part: str = PART, more: str = "") -> Path
     shutil.copytree(ROOT / "scenarios/circle", folder)
     text = (folder / "scenario.toml").read_text()
     less = 'stop = 5.0\nwithout = ["contour", "check"]'
-    head = text[: text.index("[check]")].replace("stop = 8.0", less)
+    head = text[: text.index("[expect]")].replace("stop = 8.0", less)
     (folder / "scenario.toml").write_text(head + table + more)
     if part:
         (folder / "circle.ngc").write_text(part)
@@ -153,8 +153,8 @@ def test_a_waveform_is_what_the_drive_did(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
     shutil.copytree(ROOT / "scenarios/output_modes", folder)
     file = folder / "scenario.toml"
-    before, after = file.read_text().split("[check]", 1)
-    file.write_text(f"{before}{WAVE}\n[check]{after}")
+    before, after = file.read_text().split("[expect]", 1)
+    file.write_text(f"{before}{WAVE}\n[expect]{after}")
     result = motionfmu.load(folder).run()
     chart = result.figures()[-1]
     speed, torque, deviation = chart.panels
@@ -180,7 +180,7 @@ def test_a_waveform_is_what_the_drive_did(tmp_path: Path) -> None:
         ("[0.1, 0.6]", "[0.1, 60]", "window"),
         ("rated  = 2.0", "rated = 0", "rated"),
     ):
-        file.write_text(f"{before}{WAVE.replace(old, new)}\n[check]{after}")
+        file.write_text(f"{before}{WAVE.replace(old, new)}\n[expect]{after}")
         with pytest.raises(InputError, match=told):
             motionfmu.load(folder)
 

@@ -81,7 +81,7 @@ def test_the_demo_runs_from_an_empty_folder(installed: Installed) -> None:
     before = {p: p.stat().st_mtime_ns for p in installed.site.glob("motionfmu/**/*")}
     done = installed.run("motionfmu", "run", "circle")
     assert done.returncode == 0, done.stderr
-    assert "circle: all checks hold\n" in done.stdout and "warning" not in done.stdout
+    assert "circle: all 13 checks hold\n" in done.stdout and "warning" not in done.stdout
     assert [p.name for p in installed.empty.iterdir()] == ["results"]
     folder = installed.empty / "results/circle"
     assert "Plotly" in (folder / "report.html").read_text()

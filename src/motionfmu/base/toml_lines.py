@@ -36,6 +36,7 @@ class Lines:
         self._at: dict[tuple[str, str], int] = {}
         table = ""
         counts: dict[str, int] = {}
+        rows: dict[str, int] = {}
         for number, line in enumerate(text.split("\n"), 1):
             if header := re.match(r"\s*\[\[(.+?)\]\]", line):
                 name = _numbered(header[1], counts)
@@ -47,6 +48,9 @@ class Lines:
                 self._at[table, ""] = number
             elif key := re.match(r"""\s*("[^"]*"|'[^']*'|[A-Za-z0-9_.-]+)\s*=""", line):
                 self._at.setdefault((table, key[1].strip("\"'")), number)
+                if table and "." not in table and line[:1].strip():  # a row, if it is a keyed array
+                    rows[table] = rows.get(table, -1) + 1
+                    self._at.setdefault((f"{table}.{rows[table]}", ""), number)
 
     def has(self, table: str, key: str = "") -> bool:
         """Whether this key or table itself, not one around it, has a line."""

@@ -2,11 +2,9 @@
 
 from collections.abc import Callable
 
-import typer
+from motionfmu.cli.common import App, Group, app
 
-from motionfmu.cli.common import Group, app
-
-card = typer.Typer(
+card = App(
     cls=Group,
     rich_markup_mode=None,
     help="Network motion card: plan, serve, simulate.",

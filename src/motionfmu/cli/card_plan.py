@@ -22,6 +22,7 @@ FrameOption = Annotated[
     tuple[float, float, float, float] | None,
     typer.Option("--frame", metavar="X1 Y1 X2 Y2", help="P1 and P2 of the machine, for SC."),
 ]
+Output = Annotated[Path | None, typer.Option("--out", "-o", "--output", help="Job file.")]
 PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with several.")]
 
 
@@ -29,7 +30,7 @@ PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with sever
 def plan(  # noqa: PLR0913  (each is an option of the command)
     file: Annotated[Path, typer.Argument(help="PltDrawing, a PLT file.")],
     config: Config,
-    output: Annotated[Path | None, typer.Option("-o", "--output", help="Job file.")] = None,
+    output: Output = None,
     order: Annotated[str, typer.Option(help="Of the contours: file or nearest.")] = "file",
     corners: Annotated[str, typer.Option(help="At corners: round or stop.")] = "round",
     pen: Annotated[list[int] | None, typer.Option(help="Only what this pen draws.")] = None,

@@ -1,7 +1,6 @@
 """The command that judges scenarios."""
 
 import json
-import math
 import os
 import sys
 import time
@@ -12,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from motionfmu.base.errors import InputError
-from motionfmu.cli.common import FAILED, WRONG, OnMachine, app, out, run_shown
+from motionfmu.cli.common import FAILED, WRONG, OnMachine, app, give, mode, out, run_shown
 from motionfmu.cli.run import Engine, Fmi, verdicts, warnings
 
 if TYPE_CHECKING:
@@ -58,7 +57,7 @@ def check(  # noqa: PLR0913  (each is an option of the command)
     if junit:
         _write_junit(junit, cases, started)
     if as_json:
-        print(json.dumps(_numbers(cases, time.perf_counter() - begin), indent=1, allow_nan=False))
+        give(json.dumps(_numbers(cases, time.perf_counter() - begin), indent=1, allow_nan=False))
     print(told, file=sys.stderr if as_json else sys.stdout)
     if not all(case.ok for case in cases):
         raise typer.Exit(WRONG if any(case.error for case in cases) else FAILED)
@@ -93,7 +92,13 @@ def _tell(case: "Case", quiet: bool) -> None:
     if quiet:
         return
     mark = "[green]ok[/]    " if case.ok else "[bold red]FAILED[/]"
-    what = f"[dim]off:[/] {case.off}" if case.off else f"[dim]{len(case.checks)} bounds[/]"
+    from motionfmu.run.checks import NOTHING
+
+    what = (
+        f"[dim]off:[/] {case.off}"
+        if case.off
+        else f"[dim]{NOTHING if case.silent else f'{len(case.checks)} bounds'}[/]"
+    )
     what = "[dim]wrong[/]" if case.error else what.replace("[[", r"\[[")
     out.print(f"{mark}  {case.scenario}  {what}  [dim]{case.seconds:.1f} s[/]", soft_wrap=True)
     warnings(case.warnings)
@@ -101,11 +106,11 @@ def _tell(case: "Case", quiet: bool) -> None:
         out.print(f"    holds: {name}", markup=False, soft_wrap=True)
     if case.off:
         for v in case.checks:
-            if not v.ok:
+            if not v.within:
                 why = f" ({v.reason})" if v.reason else ""
                 text = f"    fails: {v.name} = {v.value:.6g}{why}, asked {v.bounds}"
                 out.print(text, markup=False, soft_wrap=True)
-    elif not case.ok and not case.error:
+    elif case.checks and (mode.verbose or not case.ok):
         verdicts(case.checks)
 
 
@@ -114,11 +119,13 @@ def _summary(cases: "Sequence[Case]", scenarios: int, seconds: float) -> str:
     good = sum(case.ok for case in cases)
     tail = f", {wrong} wrong" if wrong else ""
     failed = len(cases) - good - wrong
+    silent = sum(case.silent for case in cases)
     many = f"{scenarios} scenario{'s' * (scenarios != 1)}"
     if any(case.off for case in cases):
         what = f"{many}, {len(cases)} contraries: {good} fail as they must"
         return f"{what}, {failed} do not{tail}, {seconds:.0f} s"
-    return f"{many}: {good} hold, {failed} fail{tail}, {seconds:.0f} s"
+    tail += f", {silent} without a check" if silent else ""
+    return f"{many}: {good - silent} hold, {failed} fail{tail}, {seconds:.0f} s"
 
 
 def _numbers(cases: "Sequence[Case]", seconds: float) -> dict[str, Any]:
@@ -132,16 +139,7 @@ def _numbers(cases: "Sequence[Case]", seconds: float) -> dict[str, Any]:
             "error": case.error or None,
             "seconds": round(case.seconds, 3),
             "warnings": list(case.warnings),
-            "checks": [
-                {
-                    "name": v.name,
-                    "bounds": v.bounds,
-                    "value": v.value if math.isfinite(v.value) else None,
-                    "ok": v.ok,
-                    "reason": v.reason,
-                }
-                for v in case.checks
-            ],
+            "checks": [v.numbers() for v in case.checks],
         }
         for case in cases
     ]

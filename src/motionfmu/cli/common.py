@@ -1,12 +1,15 @@
 """Common parts of the commands: application, options, settings, runs with a progress bar."""
 
 import functools
+import os
 import sys
+import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of, text_of, word
@@ -29,11 +32,84 @@ class Group(TyperGroup):
             formatter.write_dl([(name, text.replace("\n", " ")) for name, text in firsts])
 
 
-app = typer.Typer(
+@dataclass
+class Mode:
+    """How much a command tells, and whether its page is to be opened."""
+
+    quiet: bool = False
+    verbose: bool = False
+    open: bool = False
+
+
+mode = Mode()
+
+
+def _chosen(ctx: typer.Context, option: typer.CallbackParam, value: bool) -> None:
+    """Take a habit of all commands; it ends with the command."""
+    name = str(option.name)
+    setattr(mode, name, value)
+    if not value:
+        return
+    ctx.call_on_close(lambda: setattr(mode, name, False))
+    if name == "quiet":
+        usual, silence = sys.stdout, open(os.devnull, "w", encoding="utf-8")
+        ctx.call_on_close(silence.close)
+        ctx.call_on_close(lambda: setattr(sys, "stdout", usual))
+        sys.stdout = silence
+    if name == "verbose":
+        began = time.perf_counter()
+        ctx.call_on_close(lambda: _took(time.perf_counter() - began))
+
+
+def _took(seconds: float) -> None:
+    print(f"took {seconds:.2f} s", file=sys.stderr)
+
+
+def _habit(told: str, *names: str) -> Any:
+    return typer.Option(*names, callback=_chosen, expose_value=False, help=told)
+
+
+@functools.cache
+def _habits() -> list[Any]:
+    """The options of a command that has nothing but habits."""
+    one = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+    @one.command()
+    def nothing(
+        quiet: Annotated[
+            bool, _habit("Print nothing; the status says it.", "-q", "--quiet")
+        ] = False,
+        verbose: Annotated[
+            bool, _habit("Tell more, and how long it took.", "-v", "--verbose")
+        ] = False,
+        open: Annotated[bool, _habit("Open the report in the browser.", "--open")] = False,
+    ) -> None:
+        pass
+
+    return list(typer.main.get_command(one).params)
+
+
+class Command(TyperCommand):
+    """A command with the habits of all: -q and -v, and --open if it writes a result folder."""
+
+    def __init__(self, *args: Any, params: list[Any] | None = None, **more: Any) -> None:
+        paged = any(p.name == "folder" for p in params or ())
+        own = [option for option in _habits() if paged or option.name != "open"]
+        super().__init__(*args, params=[*(params or ()), *own], **more)
+
+
+class App(typer.Typer):
+    """An application whose commands have the habits of all."""
+
+    def command(self, name: str | None = None, **more: Any) -> Any:
+        """Register a command."""
+        return super().command(name, **{"cls": Command} | more)
+
+
+app = App(
     cls=Group,
     help="Motion controllers as FMI co-simulation FMUs.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,  # to load what draws boxes takes longer than all else
 )
@@ -81,9 +157,25 @@ def _all(
     pass
 
 
+def _scenarios(incomplete: str) -> list[str]:
+    """What a shell offers for a scenario: names of `motionfmu list`, folders, files."""
+    import glob
+
+    from motionfmu.scenarios import package_files
+
+    paths = [f"{p}/" if Path(p).is_dir() else p for p in glob.glob(f"{glob.escape(incomplete)}*")]
+    names = [name for name in package_files.scenarios() if name.startswith(incomplete)]
+    return sorted({*names, *paths})
+
+
 ScenarioPath = Annotated[
-    Path, typer.Argument(help="A scenario: its folder or file, or a name of `motionfmu list`.")
+    Path,
+    typer.Argument(
+        help="A scenario: its folder or file, or a name of `motionfmu list`.",
+        autocompletion=_scenarios,
+    ),
 ]
+Folder = Annotated[Path | None, typer.Option("--out", "-o", help="Result folder.")]
 Set = Annotated[
     list[str],
     typer.Option(
@@ -139,6 +231,26 @@ def _given(texts: list[str]) -> dict[str, tuple[Any, str]]:
             raise InputError(f"--set {error}") from None
         found.update({name: (value, text) for name, value in tables.items()})
     return found
+
+
+def give(text: str) -> None:
+    """Print what was asked for by --json, also with -q."""
+    print(text, file=sys.__stdout__ if mode.quiet else sys.stdout)
+
+
+def detail(text: str) -> None:
+    """Print a line that -v asks for."""
+    if mode.verbose:
+        print(text)
+
+
+def report(page: Path) -> None:
+    """Say where the page is, and open it if that is asked for."""
+    print(f"report: {page}")
+    if mode.open:
+        import webbrowser
+
+        webbrowser.open(page.resolve().as_uri())
 
 
 def results(name: str, kind: str = "") -> Path:

@@ -8,12 +8,15 @@ import typer
 
 from motionfmu.cli.common import (
     FAILED,
+    Folder,
     OnMachine,
     Set,
     app,
     bare_table,
+    give,
     loaded,
     out,
+    report,
     results,
     settings,
 )
@@ -36,7 +39,7 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
         list[str], typer.Option(metavar="PATTERN", help="Signals, as 'card.*'; all if none.")
     ] = [],  # noqa: B006
     set_: Set = [],  # noqa: B006
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print JSON; without --out nothing is written.")
     ] = False,
@@ -54,15 +57,15 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
         result_folder.usable(folder)
     left, right = _side(a, machine), _side(b, machine)
     found = pairs.compare(left, right, signals or ("*",), settings(set_))
-    shown = None
+    page = None
     if folder or not as_json:
-        target = folder or results(found.a.numbers["scenario"], "compare")
-        shown = found.save(target)
+        page = found.save(folder or results(found.a.numbers["scenario"], "compare"))
     if as_json:
-        print(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
+        give(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
     else:
         _tell(found)
-        out.print(f"report: {shown}", soft_wrap=True)
+        assert page is not None
+        report(page)
     if not found.ok:
         raise typer.Exit(FAILED)
 
@@ -74,10 +77,11 @@ def _side(path: Path, machine: str | None) -> "Path | Scenario":
 
 def _tell(found: "Comparison") -> None:
     from motionfmu.compare.words import GONE, change_text, text_of
+    from motionfmu.run.checks import tally
 
     for name, x in (("A", found.a), ("B", found.b)):
-        held, count = sum(c["ok"] for c in x.numbers["checks"]), len(x.numbers["checks"])
-        out.print(f"{name}: {x.name}, {held} of {count} checks hold", markup=False, soft_wrap=True)
+        judged = tally(c["ok"] for c in x.numbers["checks"]).words
+        out.print(f"{name}: {x.name}, {judged}", markup=False, soft_wrap=True)
     for d in found.different:
         out.print(f"  {d.what}: {d.a} → {d.b}", markup=False, soft_wrap=True)
     known = {n.name: n for n in found.table("contour")}

@@ -8,6 +8,7 @@ import typer
 
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    Folder,
     OnMachine,
     ScenarioPath,
     Set,
@@ -16,6 +17,7 @@ from motionfmu.cli.common import (
     loaded,
     out,
     progress_bar,
+    report,
     results,
     run_shown,
     settings,
@@ -32,7 +34,7 @@ def contour(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
     machine: OnMachine = None,
     set_: Set = [],  # noqa: B006  (typer makes a new list)
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     figures: Annotated[
         bool, typer.Option("--figures", help="Only print the figures of one run.")
     ] = False,
@@ -93,7 +95,7 @@ def _explain_path(scenario: "Scenario", settings: dict[str, Any], folder: Path |
             out.print(f"[bold]{e.title}[/] not judged: {e.how.replace('[', chr(92) + '[')}")
     with result_folder.whole(target) as part:
         shown = write_path_explanation(found, part).name
-    out.print(f"report: {target / shown}", soft_wrap=True)
+    report(target / shown)
 
 
 def bar_columns() -> tuple[Any, ...]:
@@ -132,7 +134,7 @@ def _explain(scenario: "Scenario", settings: dict[str, Any], folder: Path | None
             out.print(f"  {words}")
     with result_folder.whole(target) as part:
         shown = write_explanation(found, part).name
-    out.print(f"report: {target / shown}", soft_wrap=True)
+    report(target / shown)
 
 
 def _flat(value: Any, name: str = "") -> list[tuple[str, str]]:

@@ -8,7 +8,19 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install, missing
-from motionfmu.cli.common import FAILED, Set, app, bare_table, out, results, settings
+from motionfmu.cli.common import (
+    FAILED,
+    Folder,
+    OnMachine,
+    Set,
+    app,
+    bare_table,
+    give,
+    out,
+    report,
+    results,
+    settings,
+)
 
 if TYPE_CHECKING:
     from motionfmu.analysis.gcode import Program
@@ -31,24 +43,21 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         bool, typer.Option("--fanuc", help="As for Fanuc and Haas: P in ms, G65, GOTO.")
     ] = False,
     angles: Annotated[bool, typer.Option("--angles", help="A B C in place of U V W.")] = False,
-    machine: Annotated[
-        str | None,
-        typer.Option(metavar="MACHINE", help="Where its time goes on a machine; see machines."),
-    ] = None,
-    given: Set = [],  # noqa: B006
+    machine: OnMachine = None,
+    set_: Set = [],  # noqa: B006
     strict_feed: Annotated[
         bool, typer.Option("--strict-feed", help="Refuse F above the highest feed.")
     ] = False,
     delete: Annotated[bool, typer.Option("--block-delete", help="Pass over lines with /.")] = False,
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
 ) -> None:
     """Check part programs: faults, cycle time, extents, tools; draw their paths."""
     if machine is not None:
-        good = _on_machine(files, machine, given, folder, as_json)
+        good = _on_machine(files, machine, set_, folder, as_json)
         raise typer.Exit(0 if good else FAILED)
-    if given:
-        raise InputError(f"--set {given[0]}: --machine is missing")
+    if set_:
+        raise InputError(f"--set {set_[0]}: --machine is missing")
     settings: dict[str, Any] = {
         "max_feed": max_feed,
         "speed": rapid / 60.0,
@@ -76,7 +85,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
             target = (folder / f"{file.stem}.gcode") if folder else results(file.stem, "gcode")
             _show(file, program, target)
     if as_json:
-        print(json.dumps(told, indent=1, allow_nan=False))
+        give(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
 
@@ -124,9 +133,9 @@ def _on_machine(
             (part / "report.html").write_text(page, encoding="utf-8")
             text = json.dumps(found, indent=1, allow_nan=False)
             (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
-        out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+        report(target / "report.html")
     if as_json:
-        print(json.dumps(told, indent=1, allow_nan=False))
+        give(json.dumps(told, indent=1, allow_nan=False))
     return True
 
 
@@ -204,4 +213,4 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         (part / result_folder.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     if without:
         out.print(f"no picture: {install('report')}", markup=False)
-    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+    report(target / "report.html")

@@ -200,6 +200,7 @@ def _scenario(scenario: "Scenario") -> None:
     from motionfmu.analysis.linear import gain_of
     from motionfmu.analysis.linear.gains import in_lines
     from motionfmu.scenarios import fmus
+    from motionfmu.scenarios.body import CHECK, EXPECT
 
     body = scenario.document.body
     print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
@@ -219,12 +220,14 @@ def _scenario(scenario: "Scenario") -> None:
     every = f", of {body.record.every} steps one" if body.record.every > 1 else ""
     _section(f"recorded{every}", [("", ", ".join(body.record.signals))])
     _section("figures", [("", figure.title) for figure in body.figure])
-    checks = [
-        (name, _bounds(check.model_dump(exclude_none=True)))
-        for name, tables in body.check.items()
-        for check in tables
-    ]
-    _section("checks", checks)
+    for heading, wanted in (("checks", CHECK), ("expected of it as written", EXPECT)):
+        checks = [
+            (name, _bounds(check.model_dump(exclude_none=True)))
+            for table, name, rows in body.asked
+            for check in rows
+            if table == wanted
+        ]
+        _section(heading, checks)
     _section("what fails them", [(case.off, _bounds(case.set)) for case in body.contrary])
 
 

@@ -4,7 +4,6 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,6 +11,7 @@ import typer
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    Folder,
     OnMachine,
     ScenarioPath,
     Set,
@@ -20,6 +20,7 @@ from motionfmu.cli.common import (
     loaded,
     out,
     progress_bar,
+    report,
     results,
     setting,
     settings,
@@ -50,7 +51,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     ] = None,
     simulate: Annotated[bool, typer.Option(help="Also run the FMUs.")] = True,
     set_: Set = [],  # noqa: B006
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
 ) -> None:
     """Margins and largest stable gains of a scenario's loops, and their report."""
     needed("tune")
@@ -91,7 +92,7 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
             out.print(f"{s.at}: the running FMUs differ by at most {size:.2g} % and {angle:.2g}°")
         for note in s.notes:
             out.print(note, markup=False)
-    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+    report(target / "report.html")
 
 
 def _table(studies: Sequence["LoopStudy"]) -> "Table":

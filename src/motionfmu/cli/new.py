@@ -10,12 +10,12 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.new_folder import new_folder
-from motionfmu.cli.common import Group, app
+from motionfmu.cli.common import App, Group, app
 
 TEMPLATES = Path(__file__).parent / "templates"
 Name = Annotated[str, typer.Argument(help="Small letters, digits and _; its folder's name.")]
 
-new = typer.Typer(
+new = App(
     cls=Group,
     rich_markup_mode=None,
     help="Make a new FMU, scenario or machine that works, to be changed.",

@@ -1,6 +1,7 @@
 """The command that runs a scenario, and how verdicts are shown."""
 
 import contextlib
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -11,12 +12,16 @@ from motionfmu.base.extras import needed
 from motionfmu.cli import console_text
 from motionfmu.cli.common import (
     FAILED,
+    Folder,
     OnMachine,
     ScenarioPath,
     Set,
     app,
+    detail,
     files_of,
+    give,
     loaded,
+    report,
     results,
     run_shown,
     settings,
@@ -33,18 +38,35 @@ Engine = Annotated[str | None, typer.Option(help="fused, native, python or fmpy.
 Fmi = Annotated[int | None, typer.Option(help="FMI version: 2 or 3; 3 if not given.")]
 
 
+# Word and colour of a verdict; None is an expected number that is not judged.
+_MARKS = {
+    True: ("ok", console_text.GREEN),
+    False: ("FAILED", console_text.RED),
+    None: ("expected", console_text.DIM),
+}
+
+
 def verdicts(checks: "Sequence[Verdict]") -> None:
-    """Each number with its bounds, and why there are numbers missing."""
-    from motionfmu.run.checks import of_one_number, together
+    """Each number with its bounds; of one that is not judged the difference; missing numbers."""
+    from motionfmu.run.checks import beyond, of_one_number, together
 
     rows = []
     for same in of_one_number(checks):
         v, bounds = same[0], together([c.bounds for c in same])
-        mark, style = ("ok", console_text.GREEN) if v.ok else ("FAILED", console_text.RED)
+        mark, style = _MARKS[v.ok]
+        if v.ok is None and not v.reason:
+            bounds += f"; {difference(beyond(same))}"
         rows.append(((mark, v.name, "none" if v.reason else f"{v.value:.6g}", bounds), style))
     print(console_text.table(("", "check", "found", "asked"), rows))
     for reason, names in _reasons(checks).items():
         print(f"{', '.join(names)}: {reason}")
+
+
+def difference(size: float) -> str:
+    """How far a number lies beyond what is expected, in words."""
+    if math.isnan(size):
+        return "not as expected"
+    return f"differs by {size:+.4g}" if size else "as expected"
 
 
 def warnings(texts: "Sequence[str]") -> None:
@@ -70,11 +92,18 @@ def _ends(result: "Result") -> list[str]:
     return [f"ended: {result.stopped}{told}"]
 
 
-def _judgement(result: "Result") -> str:
-    """The verdict in words; a run of which nothing is asked has none."""
-    if not result.checks:
-        return "no checks: nothing was judged"
-    return "all checks hold" if result.ok else "a check FAILED"
+def _tell(result: "Result", early: "Sequence[str]") -> None:
+    """Print verdict, warnings that were not told early, what was not as written, the end."""
+    if result.checks:
+        verdicts(result.checks)
+    warnings([told for told in result.warnings if told not in early])
+    for line in result.overrides:
+        print(f"not as written: {line}")
+    detail(f"engine: {result.options.get('engine')}, FMI {result.options.get('fmi')}")
+    detail(f"recorded: {result.size}")
+    for line in _ends(result):
+        print(line)
+    print(f"{result.name}: {result.judgement}")
 
 
 @app.command()
@@ -89,7 +118,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     every: Annotated[
         int | None, typer.Option(min=1, help="Record one of so many steps, not as the scenario.")
     ] = None,
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
     signals: Annotated[
         bool, typer.Option(help="Keep signals/, a file for each; they may be large.")
@@ -101,9 +130,13 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         Path | None,
         typer.Option(metavar="FOLDER", help="With --machine: also write it there as a scenario."),
     ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print result.json; without --out nothing is written.")
+    ] = False,
 ) -> None:
     """Run a scenario, or a program on a machine, judge it and write its report."""
     from motionfmu.report import result_folder
+    from motionfmu.run.result_files import json_of
     from motionfmu.run.run_plan import Options
 
     if pictures:
@@ -130,21 +163,20 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     early: list[str] = []
     with contextlib.suppress(InputError):  # the run tells it, with all else that is wrong
         early = scenario.disagreements(options["set"])
-    warnings(early)
+    warnings([] if as_json else early)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": result_folder.near(target)}
     )
     kept = result_folder.Kept(csv, signals, pictures)
-    shown = result_folder.save(result, target, kept, under_way)
-    under_way("")
-    if result.checks:
-        verdicts(result.checks)
-    warnings([told for told in result.warnings if told not in early])
-    for line in result.overrides:
-        print(f"not as written: {line}")
-    for line in _ends(result):
-        print(line)
-    print(f"{scenario.name}: {_judgement(result)}")
-    print(f"report: {shown}")
+    shown = None
+    if folder or not as_json:
+        shown = result_folder.save(result, target, kept, under_way)
+        under_way("")
+    if as_json:
+        give(json_of(result_folder.all_numbers(result)))
+    else:
+        _tell(result, early)
+    if shown is not None and not as_json:
+        report(shown)
     if not result.ok:
         raise typer.Exit(FAILED)

@@ -9,12 +9,14 @@ import typer
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     FAILED,
+    Folder,
     OnMachine,
     Set,
     Stopped,
     app,
     out,
     progress_bar,
+    report,
     results,
     settings,
 )
@@ -77,7 +79,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     step: Annotated[float | None, typer.Option(help="Seconds, instead of the scenario's.")] = None,
     workers: Annotated[int | None, typer.Option(min=1, help="Processes; all cores.")] = None,
     scheduler: Annotated[str | None, typer.Option(help="Address of a dask scheduler.")] = None,
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
     new: Annotated[bool, typer.Option("--new", help="Begin again, do not resume.")] = False,
 ) -> None:
     """Run a scenario at many points; resumes where an earlier call was ended."""
@@ -100,7 +102,7 @@ def sweep(  # noqa: PLR0913  (each is an option of the command)
     elif not chosen.cost:
         out.print("no cost was named, so no run is the best: --cost RESULT")
     out.print(f"table: {outcome.folder / 'sweep.parquet'}", soft_wrap=True)
-    out.print(f"report: {outcome.folder / 'report.html'}", soft_wrap=True)
+    report(outcome.folder / "report.html")
     if outcome.errors == len(outcome.rows) or (chosen.cost and outcome.best is None):
         raise typer.Exit(FAILED)
 

@@ -8,6 +8,7 @@ import typer
 
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
+    Folder,
     OnMachine,
     ScenarioPath,
     Set,
@@ -16,6 +17,7 @@ from motionfmu.cli.common import (
     loaded,
     out,
     progress_bar,
+    report,
     results,
     settings,
 )
@@ -41,7 +43,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
         typer.Option(help="contour_rms, contour_max, error_rms, error_max, ise, iae or itae."),
     ] = None,
     set_: Set = [],  # noqa: B006
-    folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
+    folder: Folder = None,
 ) -> None:
     """Find servo gains for a scenario's own path; write gains.toml and a report."""
     needed("tune")
@@ -83,7 +85,7 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     for text in tuned.stopped_by:
         out.print(f"stopped by: {text}")
     out.print(f"gains: {target / 'gains.toml'}", soft_wrap=True)
-    out.print(f"report: {target / 'report.html'}", soft_wrap=True)
+    report(target / "report.html")
 
 
 def _tune(scenario: "Scenario", asked: "Problem", given: dict[str, Any]) -> "Tuned":

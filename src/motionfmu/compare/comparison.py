@@ -107,6 +107,6 @@ def compare(
         else:
             names.append(name)
     found = Comparison(first, second, at, names, left)
-    if not names and not any(None not in c.ok for c in found.checks):
+    if not names and not any(None not in c.bounds for c in found.checks):
         raise InputError(f"{first.name} and {second.name} have no signal and no check in common")
     return found

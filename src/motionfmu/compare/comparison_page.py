@@ -19,7 +19,7 @@ from motionfmu.report.contour_words import CIRCLE, CONTOUR, in_words
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, judged, table
 from motionfmu.report.numbers import figure, length
-from motionfmu.run.checks import parts, together
+from motionfmu.run.checks import parts, tally, together
 from motionfmu.run.result_files import NUMBERS
 
 PAGE = "report.html"
@@ -67,11 +67,9 @@ def page_text(found: Pairing) -> str:
 def _cards(found: Pairing) -> str:
     shown = []
     for name, x in (("Run A", found.a), ("Run B", found.b)):
-        held, count = sum(c["ok"] for c in x.numbers["checks"]), len(x.numbers["checks"])
-        kind = "pass" if x.numbers["ok"] else "fail"
-        value = (
-            f'<span class="{kind}">{held} of {count} checks hold</span>' if count else "no checks"
-        )
+        judged = tally(c["ok"] for c in x.numbers["checks"])
+        kind = "fail" if judged.failed else "pass" if judged.judged else ""
+        value = f'<span class="{kind}">{judged.words}</span>'
         shown.append((name, value, escape(x.name)))
     verdict = "no check is worse" if found.ok else f"{len(found.worse)} worse"
     kind, where = ("pass", "") if found.ok else ("fail", escape(", ".join(found.worse)))

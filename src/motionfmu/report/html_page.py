@@ -14,7 +14,7 @@ from typing import Any
 from motionfmu.report.diagram import Diagram
 from motionfmu.report.plotly_figure import plotly_figure
 from motionfmu.report.samples import Samples, bits, clock
-from motionfmu.run.checks import Verdict
+from motionfmu.run.checks import Verdict, tally
 
 # The name of the cursors that all plots over the time of one run share.
 RUN = "run"
@@ -105,9 +105,8 @@ def _plotly() -> str:
 
 
 def _verdict(checks: Sequence[Verdict]) -> str:
-    failed = sum(not c.ok for c in checks)
     if not checks:
         return ""
-    if failed:
-        return f'<span class="pill fail">✗ {failed} of {len(checks)} checks failed</span>'
-    return f'<span class="pill pass">✓ all {len(checks)} checks passed</span>'
+    judged = tally(c.ok for c in checks)
+    kind, mark = ("fail", "✗ ") if judged.failed else ("pass", "✓ ") if judged.judged else ("", "")
+    return f'<span class="pill {kind}">{mark}{judged.words}</span>'

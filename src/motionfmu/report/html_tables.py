@@ -12,7 +12,7 @@ from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
-from motionfmu.run.checks import Verdict, of_one_number, parts, together
+from motionfmu.run.checks import Verdict, beyond, of_one_number, parts, together
 
 # The words on every page for the time over which the RMS of a contour error is taken.
 RMS = "over time where the tool cuts"
@@ -98,10 +98,11 @@ def warning_list(warnings: Sequence[str]) -> str:
 def check_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str]]) -> str:
     """Verdicts of the scenario, failures first; `words` say what is checked, and its unit.
 
-    The least and the largest that one number may be are one row.
+    The least and the largest that one number may be are one row. What is not judged has none.
     """
     rows = []
-    for same in of_one_number(sorted(checks, key=lambda c: c.ok)):
+    given = [c for c in checks if c.ok is not None]
+    for same in of_one_number(sorted(given, key=lambda c: bool(c.ok))):
         check = same[0]
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
         said, unit = words(check.name)
@@ -119,6 +120,24 @@ def check_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str
             )
         )
     return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=4)
+
+
+def expected_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str]]) -> str:
+    """What the scenario as written is expected to give and this run gave, with the difference."""
+    rows = []
+    for same in of_one_number([c for c in checks if c.ok is None]):
+        check, apart = same[0], beyond(same)
+        said, unit = words(check.name)
+        told = [judged(c.value, c.bounds, unit) for c in same]
+        below = (t for t in (said, check.reason) if t)
+        sub = "".join(f'<div class="sub">{escape(t)}</div>' for t in below)
+        gap = "as expected" if apart == 0.0 else "not as expected"
+        if apart and math.isfinite(apart):
+            size = judged(abs(apart), check.bounds, unit)[0]
+            gap = f"{'+' if apart > 0.0 else MINUS}{size}"
+        cells = together([b for _, b in told]), "none" if check.reason else told[0][0], gap
+        rows.append((f"{escape(check.name)}{sub}", *map(escape, cells)))
+    return table(("Figure", "Expected", "Got", "Difference"), rows)
 
 
 def judged(value: Any, bounds: str, unit: str) -> tuple[str, str]:

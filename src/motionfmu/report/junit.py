@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from xml.etree import ElementTree as ET
 
+from motionfmu.run.checks import NOTHING
 from motionfmu.run.suite import Case
 
 
@@ -20,7 +21,15 @@ def junit(cases: Sequence[Case], started: datetime) -> str:
     root = ET.Element("testsuites", counts)
     # Hours and minutes of this machine, as the schema asks.
     stamp = started.strftime("%Y-%m-%dT%H:%M:%S")
-    suite = ET.SubElement(root, "testsuite", {**counts, "skipped": "0", "timestamp": stamp})
+    suite = ET.SubElement(
+        root,
+        "testsuite",
+        {
+            **counts,
+            "skipped": str(sum(case.silent for case in cases)),
+            "timestamp": stamp,
+        },
+    )
     for case in cases:
         name = f"{case.scenario}, off: {case.off}" if case.off else case.scenario
         about = {"classname": _class(case), "name": _text(name), "time": f"{case.seconds:.3f}"}
@@ -33,6 +42,8 @@ def junit(cases: Sequence[Case], started: datetime) -> str:
             lines = [_text(line) for line in _failed(case)]
             failure = ET.SubElement(row, "failure", message=lines[0], type="check")
             failure.text = "\n".join(lines)
+        elif case.silent:
+            ET.SubElement(row, "skipped", message=NOTHING)
         lines = [f"{v.name} {v.bounds}: {v.value:.6g}" for v in case.checks]
         lines += [f"warning: {told}" for told in case.warnings]
         if lines:
@@ -54,7 +65,7 @@ def _failed(case: Case) -> list[str]:
     return [
         f"{v.name} = {v.value:.6g}, asked {v.bounds}" if not v.reason else f"{v.name}: {v.reason}"
         for v in case.checks
-        if not v.ok
+        if v.ok is False
     ]
 
 

@@ -20,7 +20,7 @@ from motionfmu.report.numbers import figure, label, length
 from motionfmu.report.path_chart import path_chart, path_titles
 from motionfmu.report.signal_chart import signal_chart
 from motionfmu.run import Result
-from motionfmu.run.checks import Verdict
+from motionfmu.run.checks import Verdict, tally
 from motionfmu.run.decimate import Read, reader
 from motionfmu.run.figures import Chart, Panel, curve
 from motionfmu.run.signals import elements
@@ -50,13 +50,22 @@ STYLE = """
 """
 
 
+class NotebookFigure(Figure):
+    """A figure that a notebook shows, also one in which nothing has loaded pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        file = io.BytesIO()
+        self.savefig(file, format="png", dpi=2 * WIDTH / self.get_figwidth())
+        return file.getvalue()
+
+
 def plot(
     result: Result,
     names: Sequence[str | tuple[str, ...]],
     window: tuple[float, float] | None,
 ) -> Figure:
     """The figure of `Result.plot`."""
-    make: Callable[..., Figure] = Figure
+    make: Callable[..., Figure] = NotebookFigure
     windows = backend_registry.list_builtin(BackendFilter.INTERACTIVE)
     if matplotlib.get_backend().lower() in (name.lower() for name in windows):
         from matplotlib import pyplot
@@ -127,12 +136,9 @@ def _plain(data: NDArray[Any]) -> Read:
 def html(result: Result) -> str:
     """The view of a result in a notebook."""
     checks = result.checks
-    failed = sum(not v.ok for v in checks)
-    words = (
-        f"{failed} of {len(checks)} checks FAILED" if failed else f"all {len(checks)} checks hold"
-    )
-    mark = "failed" if failed else "ok"
-    verdict = f' <span class="{mark}">{words}</span>' if checks else ""
+    count = tally(v.ok for v in checks)
+    mark = "failed" if count.failed else "ok" if count.judged else "sub"
+    verdict = f' <span class="{mark}">{count.words}</span>'
     reasons = dict.fromkeys([*(v.reason for v in checks), result.no_contour])
     told = "".join(f'<p class="sub">{escape(r)}</p>' for r in reasons if r)
     left = _checks(checks) + _contour(result) + told
@@ -158,22 +164,30 @@ def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequenc
     return f"<table><thead>{line('th', heads)}</thead><tbody>{body}</tbody></table>"
 
 
+_MARKS = {
+    True: '<span class="ok">ok</span>',
+    False: '<span class="failed">FAILED</span>',
+    None: '<span class="sub">expected</span>',
+}
+
+
 def _checks(checks: Sequence[Verdict]) -> str:
     if not checks:
         return ""
-    listed = sorted(checks, key=lambda v: v.ok)
+    listed = sorted(checks, key=lambda v: (v.ok is None, v.ok))
     rows = [
         (
-            '<span class="ok">ok</span>' if v.ok else '<span class="failed">FAILED</span>',
+            _MARKS[v.ok],
             escape(v.name),
             "none" if v.reason else f"{v.value:.6g}",
             escape(v.bounds),
+            f"{v.beyond:+.4g}" if v.ok is None and v.beyond else "",
         )
         for v in listed[:CHECKS_SHOWN]
     ]
     rest = len(listed) - len(rows)
     more = f'<p class="sub">and {rest} more in <code>result.checks</code></p>' if rest else ""
-    return _table(("", "Check", "Found", "Asked"), rows, (2,)) + more
+    return _table(("", "Check", "Found", "Asked", "Difference"), rows, (2, 4)) + more
 
 
 def _contour(result: Result) -> str:

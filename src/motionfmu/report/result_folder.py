@@ -6,6 +6,7 @@ import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -53,6 +54,16 @@ class Kept:
     csv: bool = False
     signals: bool = True
     pictures: bool = False
+
+
+def all_numbers(result: Result) -> dict[str, Any]:
+    """The numbers of a result as its result.json has them."""
+    from motionfmu.report.run_summary import summary_of
+
+    contour = None
+    if result.scenario.document.body.contour is not None and not result.no_contour:
+        contour = result.contour()
+    return numbers(result) | summary_of(result, contour).numbers()
 
 
 def save(

@@ -1,7 +1,6 @@
 """The report as one HTML page that needs no network."""
 
 from collections.abc import Sequence
-from functools import partial
 from html import escape
 from pathlib import Path
 
@@ -14,7 +13,6 @@ from motionfmu.report.html_tables import (
     CORNERS_SHOWN,
     RMS,
     cards,
-    check_table,
     circle_table,
     corner_table,
     error_table,
@@ -29,8 +27,8 @@ from motionfmu.report.polar_chart import polar_chart
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary, as_written, summary_of
 from motionfmu.report.signal_chart import add_charts, write_charts
-from motionfmu.report.signal_page import add_performance, deviations, plain_text
-from motionfmu.report.signal_words import titled, words_of
+from motionfmu.report.signal_page import add_performance, add_verdict, deviations, plain_text
+from motionfmu.report.signal_words import titled
 from motionfmu.report.time_charts import (
     error_chart,
     fifo_chart,
@@ -128,8 +126,7 @@ def page_text(
     page = Page()
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing)
-    if result.checks:
-        page.section("Verdict", "", check_table(result.checks, partial(words_of, result.resolver)))
+    add_verdict(page, result)
     add_summary(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))

@@ -6,7 +6,7 @@ from html import escape
 
 from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.html_page import Page, PageFrame
-from motionfmu.report.html_tables import check_table, warning_list
+from motionfmu.report.html_tables import check_table, expected_table, warning_list
 from motionfmu.report.iso9283_section import add_iso9283
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary
@@ -16,6 +16,7 @@ from motionfmu.report.tool_section import add_tools
 from motionfmu.report.view.deviations import from_cycles
 from motionfmu.report.view.scene import DeviationLine, scene_of
 from motionfmu.report.view_section import SCRIPTS, add_view
+from motionfmu.run.checks import NOTHING, tally
 from motionfmu.run.figures import Chart
 
 FOOTER = "A point holds the outputs at its communication step, before that step was taken."
@@ -37,12 +38,26 @@ def add_performance(page: Page, result: ReportInput) -> None:
         add_iso9283(page, result.iso9283())
 
 
+def add_verdict(page: Page, result: ReportInput) -> None:
+    """Add the verdict, and what is expected of the scenario as written where that is not judged."""
+    words = partial(words_of, result.resolver)
+    count = tally(v.ok for v in result.checks)
+    if count.judged:
+        page.section("Verdict", "", check_table(result.checks, words))
+    else:
+        page.section("Verdict", f"{NOTHING.capitalize()}.", "")
+    if count.open:
+        note = (
+            "Numbers of the scenario as it is written; this run is another one, so none is judged."
+        )
+        page.section("Expected as written", note, expected_table(result.checks, words))
+
+
 def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) -> str:
     """The whole HTML page of a run without a contour."""
     # If there are no figures, the recorded signals are shown.
     page = Page()
-    if result.checks:
-        page.section("Verdict", "", check_table(result.checks, partial(words_of, result.resolver)))
+    add_verdict(page, result)
     add_summary(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))

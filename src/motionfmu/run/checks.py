@@ -1,4 +1,4 @@
-"""Verdicts: bounds of signals and contour figures."""
+"""Verdicts: bounds of signals and figures, what must hold and what is expected."""
 
 import math
 import re
@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from motionfmu.base.columns import ROWS
 from motionfmu.run.decimate import Read, reader
 from motionfmu.scenarios import rates
-from motionfmu.scenarios.body import Body, Bounds, Pair
+from motionfmu.scenarios.body import CHECK, Body, Bounds, Pair
 
 TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
+NOTHING = "no checks: nothing was judged"
 # A bound in words: its name, its numbers, the times at which it holds.
 _BOUNDS = re.compile(r"((?:.*? )??(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
 
@@ -24,13 +25,66 @@ Judged = TypeVar("Judged", bound=Any)  # a Verdict, or a verdict of a saved resu
 
 @dataclass(frozen=True)
 class Verdict:
-    """One bound of a ``[check]`` line and what was found."""
+    """One bound of a line of ``[check]`` or ``[expect]``, and what was found."""
 
     name: str  # signal or figure
     bounds: str  # the bound in words
     value: float  # the worst over time and axes; NaN if there is no number
-    ok: bool
+    within: bool  # whether the bound holds
     reason: str = ""  # why there is no number; else empty
+    beyond: float = math.nan  # value less the bound it lies beyond, 0 within; NaN: no number
+    table: str = CHECK
+    judged: bool = True  # whether it counts: what is expected does in a run as written only
+
+    @property
+    def ok(self) -> bool | None:
+        """The verdict; None if it is not judged."""
+        return self.within if self.judged else None
+
+    def numbers(self) -> dict[str, Any]:
+        """The verdict for JSON, which has no NaN."""
+        value, beyond = (x if math.isfinite(x) else None for x in (self.value, self.beyond))
+        return {
+            "name": self.name,
+            "table": self.table,
+            "bounds": self.bounds,
+            "value": value,
+            "ok": self.ok,
+            "beyond": beyond,
+            "reason": self.reason,
+        }
+
+
+@dataclass(frozen=True)
+class Tally:
+    """How many verdicts hold, fail and are not given."""
+
+    held: int
+    failed: int
+    open: int
+
+    @property
+    def judged(self) -> int:
+        """The number of verdicts that are given."""
+        return self.held + self.failed
+
+    @property
+    def words(self) -> str:
+        """The verdict of a whole run; a run of which nothing is asked says so."""
+        if not self.judged:
+            kept = f"; {self.open} expected of the scenario as written" if self.open else ""
+            return f"{NOTHING}{kept}"
+        if self.failed:
+            told = f"{self.failed} of {self.judged} checks FAILED"
+        else:
+            told = f"all {self.judged} checks hold" if self.judged > 1 else "the check holds"
+        return f"{told}, {self.open} expected not judged" if self.open else told
+
+
+def tally(found: Iterable[bool | None]) -> Tally:
+    """Count verdicts."""
+    listed = list(found)
+    return Tally(*(sum(x is kind for x in listed) for kind in (True, False, None)))
 
 
 def parts(bounds: str) -> tuple[str, str, str]:
@@ -41,7 +95,9 @@ def parts(bounds: str) -> tuple[str, str, str]:
 
 def of_one_number(checks: Iterable[Judged]) -> list[list[Judged]]:
     """Groups of successive verdicts: two that bound one number from both sides are one group."""
-    groups = groupby(checks, lambda c: (c.name, c.ok, str(c.value), c.reason, parts(c.bounds)[2]))
+    groups = groupby(
+        checks, lambda c: (c.name, c.table, c.ok, str(c.value), c.reason, parts(c.bounds)[2])
+    )
     return [list(group) for _, group in groups]
 
 
@@ -51,9 +107,13 @@ def together(bounds: Sequence[str]) -> str:
     return " and ".join(dict.fromkeys(b.removesuffix(where) for b in bounds)) + where
 
 
-def misplaced(name: str, body: Body) -> str:
-    """Why a [check] line cannot be, apart from the name of its signal; empty if it can."""
-    checks = body.check[name]
+def beyond(same: Iterable[Judged]) -> float:
+    """How far a number lies beyond the bounds of its group [its unit]; NaN if that is no number."""
+    return float(max((v.beyond for v in same), key=lambda x: math.inf if math.isnan(x) else abs(x)))
+
+
+def misplaced(name: str, checks: Sequence[Bounds], body: Body) -> str:
+    """Why a line of bounds cannot be, apart from the name of its signal; empty if it can."""
     if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
     if is_figure(name):
@@ -93,14 +153,11 @@ def _no_time(check: Bounds, stop: float) -> str:
     return ""
 
 
-def _within(value: float, low: float, high: float) -> bool:
-    return bool(low <= value <= high)
-
-
 def _range(name: str, words: str, value: float, bounds: tuple[float, float]) -> Verdict:
     low, high = bounds
     text = f"{words} = {low:g}" if low == high else f"{words} in {low:g} .. {high:g}"
-    return Verdict(name, text, value, _within(value, low, high))
+    beyond = value - min(max(value, low), high)
+    return Verdict(name, text, value, bool(low <= value <= high), beyond=beyond)
 
 
 def _side(name: str, sign: str, value: float, bound: float | Pair) -> Verdict:
@@ -109,7 +166,7 @@ def _side(name: str, sign: str, value: float, bound: float | Pair) -> Verdict:
         words = {">=": "min", "<=": "max", "|.| <=": "absmax"}
         return _range(name, words[sign], value, bound)
     ok = value >= bound if sign == ">=" else value <= bound
-    return Verdict(name, f"{sign} {bound:g}", value, ok)
+    return Verdict(name, f"{sign} {bound:g}", value, ok, beyond=0.0 if ok else value - bound)
 
 
 def _each(name: str, words: str, found: NDArray[Any], wanted: bool | float | Pair) -> Verdict:
@@ -130,7 +187,7 @@ def _order(name: str, orders: list[list[float]], wanted: tuple[float, ...]) -> V
                 return Verdict(name, text, float("nan"), False, reason)
             if i >= len(wanted) or found[i] != wanted[i]:
                 return Verdict(name, text, found[i], False)
-    return Verdict(name, text, wanted[-1], True)
+    return Verdict(name, text, wanted[-1], True, beyond=0.0)
 
 
 def _inside(time: NDArray[Any], windows: tuple[tuple[float, float], ...]) -> NDArray[Any]:

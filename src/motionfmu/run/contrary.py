@@ -18,6 +18,7 @@ def check(resolver: system.Resolver, named: bool = True) -> None:
     wired: set[str] = set()
     if document.body.contrary:
         wired = {w.target.name for w in Faults().of(lambda: system.wires(resolver)) or []}
+    asked = [name for _, name, _ in document.body.asked]
     offs = [case.off for case in document.body.contrary]
     for number, case in enumerate(document.body.contrary):
         table = f"contrary.{number}"
@@ -26,9 +27,8 @@ def check(resolver: system.Resolver, named: bool = True) -> None:
                 raise document.error(f"off = {case.off!r} is there twice", table, "off")
         for name in case.fails if named else ():
             with faults.each():
-                if name not in document.body.check:
-                    hint = suggestion(name, document.body.check)
-                    text = f"fails: {name} is not in [check]{hint}"
+                if name not in asked:
+                    text = f"fails: {name} is not in [check] or [expect]{suggestion(name, asked)}"
                     raise document.error(text, table, "fails")
         for name, value in case.set.items():
             with faults.each():
@@ -60,5 +60,5 @@ def options(document: Document, case: Contrary) -> dict[str, Any]:
 
 def survivors(case: Contrary, verdicts: list[Verdict]) -> list[str]:
     """Checks that hold although they must fail; none if the verdict fails as it must."""
-    failed = {v.name for v in verdicts if not v.ok}
+    failed = {v.name for v in verdicts if not v.within}
     return [name for name in case.fails if name not in failed]

@@ -15,10 +15,11 @@ from motionfmu.base.columns import ROWS, Columns, forget
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.base.extras import needed
 from motionfmu.run import figures, signals, waveforms
-from motionfmu.run.checks import TABLES, Verdict, is_figure, judge
+from motionfmu.run.checks import TABLES, Verdict, is_figure, judge, tally
 from motionfmu.run.figures import Chart
 from motionfmu.run.run_plan import RunPlan
 from motionfmu.scenarios import values
+from motionfmu.scenarios.body import CHECK, Bounds
 from motionfmu.scenarios.system import Resolver
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class Result(Mapping[str, NDArray[Any]]):
     --------
     >>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
     >>> result  # doctest: +SKIP
-    <Result circle: 13 of 13 checks hold, 80000 rows of 20 signals, 8 s>
+    <Result circle: all 13 checks hold, 80000 rows of 20 signals, 8 s>
     >>> result.to_pandas(["mcc.path_feed", "machine.*"]).describe()  # doctest: +SKIP
     >>> result.plot("mcc.path_feed", ("drives.torque[1]", "drives.torque[2]"))  # doctest: +SKIP
     """
@@ -128,10 +129,7 @@ class Result(Mapping[str, NDArray[Any]]):
         return True
 
     def __repr__(self) -> str:
-        checks = self.checks
-        hold = sum(v.ok for v in checks)
-        judged = f"{hold} of {len(checks)} checks hold" if checks else "no checks"
-        return f"<Result {self.name}: {judged}, {self.size}>"
+        return f"<Result {self.name}: {self.judgement}, {self.size}>"
 
     def _repr_html_(self) -> str:
         return str(_report("notebook").html(self))
@@ -394,26 +392,44 @@ class Result(Mapping[str, NDArray[Any]]):
 
     @cached_property
     def checks(self) -> list[Verdict]:
-        """The verdict of every bound in the scenario's [check] table.
+        """The verdict of every bound in the scenario's [check], then in its [expect].
 
+        What is expected of a scenario as written is judged in such a run only, else ``ok`` is None.
         A number that this run does not have is a failed check with its reason.
         """
-        found = []
-        listed = self.scenario.document.body.check.items()
-        for name, check in ((n, c) for n, checks in listed for c in checks):
-            if not is_figure(name):
-                found += judge(name, check, self.time, self[name])
-                continue
-            value, reason = math.nan, ""
-            try:
-                value = self.figure(name)
-            except NoNumber as told:
-                reason = str(told)
-            verdicts = judge(name, check, np.zeros(1), np.array([value]))
-            found += [replace(v, reason=reason) for v in verdicts]
+        found: list[Verdict] = []
+        for table, name, checks in self.scenario.document.body.asked:
+            judged = table == CHECK or self.as_written
+            for verdict in (v for check in checks for v in self._judge(name, check)):
+                found.append(replace(verdict, table=table, judged=judged))
         return found
+
+    def _judge(self, name: str, check: Bounds) -> list[Verdict]:
+        """Judge a signal or a figure by each bound of a line."""
+        if not is_figure(name):
+            return judge(name, check, self.time, self[name])
+        value, reason = math.nan, ""
+        try:
+            value = self.figure(name)
+        except NoNumber as told:
+            reason = str(told)
+        verdicts = judge(name, check, np.zeros(1), np.array([value]))
+        return [replace(v, reason=reason) for v in verdicts]
+
+    @property
+    def as_written(self) -> bool:
+        """Whether the scenario ran as its file has it.
+
+        Nothing was set or timed otherwise, and it was not made by `Scenario.changed`.
+        """
+        return not self.overrides and not self.scenario.document.changed
+
+    @property
+    def judgement(self) -> str:
+        """The verdict in words."""
+        return tally(v.ok for v in self.checks).words
 
     @property
     def ok(self) -> bool:
-        """Whether every check holds."""
-        return all(v.ok for v in self.checks)
+        """Whether every check that is judged holds."""
+        return not any(v.ok is False for v in self.checks)

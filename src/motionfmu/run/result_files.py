@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,16 +48,8 @@ def numbers(result: Result) -> dict[str, Any]:
         "stopped": result.stopped,
         "done_at": result.done_at,
         "warnings": list(result.warnings),
-        "checks": [
-            {
-                "name": v.name,
-                "bounds": v.bounds,
-                "value": v.value if math.isfinite(v.value) else None,  # JSON has no NaN
-                "ok": v.ok,
-                "reason": v.reason,
-            }
-            for v in result.checks
-        ],
+        "as_written": result.as_written,
+        "checks": [v.numbers() for v in result.checks],
     }
     if body.contour is not None:
         found["contour"] = None if result.no_contour else result.contour().numbers()

@@ -1,7 +1,7 @@
 """A scenario made ready to run: read, resolved and checked against its FMUs."""
 
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from motionfmu.scenarios import (
     view_signals,
 )
 from motionfmu.scenarios import document as files
+from motionfmu.scenarios.body import JUDGED, Bounds
 from motionfmu.scenarios.table_sources import of_file
 
 
@@ -100,11 +101,11 @@ class RunPlan:
         if not self._damaged("stop", "limit", "step"):
             drawn += faults.of(lambda: waveforms.wanted(resolver)) or []
         checks = Faults()
-        for name in body.check:
+        for table, name, bounds in body.asked:
             with checks.each():
-                drawn += self._checked(name)
+                drawn += self._checked(table, name, bounds)
         faults.lines += checks.lines
-        named = not checks.lines and not self._damaged("check")
+        named = not checks.lines and not self._damaged(*JUDGED)
         faults.of(lambda: contrary.check(resolver, named))
         self.ends = list({e.name: e for e in (*listed, *drawn)}.values())
         self.only_drawn = {e.name for e in drawn} - {e.name for e in listed}
@@ -113,15 +114,15 @@ class RunPlan:
         """Whether something is wrong with the form of one of these tables."""
         return not self.document.damaged.isdisjoint(tables)
 
-    def _checked(self, name: str) -> list[system.End]:
-        """The output that a [check] line checks; none if it checks a figure of an analysis."""
+    def _checked(self, table: str, name: str, bounds: Sequence[Bounds]) -> list[system.End]:
+        """The output that a line of bounds is about; none if that is a figure of an analysis."""
         if is_figure(name) and self._damaged(name.partition(".")[0]):
             return []
         found = []
         if not is_figure(name):
-            found = [recording.elements(self.resolver, name, "check", name)[0]]
-        if told := misplaced(name, self.document.body):
-            raise self.document.error(told, "check", name)
+            found = [recording.elements(self.resolver, name, table, name)[0]]
+        if told := misplaced(name, bounds, self.document.body):
+            raise self.document.error(told, table, name)
         return found
 
     def _check_whole(self, faults: Faults) -> None:
@@ -206,11 +207,11 @@ class RunPlan:
         if self._damaged("stop", "limit", "step", "record"):
             return
         faults.of(lambda: figures.check(document, made.sample_ns))
-        for name, checks in body.check.items():
+        for table, name, checks in body.asked:
             for rate in (c.rate for c in checks if c.rate is not None):
                 with faults.each():
                     if text := rates.wrong(rate, made.sample_ns, body.stop_limit):
-                        raise document.error(f"{name}: {text}", "check", name)
+                        raise document.error(f"{name}: {text}", table, name)
 
     def check_scopes(self, plain: system.System, options: Options) -> None:
         """Refuse scopes that are too large or share a file; the message names the setting."""

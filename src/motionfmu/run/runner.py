@@ -49,7 +49,7 @@ class Scenario(RunPlan):
         body = self.document.body
         stop = body.stop if isinstance(body.stop, str) else f"{body.stop:g} s"
         fmus = ", ".join(dict.fromkeys(body.component.values()))
-        n, checks = len(self.ends), sum(map(len, body.check.values()))
+        n, checks = len(self.ends), sum(len(rows) for _, _, rows in body.asked)
         counts = f"{n} signal{'s' * (n != 1)} recorded, {checks} check{'s' * (checks != 1)}"
         return f"<Scenario {self.name}: {fmus}; until {stop}, {counts}>"
 
@@ -154,6 +154,7 @@ class Scenario(RunPlan):
         step: float | None = None,
         drive: Iterable[Mapping[str, Any]] | None = None,
         check: Mapping[str, Any] | None = None,
+        expect: Mapping[str, Any] | None = None,
         component: Mapping[str, str | None] | None = None,
         name: str | None = None,
         **tables: Any,
@@ -161,11 +162,12 @@ class Scenario(RunPlan):
         """Make another scenario from this one; nothing is written.
 
         Tables are merged key by key, and None takes a key away. Names of `leave` and `record` are
-        added. `drive` and other arrays of tables take the place of the scenario's.
+        added. `drive` and other arrays of tables take the place of the scenario's. What the
+        scenario expects as it is written is not judged in a run of the other one.
 
         Parameters
         ----------
-        set, connect, component, check : mapping, optional
+        set, connect, component, check, expect : mapping, optional
             Entries of these tables; a value of `set` may be of one element,
             ``component.variable[i]``.
         leave : iterable of str, optional
@@ -195,6 +197,7 @@ class Scenario(RunPlan):
         """
         given: dict[str, Any] = {"set": set, "connect": connect, "component": component}
         given |= {"leave": None if leave is None else _names(leave), "check": check}
+        given["expect"] = expect
         given |= {"stop": stop, "step": step, "drive": None if drive is None else list(drive)}
         given["record"] = record
         if record is not None and not isinstance(record, Mapping):

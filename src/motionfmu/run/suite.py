@@ -50,9 +50,14 @@ class Case:
     error: str = ""
 
     @property
+    def silent(self) -> bool:
+        """Whether it ran and nothing was asked of it."""
+        return not (self.checks or self.off or self.error)
+
+    @property
     def ok(self) -> bool:
         """Whether all checks hold or, of a contrary, whether the checks that it names fail."""
-        good = not self.holding if self.off else all(v.ok for v in self.checks)
+        good = not self.holding if self.off else all(v.ok is not False for v in self.checks)
         return good and not self.error
 
 
@@ -100,8 +105,9 @@ def judged(
         for case in scenario.document.body.contrary:
             own = contrary.options(scenario.document, case)
             result = run(scenario, **{**options, **own})
-            named = tuple(v for v in result.checks if v.name in case.fails)
-            hold = tuple(contrary.survivors(case, result.checks))
+            found = [replace(v, judged=True) for v in result.checks]  # it is to fail on purpose
+            named = tuple(v for v in found if v.name in case.fails)
+            hold = tuple(contrary.survivors(case, found))
             used = time.perf_counter() - start
             cases.append(replace(bare, off=case.off, seconds=used, checks=named, holding=hold))
             start = time.perf_counter()

@@ -1,6 +1,7 @@
 """The tables of a scenario: their keys and types."""
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator
@@ -24,6 +25,8 @@ LISTED_MAX = 1000
 NAMED_MAX = 10_000  # exact names: elements of arrays, where an SSP has FMUs of FMI 2
 FIGURES_MAX = 100  # a picture each
 LONGEST = 1e5  # [s] run: more than a day of machine time
+# Tables of bounds: what must hold whatever is set, and what the scenario as written must give.
+CHECK, EXPECT = JUDGED = ("check", "expect")
 Name = Annotated[str, Field(max_length=KEY_MAX)]
 Names = Annotated[list[Name], Field(max_length=LISTED_MAX)]
 
@@ -181,6 +184,7 @@ class Body(BaseModel):
     figure: list[Figure] = Field(default_factory=list, max_length=FIGURES_MAX)
     waveform: list[Waveform] = Field(default_factory=list, max_length=FIGURES_MAX)
     check: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
+    expect: dict[str, Checks] = Field(default_factory=dict, max_length=LISTED_MAX)
     contrary: list[Contrary] = Field(default_factory=list, max_length=LISTED_MAX)
 
     @property
@@ -188,11 +192,19 @@ class Body(BaseModel):
         """The latest time at which a run ends [s]."""
         return self.stop if isinstance(self.stop, float) else self.limit or LONGEST
 
+    @property
+    def asked(self) -> Iterator[tuple[str, str, tuple[Bounds, ...]]]:
+        """Each line by which a run is judged: its table, name and bounds."""
+        for table in JUDGED:
+            for name, checks in getattr(self, table).items():
+                yield table, name, checks
+
 
 # The pydantic model of each table, by the table's name.
 MODELS: dict[str, type[BaseModel]] = {
     "drive": Drive,
     "check": Bounds,
+    "expect": Bounds,
     "contrary": Contrary,
     "contour": Contour,
     "record": Record,

@@ -2,7 +2,7 @@
 
 import copy
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from pydantic import BaseModel, ValidationError
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
-from motionfmu.scenarios.body import Body, MachineAxis
+from motionfmu.scenarios.body import JUDGED, Body, MachineAxis
 from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.table_sources import (
     ARRAYS,
@@ -19,12 +19,13 @@ from motionfmu.scenarios.table_sources import (
     Sources,
     Tables,
     chain,
+    in_rows,
     merged,
     of_file,
 )
 
 # Tables whose keys are names that the user chooses.
-OPEN = ("component", "connect", "set", "check", "limits")
+OPEN = ("component", "connect", "set", *JUDGED, "limits")
 ABOUT = "the first line is a comment that says what the scenario shows"
 # The fewest entries that a list may have, by its key.
 EMPTY = {"signals": 'the name of an output, or a pattern such as "card.*", wanted'}
@@ -43,6 +44,7 @@ class Document:
     sources: Sources  # the strongest first
     wrong: tuple[str, ...] = ()  # what is wrong with keys and types, which body does not have
     damaged: frozenset[str] = frozenset()  # tables and keys at the top of which something is wrong
+    changed: bool = False  # whether it is another one with other tables
 
     @property
     def file(self) -> Path:
@@ -98,14 +100,16 @@ def read(path: str | Path) -> Document:
 
 def made(tables: Mapping[str, Any], name: str, folder: Path, about: str) -> Document:
     """The document of a dictionary; texts name files beside a folder."""
-    own = Source(f"<{name}>", folder, plain(tables), None, about)
+    own = Source(f"<{name}>", folder, in_rows(plain(tables)), None, about)
     return parsed(chain(own), name)
 
 
 def changed(document: Document, tables: Mapping[str, Any], name: str) -> Document:
     """A document with other tables, merged as those of a file that extends it."""
-    own = Source(f"<{name}>", document.sources[0].folder, plain(tables), None, document.about)
-    return parsed([own, *document.sources], name)
+    own = Source(
+        f"<{name}>", document.sources[0].folder, in_rows(plain(tables)), None, document.about
+    )
+    return replace(parsed([own, *document.sources], name), changed=True)
 
 
 def plain(value: Any) -> Any:
@@ -180,8 +184,8 @@ def _numbers(tables: Tables) -> Tables:
     for row in out.get("drive", []) if isinstance(out.get("drive"), list) else []:
         if isinstance(row, dict) and isinstance(row.get("at"), list):
             row["at"] = [number(x) for x in row["at"]]
-    checks = out.get("check", {})
-    for rows in checks.values() if isinstance(checks, dict) else []:
+    checks = [out[table] for table in JUDGED if isinstance(out.get(table), dict)]
+    for rows in (rows for table in checks for rows in table.values()):
         for row in rows if isinstance(rows, list) else [rows]:
             for key, x in list(row.items()) if isinstance(row, dict) else []:
                 row[key] = number(x)
@@ -244,7 +248,7 @@ def _missing(found: Any, place: tuple[str, ...], sources: Sources) -> str:
         return f"{sources[0].name}: {place[0]} is missing"
     if isinstance(found["loc"][-1], int):
         few = list(found["input"])
-        shorter = [p for i, p in enumerate(place[:-1]) if not (place[0] == "check" and i == 2)]
+        shorter = [p for i, p in enumerate(place[:-1]) if not (place[0] in JUDGED and i == 2)]
         told = f"{'.'.join(shorter)} = {shown(few)}: too few values"
         return f"{_spot(sources, place)}: {told}"
     return f"{_place(sources, *_table_key(place[:-1]))}: {place[-1]} is missing"
@@ -256,7 +260,7 @@ def _one(found: Any, place: tuple[str, ...], sources: Sources) -> tuple[tuple[st
     top = place[0]
     if top == "limits":
         place = place[:3]
-    elif top in OPEN and top != "check":
+    elif top in OPEN and top not in JUDGED:
         place = place[:2]  # what follows is a type, or the place in a list
     elif top in ("stop", "limit", "settle", "step"):
         place = place[:1]
@@ -264,7 +268,7 @@ def _one(found: Any, place: tuple[str, ...], sources: Sources) -> tuple[tuple[st
         return place, _missing(found, place, sources)
     spot = _spot(sources, place)
     name = list(place[1:] if top == "set" else place)
-    if top == "check":
+    if top in JUDGED:
         del name[2:3]  # number of the table: the key names them all
     value = found["input"]
     if top in ("set", "connect", "component") and isinstance(value, dict) and found["loc"][1:]:

@@ -16,10 +16,12 @@ DEPTH_MAX = 8  # files that extend one another
 JOINED = (("", "leave"), ("record", "signals"))
 # Arrays of tables, to which a file adds, too.
 ARRAYS = ("axis", "drive", "figure", "waveform", "contrary")
+# Of these, a table whose keys are one entry of each row: [drive] by inputs, [contrary] by words.
+KEYED = {"drive": "input", "contrary": "off"}
 # Keys that say where tables come from, and are none of theirs.
 ORIGINS = ("extends", "without")
 # What a machine does not say, for it has no job.
-NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "contrary")
+NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "expect", "contrary")
 
 
 @dataclass(frozen=True)
@@ -179,7 +181,19 @@ def _read(file: Path) -> Source:
     tables = tables_of(text, file)
     first = text.split("\n", 1)[0]
     about = first.lstrip("# ") if first.startswith("#") else ""
-    return Source(str(file), file.parent, tables, Lines(text), about)
+    return Source(str(file), file.parent, in_rows(tables), Lines(text), about)
+
+
+def in_rows(tables: Tables) -> Tables:
+    """Tables in which those that may be keyed are arrays of rows."""
+    return {name: _rows_of(name, value) for name, value in tables.items()}
+
+
+def _rows_of(name: str, value: Any) -> Any:
+    if name not in KEYED or not isinstance(value, dict):
+        return value
+    own = KEYED[name]
+    return [{own: k} | row if isinstance(row, dict) else row for k, row in value.items()]
 
 
 def merged(sources: Iterable[Source]) -> tuple[Tables, Sources]:

@@ -91,18 +91,18 @@ def column(scenario: Scenario, name: str) -> Column:
 def usual(scenario: Scenario) -> list[Column]:
     """The columns of a study that names none: the numbers that the scenario checks."""
     found: dict[str, Column] = {}
-    for name, checks in scenario.document.body.check.items():
+    for table, name, checks in scenario.document.body.asked:
         for check in checks:
-            for wanted in [name] if is_figure(name) else _checked(scenario, name, check):
+            for wanted in [name] if is_figure(name) else _checked(scenario, table, name, check):
                 found[wanted] = column(scenario, wanted)
     return list(found.values())
 
 
-def _checked(scenario: Scenario, name: str, check: Bounds) -> Iterable[str]:
+def _checked(scenario: Scenario, table: str, name: str, check: Bounds) -> Iterable[str]:
     if check.at is not None or check.windows is not None or check.rate is not None:
         return
     whole, element = scenario.resolver.split(name)
-    port = scenario.resolver.end(whole, "check", name).port
+    port = scenario.resolver.end(whole, table, name).port
     for bound in ("min", "max", "absmax", "rms", "final"):
         if getattr(check, bound) is None:
             continue
@@ -115,7 +115,7 @@ def _checked(scenario: Scenario, name: str, check: Bounds) -> Iterable[str]:
 
 def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
     """The outputs that a run records, each once: for columns, checks and contour."""
-    checked = [n for n in scenario.document.body.check if not is_figure(n)]
+    checked = [n for _, n, _ in scenario.document.body.asked if not is_figure(n)]
     analysed = [*of_contour(scenario.resolver), *of_iso9283(scenario.resolver)]
     names = [*analysed, *(scenario.resolver.split(n)[0] for n in checked)]
     ends = [recording.output(scenario.resolver, n, "check", n) for n in names]

@@ -15,6 +15,7 @@ from typing import Any
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run import load, machine
 from motionfmu.run.session import Session
+from motionfmu.scenarios.body import CHECK
 from motionfmu.study.study_axes import Point
 from motionfmu.study.study_columns import column, signals
 from motionfmu.study.study_definition import WorkerJob, digest
@@ -31,7 +32,7 @@ class Row:
     # again when the study is resumed.
     status: str
     message: str  # what went wrong, or why a number is missing; else empty
-    # Whether the scenario's checks hold; None if it has none or the run gave nothing.
+    # Whether what must hold for any setting does; None if that is nothing, or the run gave none.
     checks: bool | None
     values: tuple[float | None, ...]  # one per column; None where the run has no number
 
@@ -71,7 +72,8 @@ class Worker:
             except Exception as error:
                 wrong = wrong or _told(error)
             values.append(value)
-        checks = result.ok if result.scenario.document.body.check else None
+        must = [v.within for v in result.checks if v.table == CHECK]  # no point is as written
+        checks = all(must) if must else None
         if wrong:
             return Row(run, ERROR, wrong, checks, tuple(values))
         return Row(run, OK, "; ".join(missing), checks, tuple(values))
