@@ -13,6 +13,7 @@ from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import JUDGED, Body
 from motionfmu.scenarios.foreign import is_foreign
+from motionfmu.scenarios.patterns import spread
 from motionfmu.scenarios.table_sources import (
     ARRAYS,
     Source,
@@ -100,7 +101,9 @@ def made(tables: Mapping[str, Any], name: str, folder: Path, about: str) -> Docu
 
 def changed(document: Document, tables: Mapping[str, Any], name: str) -> Document:
     """A document with other tables, merged as those of a file that extends it."""
-    own = Source(f"<{name}>", document.sources[0].folder, in_rows(plain(tables)), None, document.about)
+    own = Source(
+        f"<{name}>", document.sources[0].folder, in_rows(plain(tables)), None, document.about
+    )
     return replace(parsed([own, *document.sources], name), changed=True)
 
 
@@ -117,7 +120,7 @@ def plain(value: Any) -> Any:
 
 def parsed(sources: list[Source], name: str = "") -> Document:
     """Check keys and types; the document lists the faults and holds the tables that are right."""
-    tables, places = merged(sources)
+    tables, places = merged(spread(sources))
     sound = _numbers(copy.deepcopy(tables))
     wrong = [f"{s.name}:1: {ABOUT}" for s in sources if s.lines is not None and not s.about]
     damaged: set[str] = set()
