@@ -13,6 +13,7 @@ from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
 from motionfmu.scenarios.body import JUDGED, Body, MachineAxis
 from motionfmu.scenarios.foreign import is_foreign
+from motionfmu.scenarios.patterns import spread
 from motionfmu.scenarios.table_sources import (
     ARRAYS,
     Source,
@@ -125,7 +126,7 @@ def plain(value: Any) -> Any:
 
 def parsed(sources: list[Source], name: str = "") -> Document:
     """Check keys and types; the document lists the faults and holds the tables that are right."""
-    tables, places = merged(sources)
+    tables, places = merged(spread(sources))
     sound = _numbers(copy.deepcopy(tables))
     wrong = [f"{s.name}:1: {ABOUT}" for s in sources if s.lines is not None and not s.about]
     damaged: set[str] = set()

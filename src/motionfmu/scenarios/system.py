@@ -1,6 +1,5 @@
 """A scenario resolved against the FMUs it names: every wire and value checked."""
 
-import fnmatch
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,6 +10,7 @@ from motionfmu.scenarios import fmus
 from motionfmu.scenarios.body import LONGEST
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
+from motionfmu.scenarios.patterns import is_pattern, matches
 
 Values = tuple[float | int | bool | str, ...]
 # A time in decimal seconds differs from a whole number of ns by rounding only.
@@ -127,11 +127,6 @@ def nanoseconds(key: str, seconds: float) -> int:
     return round(ns)
 
 
-def matches(name: str, pattern: str) -> bool:
-    """Whether a name matches a pattern with ``*`` and ``?``; its brackets are plain letters."""
-    return fnmatch.fnmatchcase(name, pattern.replace("[", "[[]"))
-
-
 class Resolver:
     """Looks names up in the FMUs a scenario uses."""
 
@@ -157,6 +152,8 @@ class Resolver:
             raise InputError()
         if component not in self.ports:
             text = f"{name}: no component {component!r}{suggestion(component, self.ports)}"
+            if is_pattern(name):
+                text = f"{name}: no component that fits has this variable"
             raise self.document.error(text, table, key, name)
         if variable not in self.ports[component]:
             fmu = self.document.body.component[component]

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,8 @@ class Source:
     tables: Tables
     lines: Lines | None  # None if a program gave it
     about: str = ""  # what the first line says
+    # The pattern from which a name has come, by table and name.
+    written: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def find(self, table: str, key: str) -> Any:
         """The value at a place, named as `Lines.of` names it; a KeyError if there is none."""
@@ -58,7 +60,7 @@ class Source:
     def place(self, table: str, key: str) -> str:
         """Name of a place, for messages."""
         if self.lines is not None:
-            return f"{self.name}:{self.lines.of(table, key)}"
+            return f"{self.name}:{self.lines.of(table, self.written.get((table, key), key))}"
         parts = table.split(".") if table else []
         words, count = "", 0
         for part in parts:
