@@ -8,10 +8,10 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install, missing
-from motionfmu.cli.common import FAILED, app, bare_table, out, results
+from motionfmu.cli.common import FAILED, OnMachine, app, bare_table, out, results
 
 if TYPE_CHECKING:
-    from motionfmu.analysis.gcode import Program
+    from motionfmu.analysis.gcode import Fault, Program
 
 AXES = "XYZUVW"
 
@@ -19,11 +19,16 @@ AXES = "XYZUVW"
 @app.command()
 def gcode(  # noqa: PLR0913  (each is an option of the command)
     files: Annotated[list[Path], typer.Argument(help="Part programs.")],
+    machine: OnMachine = None,
     tools: Annotated[Path | None, typer.Option(help="Tool table: lines T1 P1 Z10 D6.")] = None,
-    max_feed: Annotated[float, typer.Option(help="Highest feed [mm/min].")] = 30000.0,
-    rapid: Annotated[float, typer.Option(help="Highest speed of an axis [mm/min].")] = 30000.0,
-    acceleration: Annotated[float, typer.Option(help="Along the path [mm/s²].")] = 1000.0,
-    jerk: Annotated[float, typer.Option(help="Of it [mm/s³]; 0 none.")] = 0.0,
+    max_feed: Annotated[float | None, typer.Option(help="Highest feed [mm/min]; 30000.")] = None,
+    rapid: Annotated[
+        float | None, typer.Option(help="Highest speed of an axis [mm/min]; 30000.")
+    ] = None,
+    acceleration: Annotated[
+        float | None, typer.Option(help="Along the path [mm/s²]; 1000.")
+    ] = None,
+    jerk: Annotated[float | None, typer.Option(help="Of it [mm/s³]; 0 none.")] = None,
     limit: Annotated[
         list[str], typer.Option(metavar="AXIS=LO:HI", help="Travel of an axis [mm].")
     ] = [],  # noqa: B006
@@ -38,24 +43,21 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     folder: Annotated[Path | None, typer.Option("--out", help="Result folder.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
 ) -> None:
-    """Check part programs: faults, cycle time, extents, tools; draw their paths."""
-    settings: dict[str, Any] = {
-        "max_feed": max_feed,
-        "speed": rapid / 60.0,
-        "acceleration": acceleration,
-        "deceleration": acceleration,
-        "jerk": jerk,
-        "jerk_down": jerk,
-        "fanuc": fanuc,
-        "angles": angles,
-        "strict_feed": strict_feed,
-        "block_delete": delete,
-    }
-    settings |= _limits(limit, angles)
+    """Check part programs: faults, cycle time, extents, tools; draw their paths.
+
+    With --machine its speeds, ramps, travel, tools and words count, where no option says other.
+    """
     from motionfmu.analysis.gcode import read
     from motionfmu.analysis.gcode.program import text_in
 
-    table = text_in(tools) if tools else ""
+    settings, table = _of_machine(machine)
+    settings |= _rates(max_feed, rapid, acceleration, jerk)
+    switches = {"fanuc": fanuc, "angles": angles, "strict_feed": strict_feed}
+    settings |= {name: True for name, on in switches.items() if on}
+    if machine is None or delete:
+        settings["block_delete"] = delete
+    settings |= _limits(limit, settings.get("angles", False))
+    table = text_in(tools) if tools else table
     told, good = {}, True
     for file in files:
         program = read(file, table, **settings)
@@ -69,6 +71,34 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         print(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
+
+
+def _of_machine(machine: str | None) -> tuple[dict[str, Any], str]:
+    """Settings of the reader and the tool table of a machine; none without one."""
+    if machine is None:
+        return {}, ""
+    from motionfmu.run.program_reading import reading_on
+
+    return reading_on(machine)
+
+
+def _rates(
+    max_feed: float | None, rapid: float | None, along: float | None, jerk: float | None
+) -> dict[str, Any]:
+    """Settings of the speeds and accelerations that options give."""
+    given: dict[str, Any] = {} if max_feed is None else {"max_feed": max_feed}
+    given |= {} if rapid is None else {"speed": rapid / 60.0}
+    if along is not None or jerk is not None:
+        from motionfmu.analysis.gcode import defaults
+
+        size = defaults()["acceleration"] if along is None else along
+        given |= {"acceleration": size, "deceleration": size, "acc_time": 0.0, "dec_time": 0.0}
+        given |= {"jerk": jerk or 0.0, "jerk_down": jerk or 0.0}
+    return given
+
+
+def _more(note: "Fault") -> str:
+    return f" ({note.limits})" if note.limits else ""
 
 
 def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
@@ -117,7 +147,9 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         out.print(text, markup=False, soft_wrap=True)
     for note in program.notes:
         out.print(
-            f"{place(str(file), note)}: note: {note.why} {note.text}", markup=False, soft_wrap=True
+            f"{place(str(file), note)}: note: {note.why} {note.text}{_more(note)}",
+            markup=False,
+            soft_wrap=True,
         )
     if program.faults:
         return

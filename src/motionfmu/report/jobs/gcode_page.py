@@ -184,6 +184,7 @@ def fault_lines(name: str, program: Program) -> list[str]:
     for f in program.faults:
         lines = texts[f.file].split("\n")
         about = f' "{f.text}"' if 0 < len(f.text) <= SHORT else ""
+        about += f" ({f.limits})" if f.limits else ""
         told.append(f"{place(name, f)}: {f.why}{about}")
         if 0 < f.line <= len(lines):
             text = lines[f.line - 1].removeprefix("\ufeff").rstrip("\r").replace("\t", " ")
