@@ -71,8 +71,13 @@ static int judge_program(struct fmu *f, const char *parameter, const char *name,
 
     for (int i = 0; i < all->notes; i++) {
         const struct fault_report *r = &all->note[i];
-        fmu_warn(f, "%s: line %d: note: %s \"%s\", column %d", file_of(name, r).text, (int)r->line,
-                 fault_text(r->fault), quote(program, r, r->at, r->length).text, (int)r->at + 1);
+        char detail[96] = "";
+        if (r->fault == FAULT_NOTE_FEED) {
+            snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
+        }
+        fmu_warn(f, "%s: line %d: note: %s \"%s\"%s, column %d", file_of(name, r).text,
+                 (int)r->line, fault_text(r->fault), quote(program, r, r->at, r->length).text,
+                 detail, (int)r->at + 1);
     }
     for (int i = 0; i < all->count; i++) {
         status = all->of[i].fault != FAULT_READ

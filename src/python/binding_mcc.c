@@ -190,6 +190,7 @@ static const struct field report_fields[] = {
     REPORT(length),
     REPORT(other_at),
     REPORT(other_length),
+    REPORT(axis),
     REPORT(value),
     REPORT(limit),
     ROW(fault_report, file, "file", ""),

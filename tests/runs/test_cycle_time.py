@@ -71,7 +71,7 @@ LIFTS = ["Feeds, by the override", "Acceleration of the ramps", "Speed of the mo
 
 @pytest.mark.parametrize("lift", LIFTS)
 def test_a_lifted_limit_against_a_real_run(lift, tmp_path):
-    text = "G0 X100 Y40\nG1 X0 F9000\nG64 P0.05\nY0\nX60\nG0 X0\nX90\nX0"
+    text = "G0 X100 Y40\nG1 X0 F6000\nG64 P0.05\nY0\nX60\nG0 X0\nX90\nX0"
     scenario = on_table(tmp_path, text, set={"mcc.max_rpm": 900})
     base = scenario.run().done_at
     one = next(x for x in what_if(scenario) if x.title == lift)

@@ -70,7 +70,7 @@ def test_new_machine_makes_one_whose_values_are_edited_in_one_file(here: Path) -
 def test_a_program_on_a_machine_is_kept_as_a_scenario(here: Path) -> None:
     shutil.copy(ROOT / "scenarios/pocket/tools.tbl", here)
     (here / "ring.ngc").write_text("o<inner> call\n" + CIRCLE)
-    (here / "inner.ngc").write_text("o<inner> sub\nG0 Z1\no<inner> endsub\n")
+    (here / "inner.ngc").write_text("o<inner> sub\nG0 Z-1\no<inner> endsub\n")
     words = ("--set", "mcc.tool_table=tools.tbl", "--set", "mcc.p_gain=210", "--every", "2")
     ran = within("run", "ring.ngc", "--machine", "mill3", "--save-as", "kept", *words, folder=here)
     assert ran.returncode == 0 and "scenario: kept\n" in ran.stdout, ran.stderr
@@ -155,3 +155,60 @@ def test_check_of_programs(here: Path) -> None:
     assert ran.returncode == 2 and "--machine first_order: which programs?" in ran.stderr
     ran = within("check", "ring.ngc", "--machine", "first_order", "--contrary", folder=here)
     assert ran.returncode == 2 and "--contrary is for scenarios" in ran.stderr
+
+
+def test_gcode_reads_as_the_machine_does(here: Path) -> None:
+    result = motionfmu.machine("mill3").run(here / "ring.ngc")
+    ran = within("gcode", "ring.ngc", "--machine", "mill3", "--json", folder=here)
+    found = json.loads(ran.stdout)["ring.ngc"]
+    # The machine begins after 0.2 s, and says that it is done with the last frames in the card.
+    assert abs(found["time"] - (result.done_at - 0.2)) < 0.02
+    assert found["feeds"] == [3000.0, 3000.0]
+    ran = within("gcode", "ring.ngc", "--machine", "robot6", folder=here)
+    assert ran.returncode == 2 and "machine.toml: it reads no part programs" in ran.stderr
+    # an option is stronger than the machine
+    ran = within("gcode", "ring.ngc", "--machine", "mill3", "--max-feed", "600", folder=here)
+    assert "(3000, limit 600)" in ran.stdout
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (
+            "G0 X10\nG1 X300 F600\n",
+            'line 2: path leaves the software limits "G1 X300 F600" (X to 300',
+        ),
+        ("G0 Z5\n", 'line 1: path leaves the software limits "G0 Z5" (Z to 5 mm, limit 0 mm)'),
+        ("T9 M6\nG0 X1\n", 'line 1: no such tool in the tool table "T9"'),
+        ("G1 A5 F600\n", "line 1: "),
+    ],
+)
+def test_a_program_beyond_the_machine_is_refused_before_the_run(
+    here: Path, text: str, told: str
+) -> None:
+    (here / "bad.ngc").write_text(text)
+    (here / "t.tbl").write_text("T1 P1 Z10 D6\n")
+    words = ("bad.ngc", "--machine", "mill3")
+    ran = within("run", *words, "--set", "mcc.tool_table=t.tbl", folder=here)
+    assert ran.returncode == 2 and f"bad.ngc: {told}" in ran.stderr
+    assert not (here / "results").exists()
+    ran = within("gcode", *words, "--tools", "t.tbl", folder=here)
+    assert ran.returncode == 1 and f"bad.ngc:{told[5]}:" in ran.stdout
+    if "Z to 5" in told:
+        assert "(Z to 5, limit 0)" in ran.stdout
+
+
+def test_a_feed_above_the_machines_is_driven_at_its_limit_and_noted_once(here: Path) -> None:
+    (here / "fast.ngc").write_text("G1 X5 F90000\nX10 F91000\nX0\nM2\n")
+    (note,) = motionfmu.machine("mill3").run(here / "fast.ngc").warnings
+    assert "line 1: note: feed above" in note and '"F90000" (90000, limit 15000), column' in note
+    ran = within("gcode", "fast.ngc", "--machine", "mill3", folder=here)
+    assert ran.stdout.count("(90000, limit 15000)") == 1
+    strict = {"mcc.strict_feed": True}
+    (told, *_) = refusal(motionfmu.machine("mill3").run, here / "fast.ngc", set=strict)
+    assert "line 1: feed above max_feed" in told and "(90000, limit 15000)" in told
+    # an axis that is slower than the feed along the path
+    slow = {"mcc.max_rpm": [600.0, 3000.0, 3000.0, 3000.0, 3000.0, 3000.0]}
+    (here / "slow.ngc").write_text("G1 X5 F9000\nM2\n")
+    (note,) = motionfmu.machine("mill3").run(here / "slow.ngc", set=slow).warnings
+    assert "(9000, limit 6000)" in note

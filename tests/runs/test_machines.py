@@ -16,15 +16,11 @@ from motionfmu.scenarios import package_files
 from motionfmu.scenarios.machine_limits import AxisLimit
 
 MACHINES = ROOT / "src/motionfmu/machines"
-# A program for each machine of the library that takes one, and what it needs beside it.
-PROGRAMS = {
-    "first_order": ("circle_theory/circle.ngc", {}),
-    "mill3": ("pocket/plate.ngc", {"mcc.tool_table": "pocket/tools.tbl"}),
-    "robot6": ("robot_line/line.job", {"soft.points": "robot_line/line.points"}),
-    "xy_table": ("square/square.ngc", {}),
-}
-# These play what a network card or a field bus gives them.
-WITHOUT = {"engraver", "hydraulic_slide"}
+# The program that stands beside each machine that takes one, and what another one needs.
+PROGRAMS = {file.parent.name: file for file in MACHINES.glob("*/example.*")}
+PROGRAMS |= {"robot6": ROOT / "scenarios/robot_line/line.job"}
+BESIDE = {"robot6": {"soft.points": ROOT / "scenarios/robot_line/line.points"}}
+WITHOUT = {n for n in package_files.machines() if not motionfmu.machine(n).takes_programs}
 
 
 def scenario_at(folder: Path, text: str) -> Path:
@@ -40,16 +36,15 @@ def machine_at(folder: Path, text: str) -> Path:
     return folder
 
 
-def test_the_library_is_what_is_tried_here() -> None:
-    assert set(package_files.machines()) == {*PROGRAMS, *WITHOUT}
+def test_every_machine_that_takes_a_program_has_one_to_try() -> None:
+    assert set(package_files.machines()) == {*PROGRAMS, *WITHOUT} and len(WITHOUT) <= 2
     assert all((place / "README.md").is_file() for place in package_files.machines().values())
 
 
 @pytest.mark.parametrize("name", sorted(PROGRAMS))
 def test_a_program_runs_on_a_machine_without_a_scenario(name: str) -> None:
-    program, beside = PROGRAMS[name]
-    values = {key: str(ROOT / "scenarios" / file) for key, file in beside.items()}
-    result = motionfmu.machine(name).run(ROOT / "scenarios" / program, set=values)
+    values = {key: str(file) for key, file in BESIDE.get(name, {}).items()}
+    result = motionfmu.machine(name).run(PROGRAMS[name], set=values)
     assert result.ok and result.checks and result.done_at and "done at" in result.stopped
     # It ends with its program, and settles for the time that says so.
     row = result.time[1] - result.time[0]
@@ -282,5 +277,5 @@ def test_signals_of_limits_are_recorded_unasked(tmp_path: Path) -> None:
 def test_wrong_axes_and_limits(tmp_path: Path, text: str, line: int, what: str) -> None:
     (tmp_path / "a.ngc").write_text("M2\n")
     told = refusal(lambda: own_machine(tmp_path / "m", text).scenario(tmp_path / "a.ngc"))
-    where = f"{tmp_path}/m/machine.toml:{line}: " if line else f"{MACHINES}/xy_table/machine.toml:"
+    where = f"{tmp_path}/m/machine.toml:{line}: " if line else f"{MACHINES}/"
     assert any(t.startswith(where) and what in t for t in told), told

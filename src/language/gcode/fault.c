@@ -12,13 +12,20 @@ enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t le
 
 void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t length)
 {
+    fault_note_limit(r, what, at, length, 0.0, 0.0);
+}
+
+void fault_note_limit(struct fault_report *r, enum fault what, int32_t at, int32_t length,
+                      double value, double limit)
+{
     int i = 0;
 
     while (i < r->notes && r->note[i].what != what) {
         i++;
     }
     if (i == r->notes) {
-        r->note[r->notes] = (struct fault_note){ what, r->line, at, length, r->offset, "" };
+        r->note[r->notes] =
+            (struct fault_note){ what, r->line, at, length, r->offset, "", value, limit };
         memcpy(r->note[r->notes++].file, r->file, FAULT_FILE);
     }
 }

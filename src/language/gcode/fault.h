@@ -189,6 +189,7 @@ struct fault_note {
     int32_t line, at, length;
     int64_t offset;
     char file[FAULT_FILE];
+    double value, limit; /* NOTE_FEED [mm/min]: asked and driven; 0 of others */
 };
 
 /* A fault of a part program with its place and values, and the notes of what has just been read. */
@@ -202,8 +203,8 @@ struct fault_report {
     int32_t at, length;             /* [characters] place of the offending text in the line */
     int32_t other_at, other_length; /* GROUP, SHARED: place of the word it conflicts with */
     int32_t axis;                   /* TRAVEL, SPEED: index of the joint */
-    double value, limit;            /* FEED [mm/min]; SPEED: share of the joint's highest speed,
-                                     * and 1; lengths of all others [mm] */
+    double value, limit;            /* FEED, NOTE_FEED [mm/min]; SPEED: share of the joint's
+                                     * highest speed, and 1; lengths of all others [mm] */
     double feed;                    /* [mm/min] SPEED: highest feed that the joint allows */
 };
 
@@ -220,6 +221,10 @@ enum fault fault_at(struct fault_report *r, enum fault f, int32_t at, int32_t le
 
 /* Add a note on a text in the line of *r, unless *r has one of its kind already. */
 void fault_note(struct fault_report *r, enum fault what, int32_t at, int32_t length);
+
+/* The same with the value that is asked and the limit that is driven instead. */
+void fault_note_limit(struct fault_report *r, enum fault what, int32_t at, int32_t length,
+                      double value, double limit);
 
 /* The text of a fault; empty if f is none of them. */
 const char *fault_text(enum fault f);

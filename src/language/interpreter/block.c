@@ -89,7 +89,7 @@ enum command_status block_move(struct command *c, const struct program *p, enum 
     if (s != COMMAND_FAST || p->strict_feed) {
         return s;
     }
-    fault_note(r, FAULT_NOTE_FEED, r->at, r->length);
+    fault_note_limit(r, FAULT_NOTE_FEED, r->at, r->length, feed * 60.0, why->feed * 60.0);
     return command_move(c, &p->machine, &p->limits, type, why->feed, why);
 }
 

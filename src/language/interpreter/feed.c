@@ -24,7 +24,8 @@ static enum fault check(const struct program *p, double feed, bool exact, const 
         return f ? tokens_at_word(r, FAULT_FEED, f) : tokens_at_line(r, FAULT_FEED, line);
     }
     if (feed > p->limits.feed) {
-        fault_note(r, FAULT_NOTE_FEED, f ? f->at : line->at, f ? f->length : line->length);
+        fault_note_limit(r, FAULT_NOTE_FEED, f ? f->at : line->at, f ? f->length : line->length,
+                         feed * 60.0, p->limits.feed * 60.0);
     }
     return FAULT_NONE;
 }

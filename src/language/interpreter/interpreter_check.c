@@ -58,6 +58,8 @@ static void note(struct fault_list *all, const struct fault_note *told)
     n->offset = told->offset;
     memcpy(n->file, told->file, FAULT_FILE);
     n->at = told->at;
+    n->value = told->value;
+    n->limit = told->limit;
     n->length = told->length;
 }
 
@@ -98,7 +100,7 @@ static void check(struct interpreter *in, const struct program *p, int room, str
             k.latest = FAULT_NONE;
         }
         if (in->flow.again > most) {
-            struct fault_note end = { FAULT_NOTE_CHECKED, r.line, 0, 0, r.offset, "" };
+            struct fault_note end = { FAULT_NOTE_CHECKED, r.line, 0, 0, r.offset, "", 0.0, 0.0 };
             memcpy(end.file, r.file, FAULT_FILE);
             note(all, &end);
             return;

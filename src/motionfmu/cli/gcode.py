@@ -23,19 +23,27 @@ from motionfmu.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from motionfmu.analysis.gcode import Program
+    from motionfmu.analysis.cycle_time import Lifted, Plan
+    from motionfmu.analysis.gcode import Fault, Program
 
 AXES = "XYZUVW"
+Planned = tuple["Plan", list["Lifted"]]
 
 
 @app.command()
 def gcode(  # noqa: PLR0913  (each is an option of the command)
     files: Annotated[list[Path], typer.Argument(help="Part programs.")],
+    machine: OnMachine = None,
+    set_: Set = [],  # noqa: B006
     tools: Annotated[Path | None, typer.Option(help="Tool table: lines T1 P1 Z10 D6.")] = None,
-    max_feed: Annotated[float, typer.Option(help="Highest feed [mm/min].")] = 30000.0,
-    rapid: Annotated[float, typer.Option(help="Highest speed of an axis [mm/min].")] = 30000.0,
-    acceleration: Annotated[float, typer.Option(help="Along the path [mm/s²].")] = 1000.0,
-    jerk: Annotated[float, typer.Option(help="Of it [mm/s³]; 0 none.")] = 0.0,
+    max_feed: Annotated[float | None, typer.Option(help="Highest feed [mm/min]; 30000.")] = None,
+    rapid: Annotated[
+        float | None, typer.Option(help="Highest speed of an axis [mm/min]; 30000.")
+    ] = None,
+    acceleration: Annotated[
+        float | None, typer.Option(help="Along the path [mm/s²]; 1000.")
+    ] = None,
+    jerk: Annotated[float | None, typer.Option(help="Of it [mm/s³]; 0 none.")] = None,
     limit: Annotated[
         list[str], typer.Option(metavar="AXIS=LO:HI", help="Travel of an axis [mm].")
     ] = [],  # noqa: B006
@@ -43,8 +51,6 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         bool, typer.Option("--fanuc", help="As for Fanuc and Haas: P in ms, G65, GOTO.")
     ] = False,
     angles: Annotated[bool, typer.Option("--angles", help="A B C in place of U V W.")] = False,
-    machine: OnMachine = None,
-    set_: Set = [],  # noqa: B006
     strict_feed: Annotated[
         bool, typer.Option("--strict-feed", help="Refuse F above the highest feed.")
     ] = False,
@@ -52,91 +58,67 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     folder: Folder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
 ) -> None:
-    """Check part programs: faults, cycle time, extents, tools; draw their paths."""
-    if machine is not None:
-        good = _on_machine(files, machine, set_, folder, as_json)
-        raise typer.Exit(0 if good else FAILED)
-    if set_:
+    """Check part programs: faults, cycle time, extents, tools; draw their paths.
+
+    With --machine its speeds, ramps, travel, tools and words count, where no option says other, and
+    the time is that of its controller's planner, which tells where it goes.
+    """
+    if set_ and machine is None:
         raise InputError(f"--set {set_[0]}: --machine is missing")
-    settings: dict[str, Any] = {
-        "max_feed": max_feed,
-        "speed": rapid / 60.0,
-        "acceleration": acceleration,
-        "deceleration": acceleration,
-        "jerk": jerk,
-        "jerk_down": jerk,
-        "fanuc": fanuc,
-        "angles": angles,
-        "strict_feed": strict_feed,
-        "block_delete": delete,
-    }
-    settings |= _limits(limit, angles)
     from motionfmu.analysis.gcode import read
     from motionfmu.analysis.gcode.program import text_in
 
-    table = text_in(tools) if tools else ""
+    read_as, table = _of_machine(machine)
+    read_as |= _rates(max_feed, rapid, acceleration, jerk)
+    switches = {"fanuc": fanuc, "angles": angles, "strict_feed": strict_feed}
+    read_as |= {name: True for name, on in switches.items() if on}
+    if machine is None or delete:
+        read_as["block_delete"] = delete
+    read_as |= _limits(limit, read_as.get("angles", False))
+    table = text_in(tools) if tools else table
     told, good = {}, True
     for file in files:
-        program = read(file, table, **settings)
+        program = read(file, table, **read_as)
         good = good and not program.faults
-        found = _numbers(program)
-        told[str(file)] = found
+        planned = None
+        if machine is not None and not program.faults:
+            planned = _planned(file, machine, settings(set_))
+        told[str(file)] = found = _numbers(program, planned)
         if not as_json:
-            target = (folder / f"{file.stem}.gcode") if folder else results(file.stem, "gcode")
-            _show(file, program, target)
+            target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
+            _show(file, program, planned, found, target)
     if as_json:
         give(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
 
 
-def _on_machine(
-    files: list[Path], machine: str, given: list[str], folder: Path | None, as_json: bool
-) -> bool:
-    """Plan programs as a machine's controller commands them, and tell where their time goes."""
-    from motionfmu.analysis.cycle_time import planned, what_if
-    from motionfmu.report import result_folder
-    from motionfmu.report.cycle_time_section import name_of
-    from motionfmu.report.jobs.gcode_page import clock, plan_page
-    from motionfmu.run import Machine
+def _of_machine(machine: str | None) -> tuple[dict[str, Any], str]:
+    """Settings of the reader and the tool table of a machine; none without one."""
+    if machine is None:
+        return {}, ""
+    from motionfmu.run.program_reading import reading_on
 
-    values = settings(given)
-    on, told = Machine(machine), {}
-    for file in files:
-        scenario = on.scenario(file, set=values)
-        plan = planned(scenario)
-        lifted = what_if(scenario, plan)
-        found = plan.numbers() | {
-            "what_if": [
-                {"limit": x.title, "axis": x.axis, "set": x.set, "time": x.time, "saved": x.saved}
-                for x in lifted
-            ]
-        }
-        told[str(file)] = found
-        if as_json:
-            continue
-        out.print(f"[bold]{file}[/] on {on.name}  {clock(plan.time)} ({plan.time:.3f} s)")
-        where = bare_table("limited by", "s", "%")
-        for s in plan.shares():
-            where.add_row(name_of(s), f"{s.time:.3f}", f"{100.0 * s.time / plan.time:.1f}")
-        out.print(where)
-        saved = bare_table("a quarter more of", "s", "saves")
-        for x in lifted:
-            if x.saved > 0.0:
-                title = f"{x.title}, {x.axis}" if x.axis else x.title
-                saved.add_row(title, f"{x.time:.3f}", f"{x.saved:.3f}")
-        out.print(saved)
-        target = (folder / f"{file.stem}.gcode") if folder else results(file.stem, "gcode")
-        result_folder.usable(target)
-        with result_folder.whole(target) as part:
-            page = plan_page(f"{file.stem} on {on.name}", plan, lifted)
-            (part / "report.html").write_text(page, encoding="utf-8")
-            text = json.dumps(found, indent=1, allow_nan=False)
-            (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
-        report(target / "report.html")
-    if as_json:
-        give(json.dumps(told, indent=1, allow_nan=False))
-    return True
+    return reading_on(machine)
+
+
+def _rates(
+    max_feed: float | None, rapid: float | None, along: float | None, jerk: float | None
+) -> dict[str, Any]:
+    """Settings of the speeds and accelerations that options give."""
+    given: dict[str, Any] = {} if max_feed is None else {"max_feed": max_feed}
+    given |= {} if rapid is None else {"speed": rapid / 60.0}
+    if along is not None or jerk is not None:
+        from motionfmu.analysis.gcode import defaults
+
+        size = defaults()["acceleration"] if along is None else along
+        given |= {"acceleration": size, "deceleration": size, "acc_time": 0.0, "dec_time": 0.0}
+        given |= {"jerk": jerk or 0.0, "jerk_down": jerk or 0.0}
+    return given
+
+
+def _more(note: "Fault") -> str:
+    return f" ({note.limits})" if note.limits else ""
 
 
 def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
@@ -158,17 +140,55 @@ def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
     return {"bounded": bounded, "low": low, "high": high}
 
 
-def _numbers(program: "Program") -> dict[str, Any]:
+def _planned(file: Path, machine: str, given: dict[str, Any]) -> Planned:
+    """The program as the machine's controller commands it, and with each limit lifted."""
+    from motionfmu.analysis.cycle_time import planned, what_if
+    from motionfmu.run import Machine
+
+    scenario = Machine(machine).scenario(file, set=given)
+    plan = planned(scenario)
+    return plan, what_if(scenario, plan, set=given)
+
+
+def _tell_plan(found: Planned) -> None:
+    """Where the time goes, and which limit would save some."""
+    from motionfmu.report.cycle_time_section import name_of
+
+    plan, lifted = found
+    where = bare_table("limited by", "s", "%")
+    for s in plan.shares():
+        where.add_row(name_of(s), f"{s.time:.3f}", f"{100.0 * s.time / plan.time:.1f}")
+    out.print(where)
+    saved = bare_table("a quarter more of", "s", "saves")
+    for x in lifted:
+        if x.saved > 0.0:
+            title = f"{x.title}, {x.axis}" if x.axis else x.title
+            saved.add_row(title, f"{x.time:.3f}", f"{x.saved:.3f}")
+    out.print(saved)
+
+
+def _numbers(program: "Program", planned: Planned | None) -> dict[str, Any]:
     from dataclasses import asdict
 
     from motionfmu.analysis.gcode import summarise
 
     faults = [asdict(f) for f in program.faults]
     notes = [asdict(n) for n in program.notes]
-    return {"faults": faults, "more": program.more, "notes": notes} | summarise(program).numbers()
+    found = {"faults": faults, "more": program.more, "notes": notes}
+    found |= summarise(program).numbers()
+    if planned is not None:
+        plan, lifted = planned
+        found |= plan.numbers() | {"what_if": [asdict(x) for x in lifted]}
+    return found
 
 
-def _show(file: Path, program: "Program", target: Path) -> None:
+def _show(
+    file: Path,
+    program: "Program",
+    planned: Planned | None,
+    found: dict[str, Any],
+    target: Path,
+) -> None:
     """Print what was found and write the report."""
     from motionfmu.analysis.gcode import strokes, summarise
     from motionfmu.report import result_folder
@@ -185,12 +205,15 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         out.print(text, markup=False, soft_wrap=True)
     for note in program.notes:
         out.print(
-            f"{place(str(file), note)}: note: {note.why} {note.text}", markup=False, soft_wrap=True
+            f"{place(str(file), note)}: note: {note.why} {note.text}{_more(note)}",
+            markup=False,
+            soft_wrap=True,
         )
     if program.faults:
         return
     s = summarise(program)
-    out.print(f"[bold]{file}[/]  {clock(s.time)}, {s.commands} commands, {s.stops} stops")
+    time = s.time if planned is None else planned[0].time
+    out.print(f"[bold]{file}[/]  {clock(time)}, {s.commands} commands, {s.stops} stops")
     low, high = s.feeds
     out.print(f"feed {metres(s.feed_way)} at {low:.4g} to {high:.4g} mm/min", end=", ")
     out.print(f"rapid {metres(s.rapid_way)}")
@@ -202,14 +225,16 @@ def _show(file: Path, program: "Program", target: Path) -> None:
         name = f"T{u.tool}" if u.tool else "none"
         table.add_row(name, clock(u.time), metres(u.feed_way), f"{u.low[2]:.4g} mm")
     out.print(table)
+    if planned is not None:
+        _tell_plan(planned)
     drawn = list(strokes(program))
     result_folder.usable(target)
     with result_folder.whole(target) as part:
         if not (without := missing("report")):
             write_path(file.stem, drawn, part)
-        page = page_text(file.stem, program, s, drawn)
+        page = page_text(file.stem, program, s, drawn, planned)
         (part / "report.html").write_text(page, encoding="utf-8")
-        numbers = json.dumps(_numbers(program), indent=1, allow_nan=False)
+        numbers = json.dumps(found, indent=1, allow_nan=False)
         (part / result_folder.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
     if without:
         out.print(f"no picture: {install('report')}", markup=False)

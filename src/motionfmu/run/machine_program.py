@@ -44,6 +44,11 @@ class Machine:
         document = self._made({"stop": 1.0}, self.name, "")
         self._signals, self.axes = document.body.signals, document.axes
 
+    @property
+    def takes_programs(self) -> bool:
+        """Whether its file says where a program goes and what tells that it is done."""
+        return self._signals.program is not None and self._signals.done is not None
+
     def __repr__(self) -> str:
         return f"<Machine {self.name}: {self.file}>"
 
@@ -85,10 +90,10 @@ class Machine:
         file = Path(program)
         if not is_file(file):
             raise InputError(f"{file}: no such program")
-        if self._signals.program is None or self._signals.done is None:
+        if not self.takes_programs:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
-        values = {self._signals.program: str(file.resolve()), **(set or {})}
+        values: dict[str, Any] = {str(self._signals.program): str(file.resolve()), **(set or {})}
         given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
         about = f"{file.name} on {self.name}"
         return Scenario(self._made(given | tables | {"set": values}, file.stem, about))

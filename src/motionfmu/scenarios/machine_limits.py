@@ -38,6 +38,7 @@ def wanted(resolver: Resolver) -> list[str]:
     """Signals of the [limits] table, which are recorded; axes, names and units are checked."""
     document, faults = resolver.document, Faults()
     _check_axes(document, faults)
+    faults.tell()
     found = []
     for figure, given in document.body.limits.items():
         with faults.each():

@@ -15,6 +15,8 @@ from motionfmu.base.toml_lines import is_file
 
 AXES = 6
 ROOM = 4096
+NAMES = "XYZUVW"
+TRAVEL = "software limits"  # words of the fault that an axis has
 REPORTS = 64  # room for all faults and notes
 TYPES = (
     "rapid line cw_arc ccw_arc cw_helix ccw_helix dwell 7 8 9 10 outputs stop rapid_joints curve"
@@ -38,6 +40,8 @@ class Fault:
         What is wrong with it, in words.
     file : str
         Name, without its ending, of a file that the program calls; empty: the program itself.
+    limits : str
+        The value asked and the limit, with the axis that has it, if the fault is about these.
     """
 
     line: int
@@ -46,10 +50,12 @@ class Fault:
     text: str
     why: str
     file: str = ""
+    limits: str = ""
 
     def __str__(self) -> str:
         file = f"{self.file}.ngc: " if self.file else ""
-        return f'{file}line {self.line}: {self.why} "{self.text}", column {self.column}'
+        more = f" ({self.limits})" if self.limits else ""
+        return f'{file}line {self.line}: {self.why} "{self.text}"{more}, column {self.column}'
 
 
 # Type of the function by which C gets the text of a called file: by name, with its length.
@@ -76,7 +82,11 @@ def _fault(texts: Callable[[str], bytes], r: Any) -> Fault:
     words = text[begin : begin + int(r["length"])].decode(errors="replace")
     column = len(text[line:begin].decode(errors="replace")) + 1
     why = library().fault_text(ctypes.c_int32(int(r["fault"]))).decode()
-    return Fault(int(r["line"]), column, len(words), words, why, file)
+    limits = ""
+    if TRAVEL in why or r["limit"]:
+        axis = f"{NAMES[int(r['axis'])]} to " if TRAVEL in why else ""
+        limits = f"{axis}{r['value']:.6g}, limit {r['limit']:.6g}"
+    return Fault(int(r["line"]), column, len(words), words, why, file, limits)
 
 
 class Texts:
@@ -230,7 +240,9 @@ def defaults() -> dict[str, Any]:
     -------
     dict
         Lengths in mm, feed and max_feed in mm/min, speeds in mm/s, accelerations in mm/s^2,
-        jerks in mm/s^3 (0: unlimited).
+        jerks in mm/s^3 (0: unlimited); acc_time and dec_time [s] of ramps from rest to any speed,
+        which count instead of accelerations if they are not 0, with the share of them in which
+        the acceleration changes.
     """
     reader = _reader({})
     return {name: reader[name] for name in reader if name not in ("line", "ended")}

@@ -42,8 +42,14 @@ def metres(way: float) -> str:
     return f"{way / 1e3:.3g} m" if way >= 1e4 else f"{way:.4g} mm"
 
 
-def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Stroke]) -> str:
-    """The whole HTML page."""
+def page_text(
+    name: str,
+    program: Program,
+    summary: Summary,
+    drawn: Sequence[Stroke],
+    planned: tuple[Plan, Sequence[Lifted]] | None = None,
+) -> str:
+    """The whole HTML page; with the plan of a machine's controller, where the time goes."""
     page = Page()
     low, high = summary.feeds
     feeds = f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"
@@ -53,7 +59,11 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
     total = summary.feed_way + summary.rapid_way
     rapid = 100.0 * summary.rapid_way / total if total else 0.0
     rows = [
-        ("Cycle time", clock(summary.time), f"{summary.stops} stops not counted"),
+        (
+            "Cycle time",
+            clock(summary.time if planned is None else planned[0].time),
+            f"{summary.stops} stops not counted",
+        ),
         ("Way with feed", metres(summary.feed_way), "measured in X Y Z"),
         ("Way in rapid", metres(summary.rapid_way), f"{rapid:.0f} % of the whole"),
         ("Feeds", feeds, "mm/min"),
@@ -68,6 +78,8 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
         if low < high:
             place = page.place("feeds", path_of_program(drawn, by_feed=True))
             page.section("Feed along the path", "As programmed.", place)
+    if planned is not None:
+        add_cycle_time(page, *planned)
     page.section("Extents", "", _extents(summary))
     page.section("Tools", "", _tools(summary))
     if program.notes:
@@ -75,24 +87,6 @@ def page_text(name: str, program: Program, summary: Summary, drawn: Sequence[Str
         told = table(("line", "text", "note"), rows, numeric=3)
         page.section("Notes", "Accepted, and without effect here; each once.", told)
     return page.text(PageFrame(name, "A part program", "program", [], FOOTER))
-
-
-def plan_page(name: str, plan: Plan, lifted: Sequence[Lifted]) -> str:
-    """The HTML page of a program as a machine's controller commands it."""
-    page = Page()
-    rows = [("Cycle time", clock(plan.time), f"{plan.time:.3f} s")]
-    rows += [
-        (s.cause.capitalize() + (f" of {s.axis}" if s.axis else ""), clock(s.time),
-         f"{100.0 * s.time / plan.time:.0f} % of the time")
-        for s in plan.shares()[:4]
-    ]  # fmt: skip
-    page.sections.append(cards(rows))
-    add_cycle_time(page, plan, lifted)
-    footer = (
-        "The controller's own planner, without the machine. Every number is in"
-        ' <a href="result.json">result.json</a>.'
-    )
-    return page.text(PageFrame(name, "A part program on a machine", "program", [], footer))
 
 
 def _extents(summary: Summary) -> str:
@@ -204,6 +198,7 @@ def fault_lines(name: str, program: Program) -> list[str]:
     for f in program.faults:
         lines = texts[f.file].split("\n")
         about = f' "{f.text}"' if 0 < len(f.text) <= SHORT else ""
+        about += f" ({f.limits})" if f.limits else ""
         told.append(f"{place(name, f)}: {f.why}{about}")
         if 0 < f.line <= len(lines):
             text = lines[f.line - 1].removeprefix("\ufeff").rstrip("\r").replace("\t", " ")
