@@ -10,7 +10,8 @@
 /* Farthest that a jog goes that only turns the tool. [rad] */
 static const double TURNS = 12.566370614359172;
 
-/* Before a place that is not reached a jog ends by so much; one shorter than that is none. [mm] */
+/* Before a place that is not reached a jog ends by so much of its way and of its turn at most; one
+ * shorter than that is none. [mm] and [rad] */
 static const double SHORT = 1e-6;
 
 /* Times that the path of a jog is made shorter. */
@@ -65,10 +66,14 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
         1e3 * (fabs(o->a1) + fabs(o->a2) + fabs(o->b) + o->c1 + o->c2 + o->c3 + o->c4)
         + norm3(r->tool.at);
     const double v = norm3(velocity), w = norm3(turn);
+    const double least = v > 0.0 ? SHORT * (v / el_max(v, w)) : SHORT;
     double length = way > 0.0 ? way : v > 0.0 ? 2.0 * reach : TURNS;
     enum robot_status status = ROBOT_FAR;
 
-    for (int n = 0; n < TRIES && length > SHORT; n++) {
+    if (v > 0.0) { /* where the tip hardly goes, the turn is a number, too */
+        length = el_min(length, v * (ROBOT_MOST / w));
+    }
+    for (int n = 0; n < TRIES && length > least; n++) {
         struct pose pose = r->pose;
         double by[3], q[4];
         for (int i = 0; i < 3; i++) {
@@ -81,7 +86,7 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
         if (status == ROBOT_OK) {
             break;
         }
-        length = el_max(0.0, length * why->part - SHORT);
+        length = el_max(0.0, length * why->part - least);
     }
     return status;
 }

@@ -161,6 +161,24 @@ static void whole_turns(const struct robot_config *c)
     }
 }
 
+/* Turning about the tool's y, and joint 5 to its limit. How far the tip goes a radian [mm] does not
+ * decide how near to the limit that is, however little it is. */
+static void hardly_along(const struct robot_config *c)
+{
+    static const double per[] = { 10.0, 1.0, 1e-3, 1e-6, 1e-9, 1e-160 };
+
+    for (size_t n = 0; n < sizeof per / sizeof *per; n++) {
+        const double turning[6] = { per[n], [4] = 1.0 };
+        struct robot_refusal why;
+        struct rig_watch w = { 0 };
+        robot_start(&robot, c, BENT);
+        CHECK_EQ(robot_jog(&robot, c, ROBOT_IN_TOOL, turning, 0.3, 0.0, &why), ROBOT_OK);
+        rig_run(c, &w);
+        rig_kept(&w);
+        CHECK_NEAR(robot.joint[4], c->arm.joint[4].high, 2e-6);
+    }
+}
+
 int main(void)
 {
     const struct robot_config c = rig_config();
@@ -169,6 +187,7 @@ int main(void)
     there_and_back(&c, BENT, 0.0);
     keys(&c);
     whole_turns(&c);
+    hardly_along(&c);
     stretched(&c);
     return check_result();
 }

@@ -15,8 +15,9 @@ static const double SHARE = 1e-6, RANGE = 1e-9;
  * singular place, so wrist and arm both. None has more than MOST, at the place itself. [rad] */
 static const double ROUNDING = 1e-15, MOST = 2e-5;
 
-/* Seeds that have broken a limit: a wrist's move that begins where joint 5's sine is 1.3e-4. */
-static const int32_t FOUND[] = { 548 };
+/* Seeds that have broken a limit: a wrist's move that begins where joint 5's sine is 1.3e-4. That
+ * have ended too early: a jog that turns by 1800 rad while its tip goes by 1 mm. */
+static const int32_t FOUND[] = { 548, 17883 };
 
 /* Chains that have: one whose line by the wrist crawled for a corner that none could join. */
 static const int32_t FOUND_CHAINS[] = { 7217 };
@@ -29,7 +30,7 @@ enum { SAMPLES = 2000, FINEST = 36 };
 static const double LONGEST = 2.0;
 
 /* A jog that has ended cannot go on by this. [mm] or [rad] */
-static const double BEYOND = 0.01;
+static const double BEYOND = 1e-5;
 
 /* A jog that only turns goes no further. [rad] */
 static const double TURNS = 12.566370614359172;
@@ -390,12 +391,13 @@ static bool room(const struct robot_config *c, const struct jog *j, const double
     return found;
 }
 
-/* Whether a jog could go on from joints. */
+/* Whether a jog could go on from joints, until tip or turn has gone by BEYOND: a turn beyond half
+ * of one is mistaken for what leads to its end the other way round. */
 static bool goes_on(const struct robot_config *c, const struct jog *j,
                     const double joint[OPW_JOINTS])
 {
     struct drawn d = { .start = manipulator_pose(&c->arm, joint) };
-    const double v = norm3(j->velocity), per = BEYOND / (v > 0.0 ? v : norm3(j->turn));
+    const double per = BEYOND / fmax(norm3(j->velocity), norm3(j->turn));
     double by[3], q[4];
 
     if (j->frame == ROBOT_IN_JOINTS) {
