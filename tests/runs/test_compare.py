@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from console import within
+from page_curves import page_data
 
 import motionfmu
 from motionfmu.base import columns
@@ -67,7 +68,7 @@ def numbers(packed: dict) -> np.ndarray:
 
 
 def data_of(page: str) -> dict:
-    return json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
+    return page_data(page)
 
 
 def test_a_difference_is_b_minus_a_at_every_sample(
