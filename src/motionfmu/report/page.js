@@ -35,8 +35,11 @@ function fitted({ data, layout }) {
       layout.margin.b = BAR + (layout.margin.b ?? 0);
     }
     if (bar.title) bar.title.text = bar.title.text.replaceAll("<br>", " ");
-    if (bar.tickvals?.length > 6) {
-      const thin = (_, i) => i % Math.ceil(bar.tickvals.length / 6) === 0;
+    if (bar.tickvals) { // no closer than a number is wide
+      const apart = (bar.tickvals.at(-1) - bar.tickvals[0]) / 3;
+      let last = -Infinity;
+      const kept = bar.tickvals.map((v) => (v - last >= apart ? ((last = v), true) : false));
+      const thin = (_, i) => kept[i];
       [bar.ticktext, bar.tickvals] = [bar.ticktext.filter(thin), bar.tickvals.filter(thin)];
     }
   }

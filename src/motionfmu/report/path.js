@@ -4,12 +4,12 @@ function unpack(packed) {
   return packed.dtype === "i4" ? new Int32Array(bytes.buffer) : new Float32Array(bytes.buffer);
 }
 
-// Another magnification: the error's points and hairs are placed anew on the path.
+// Another magnification: points, hairs and outliers of the error are placed anew on the path.
 ready.push(() => {
   const path = page.path;
   const foot = path.foot.map(unpack);
   const gap = path.gap.map(unpack);
-  const hair = unpack(path.hairs);
+  const hair = unpack(path.hairs), outliers = unpack(path.outliers);
   const place = document.getElementById("path");
   const choice = document.getElementById("magnification");
 
@@ -19,9 +19,9 @@ ready.push(() => {
       const shown = Array.from(foot[i], (f, k) => f + factor * gap[i][k]);
       const hairs = [];
       for (const k of hair) hairs.push(foot[i][k], shown[k], NaN);
-      change[axis] = [hairs, shown];
+      change[axis] = [hairs, shown, Array.from(outliers, (k) => shown[k])];
     });
-    Plotly.restyle(place, change, [1, 3]);
+    Plotly.restyle(place, change, outliers.length ? [1, 3, 4] : [1, 3]);
     for (const e of document.querySelectorAll("[data-magnification]")) {
       e.textContent = factor.toLocaleString("en");
     }
