@@ -1,10 +1,13 @@
 """A page of each kind, made as the command makes it, of the shortest runs that fill it."""
 
+import re
+import shutil
 import time
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
-from conftest import ROOT
+from conftest import FMUS, ROOT
 
 import motionfmu
 from motionfmu.report.run_page import page_text
@@ -12,11 +15,31 @@ from motionfmu.report.run_summary import summary_of
 from motionfmu.report.signal_page import plain_text
 
 CIRCLE = ROOT / "scenarios/circle"
+LONG = 40  # letters of a name
 
 
-def contour_run() -> motionfmu.Result:
+def long_name(name: str) -> str:
+    """A name of forty letters."""
+    return f"{name}_with_a_name_of_forty_letters_altogether"[:LONG]
+
+
+def renamed(name: str, folder: Path, *components: str) -> Path:
+    """A scenario's copy with a name of forty letters, and such names of its components."""
+    place = folder / long_name(name)
+    if place.is_dir():
+        return place
+    shutil.copytree(ROOT / "scenarios" / name, place)
+    file = place / "scenario.toml"
+    text = file.read_text()
+    for one in components:
+        text = re.sub(rf'(?m)(^|")({one})(?=\s*=\s*"|\.)', rf"\g<1>{long_name(one)}", text)
+    file.write_text(text)
+    return place
+
+
+def contour_run(folder: Path) -> motionfmu.Result:
     """A circle: contour, FIFO, interrupts, traces."""
-    return motionfmu.load(ROOT / "scenarios/fifo_latency").run(stop=0.8)
+    return motionfmu.load(renamed("fifo_latency", folder)).run(stop=0.8)
 
 
 def contour(result: motionfmu.Result) -> str:
@@ -26,42 +49,42 @@ def contour(result: motionfmu.Result) -> str:
     return page_text((result, summary_of(result, found)), found, draw(found), result.figures())
 
 
-def plain(name: str, stop: float) -> str:
-    result = motionfmu.load(ROOT / "scenarios" / name).run(stop=stop)
+def plain(place: Path, stop: float) -> str:
+    result = motionfmu.load(place).run(stop=stop)
     return plain_text(result, result.figures(), summary_of(result, None))
 
 
-def compared(result: motionfmu.Result) -> str:
+def compared(result: motionfmu.Result, folder: Path) -> str:
     """The circle over itself at a higher gain."""
     from motionfmu.compare import compare
     from motionfmu.compare.comparison_page import page_text as compare_page
 
-    other = motionfmu.load(ROOT / "scenarios/fifo_latency").run(stop=0.8, set={"mcc.p_gain": 250})
+    other = motionfmu.load(renamed("fifo_latency", folder)).run(stop=0.8, set={"mcc.p_gain": 250})
     return compare_page(compare(result, other))
 
 
-def margins() -> str:
+def margins(folder: Path) -> str:
     from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
     from motionfmu.analysis.linear import model
     from motionfmu.report.loop_pages import margin_page
 
-    linear = model(CIRCLE, 1, {"machine.motor_speed": 30.0}, {})
+    linear = model(renamed("circle", folder), 1, {"machine.motor_speed": 30.0}, {})
     return margin_page.page_text(linear, study(linear, LoopStudyOptions(None, {}, False, None)))
 
 
-def tuned() -> str:
+def tuned(folder: Path) -> str:
     from motionfmu.report.loop_pages import tune_page
     from motionfmu.run import load
     from motionfmu.study.tune import problem, tune
 
-    return tune_page.page_text(tune(load(ROOT / "scenarios/mismatch_line"), problem({}), {}))
+    return tune_page.page_text(tune(load(renamed("mismatch_line", folder)), problem({}), {}))
 
 
-def causes() -> str:
+def causes(folder: Path) -> str:
     from motionfmu.analysis.explain import explain
     from motionfmu.report.cause_pages import explain_page
 
-    return explain_page.page_text(explain(ROOT / "scenarios/mismatch_line", {}))
+    return explain_page.page_text(explain(renamed("mismatch_line", folder), {}))
 
 
 def program() -> str:
@@ -69,7 +92,7 @@ def program() -> str:
     from motionfmu.report.jobs import gcode_page
 
     found = read((CIRCLE / "circle.ngc").read_text())
-    return gcode_page.page_text("circle", found, summarise(found), list(strokes(found)))
+    return gcode_page.page_text(long_name("circle"), found, summarise(found), list(strokes(found)))
 
 
 def plan() -> str:
@@ -82,7 +105,7 @@ def plan() -> str:
     drawing = plt.read(folder / "plate.plt")
     config = load(folder / "card.toml")
     found = planned(drawing, config)
-    return card_page.plan_page("plate", found, drawing, figures(found, config).numbers())
+    return card_page.plan_page(long_name("plate"), found, drawing, figures(found, config).numbers())
 
 
 def swept(folder: Path) -> str:
@@ -94,7 +117,7 @@ def swept(folder: Path) -> str:
     gains = {f"mcc.p_gain[{k}]": {"from": 100, "to": 300, "n": 5} for k in (1, 2)}
     cost = "contour.error.max"
     given = {"axis": gains, "results": [cost], "cost": cost, "sampling": "grid", "stop": 0.5}
-    chosen = study(CIRCLE, given)
+    chosen = study(renamed("circle", folder), given)
     rows = [
         worker.Row(i, "ok", "", True, (0.01 + sum((x / 200.0 - 1.0) ** 2 for x in point),))
         for i, point in enumerate(chosen.points)
@@ -106,25 +129,42 @@ def path_causes(folder: Path) -> str:
     from motionfmu.analysis.explain import explain_path
     from motionfmu.report.cause_pages.path_causes_page import write_path_explanation
 
-    found = explain_path(ROOT / "scenarios/plt_plate", {})
+    found = explain_path(renamed("plt_plate", folder, "card", "drives", "machine"), {})
     return write_path_explanation(found, folder).read_text()
+
+
+def documentation() -> str:
+    """The page of documentation in an FMU."""
+    with zipfile.ZipFile(FMUS / "mcc.fmi3.fmu") as archive:
+        return archive.read("documentation/index.html").decode()
+
+
+def notebook(result: motionfmu.Result) -> str:
+    """What a notebook shows of a result, on a page of nothing else."""
+    head = '<!DOCTYPE html><meta name="viewport" content="width=device-width">'
+    return f"{head}<body>{result._repr_html_()}</body>"
 
 
 def made(folder: Path) -> tuple[dict[str, Path], motionfmu.Result]:
     """Pages by kind, and the run that is on the page `contour`."""
-    result = contour_run()
+    result = contour_run(folder)
     kinds: dict[str, Callable[[], str]] = {
         "contour": lambda: contour(result),
-        "iso9283": lambda: plain("plt_plate", 2.5),
-        "robot": lambda: plain("robot_pick", 0.2),
-        "compare": lambda: compared(result),
-        "margins": margins,
-        "tune": tuned,
-        "causes": causes,
+        "iso9283": lambda: plain(renamed("plt_plate", folder, "card", "drives", "machine"), 2.5),
+        "robot": lambda: plain(renamed("robot_pick", folder, "soft", "card"), 0.2),
+        "signals": lambda: plain(
+            renamed("hydraulic_quadrature", folder, "written", "repaired", "axis"), 0.12
+        ),
+        "compare": lambda: compared(result, folder),
+        "margins": lambda: margins(folder),
+        "tune": lambda: tuned(folder),
+        "causes": lambda: causes(folder),
         "path": lambda: path_causes(folder),
         "sweep": lambda: swept(folder),
         "gcode": program,
         "plan": plan,
+        "documentation": documentation,
+        "notebook": lambda: notebook(result),
     }
     pages: dict[str, Path] = {}
     for kind, make in kinds.items():

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from browser import PHONE, tab
 from made import made
+from page_words import WORDS
 
 import motionfmu
+from motionfmu.report.html_page import LARGEST
 
 # What they share is made once, by one worker.
 pytestmark = pytest.mark.xdist_group("pages")
@@ -19,6 +21,7 @@ KINDS = (
     "contour",
     "robot",
     "iso9283",
+    "signals",
     "compare",
     "margins",
     "tune",
@@ -28,6 +31,7 @@ KINDS = (
     "gcode",
     "plan",
 )
+OTHERS = ("documentation", "notebook")  # without plots of a script
 FRAME = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 # What is wrong with how a page looks, in words.
 LOOK = """async () => {
@@ -146,6 +150,73 @@ def test_nothing_overlaps_overflows_or_breaks(browser: Any, pages: Any, kind: st
         assert page.evaluate(LOOK) == []
         if kind == "contour":
             a_plot_is_saved(page)
+
+
+def drawn(page: Any) -> None:
+    page.evaluate("typeof opened === 'undefined' || opened")
+    page.evaluate(FRAME)
+
+
+@pytest.mark.parametrize("kind", (*KINDS, *OTHERS))
+@pytest.mark.parametrize("size", [PHONE, DESK], ids=["390", "1400"])
+def test_no_text_lies_over_text(browser: Any, pages: Any, kind: str, size: Any) -> None:
+    with tab(browser, pages[0][kind].as_uri(), size) as page:
+        drawn(page)
+        assert page.evaluate(WORDS) == []
+        room = page.evaluate("document.documentElement.clientWidth")
+        assert page.evaluate("document.documentElement.scrollWidth") == room
+        for part in page.locator("details").all():
+            part.evaluate("e => { e.open = true; }")
+        assert page.evaluate(WORDS) == []
+
+
+@pytest.mark.parametrize(
+    "move",
+    [
+        "document.querySelector('section .note').style.translate = '0 -20px'",
+        """{ const tick = document.querySelector("#following .xtick text");
+              tick.parentNode.append(tick.cloneNode(true)); }""",
+    ],
+)
+def test_text_over_text_is_seen(browser: Any, pages: Any, move: str) -> None:
+    with tab(browser, pages[0]["contour"].as_uri(), DESK) as page:
+        drawn(page)
+        page.evaluate(move)
+        assert page.evaluate(WORDS) != []
+
+
+def test_a_page_is_small_light_and_dark_with_contents(browser: Any, pages: Any) -> None:
+    paths, _ = pages
+    for kind in KINDS:
+        assert paths[kind].stat().st_size <= LARGEST
+    ground = "getComputedStyle(document.body).backgroundColor"
+    paper = "document.querySelector('.main-svg').style.background"
+    with tab(browser, paths["contour"].as_uri(), DESK) as page:
+        drawn(page)
+        looks = []
+        for _ in range(3):
+            looks.append((page.evaluate(ground), page.evaluate(paper)))
+            page.locator("#theme").click()
+            page.evaluate(FRAME)
+        assert looks[0] == looks[2] and looks[0][0] != looks[1][0] and looks[0][1] != looks[1][1]
+        titles = page.locator("main h2").all_inner_texts()
+        assert page.locator(".contents a").all_inner_texts() == titles
+        page.locator(".contents a").last.click()
+        assert page.locator("main section").last.evaluate(
+            "e => e.getBoundingClientRect().top < innerHeight"
+        )
+        page.set_viewport_size(PHONE)
+        assert not page.locator(".contents ol").is_visible()
+
+
+def test_a_browser_that_cannot_unpack_says_so(browser: Any, pages: Any) -> None:
+    context = browser.new_context(viewport=DESK)
+    page = context.new_page()
+    page.add_init_script("delete window.DecompressionStream")
+    page.goto(pages[0]["contour"].as_uri())
+    page.evaluate("opened")
+    assert page.locator("#unable").is_visible() and page.locator("td").first.is_visible()
+    context.close()
 
 
 def test_a_long_name_breaks_in_its_card(browser: Any, pages: Any) -> None:

@@ -1,10 +1,8 @@
 """Two runs laid over one another: against their raw samples, the page's own data, theory."""
 
-import base64
 import json
 import re
 import shutil
-import zlib
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +10,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from console import within
+from page_curves import page_data, unwoven
 
 import motionfmu
 from motionfmu.base import columns
@@ -58,18 +57,6 @@ def folders(
     return leave(runs[0], place / "a"), leave(runs[1], place / "b")
 
 
-def numbers(packed: dict) -> np.ndarray:
-    """Values of a curve of a page: sums of differences of their bits."""
-    kind = np.dtype("<" + packed["kind"])
-    raw = np.frombuffer(zlib.decompress(base64.b64decode(packed["bdata"])), np.uint8)
-    word = np.ascontiguousarray(raw.reshape(kind.itemsize, -1).T).view(f"<u{kind.itemsize}")
-    return np.cumsum(word.ravel(), dtype=word.dtype).view(kind).astype(float)
-
-
-def data_of(page: str) -> dict:
-    return json.loads(re.search(r'id="data">(.*?)</script>', page, re.S)[1])
-
-
 def test_a_difference_is_b_minus_a_at_every_sample(
     runs: tuple[Result, Result], found: Comparison
 ) -> None:
@@ -91,7 +78,7 @@ def test_the_page_shows_both_runs_and_b_minus_a(
     runs: tuple[Result, Result], found: Comparison
 ) -> None:
     page = page_text(found)
-    data = data_of(page)
+    data = page_data(page)
     drawn = {f["id"]: f for f in data["figures"]}
     apart = [s for s in found.signals if not s.same]
     assert POSITION in {s.name for s in apart}
@@ -99,7 +86,7 @@ def test_the_page_shows_both_runs_and_b_minus_a(
     assert len(of) == len(apart), "a signal that differs is not drawn"
     for s, traces in zip(apart, of, strict=True):
         both = found[s.name]
-        shown = [numbers(t["samples"]["values"]) for t in traces]
+        shown = [unwoven(t["samples"]["values"]) for t in traces]
         for k, i in enumerate(both.differing):
             gone = both.difference[:, i]
             near = 1e-5 * np.ptp(both.a[:, i]) + 1e-12

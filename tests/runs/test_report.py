@@ -1,5 +1,7 @@
 """The page says what was computed: its curves hold the very numbers, peaks included."""
 
+import base64
+import gzip
 import math
 import re
 from dataclasses import replace
@@ -15,14 +17,21 @@ from hypothesis import strategies as st
 from page_curves import curve, page_data, unpacked, unwoven
 
 import motionfmu
+from motionfmu.analysis.contour import analyse
+from motionfmu.analysis.contour.scaled_values import places
 from motionfmu.analysis.explain.theory import CornerRow
 from motionfmu.compare import comparison_page as compared
 from motionfmu.compare.differences import Checked
-from motionfmu.report import write_report
+from motionfmu.report import plotly_script, write_report
 from motionfmu.report.cause_pages.explain_page import _corners
+from motionfmu.report.diagram import SamplesMark, Scale, one
+from motionfmu.report.error_path import draw
+from motionfmu.report.error_scale import magnification, scale_end, within
+from motionfmu.report.html_page import LARGEST, Page, PageFrame
 from motionfmu.report.html_tables import check_table, judged
-from motionfmu.report.numbers import MINUS, figure, length, magnification
-from motionfmu.report.samples import COARSE, bits
+from motionfmu.report.numbers import MINUS, figure, length
+from motionfmu.report.path_chart import outlier_words, path_chart
+from motionfmu.report.samples import COARSE, Samples, bits
 from motionfmu.report.typed_arrays import packed
 from motionfmu.run.checks import Verdict
 from motionfmu.run.decimate import keep_peaks
@@ -213,5 +222,70 @@ def test_the_page_tells_a_failed_check(tmp_path: Path) -> None:
 )
 def test_the_magnification_keeps_details_apart(errors, size: float, reach: float) -> None:
     factor = magnification(errors, size, reach)
-    assert factor >= 1.0 and factor * errors[1] <= 0.5 * reach + 1e-12
+    assert factor >= 1.0 and factor * scale_end(errors) <= 0.5 * reach + 1e-12
     assert magnification((0.0, 0.0), size, reach) == 1.0
+
+
+def test_one_plunge_leaves_the_colours_to_the_rest(reported) -> None:
+    """A plunge of 2 mm for 20 samples of 80,000: scale and magnification stay, it is marked."""
+    result, _, page, _ = reported
+    contour = result.contour()
+    plain = draw(contour)
+    assert len(plain.outliers) == 0 and "Colours end" not in page
+    plunged = np.zeros((len(result.time), 6))
+    plunged[:, :3] = places(contour.run.actual, np.arange(len(result.time)))
+    cut = np.flatnonzero(contour.cutting)
+    own = cut[len(cut) // 3 :][:20]
+    foot = contour.track.feet(own)
+    plunged[own, :3] = foot + 2.0 * (foot / np.linalg.norm(foot, axis=1, keepdims=True))
+    other = analyse(replace(contour.run, actual=plunged))
+    assert other.error.max == pytest.approx(2.0, rel=1e-3)
+    drawn = draw(other)
+    assert drawn.magnify == plain.magnify and drawn.end == 1.5 * other.error.p95
+    (marked,) = drawn.outliers
+    assert abs(drawn.error[marked]) == other.error.max
+    assert np.nanmax(np.linalg.norm(drawn.shown, axis=1)) == pytest.approx(drawn.end)
+    near = np.abs(drawn.error) < drawn.end
+    assert np.array_equal(drawn.shown[near], drawn.gap[near], equal_nan=True)
+    chart = path_chart(drawn)
+    error, outlier = chart.marks[3:]
+    assert error.heat.ends == (0.0, 1e3 * drawn.end)
+    assert outlier.name == f"beyond {length(drawn.end)}" and len(outlier.x) == 1
+    line = drawn.line[marked]
+    assert f"no longer than that: 2.00 mm in line {line}." in outlier_words(drawn)
+
+
+def test_outliers_are_drawn_no_longer_than_the_colours_reach() -> None:
+    gap = np.array([[3.0, 4.0], [0.3, 0.4], [0.0, 0.0], [np.nan, np.nan]])
+    shown = within(gap, 1.0)
+    assert np.allclose(shown[0], [0.6, 0.8]) and np.array_equal(shown[1:], gap[1:], equal_nan=True)
+    assert scale_end((0.02, 2.0)) == 0.03 and scale_end((0.02, 0.025)) == 0.025
+    assert scale_end((0.0, 2.0)) == 2.0  # of a path with fewer errors than 5 %
+
+
+def test_a_page_of_long_noise_has_its_peaks_in_2_mb() -> None:
+    rng = np.random.default_rng(3)
+    time = np.arange(120_000) * 1e-3
+    page = Page()
+    for k in range(20):
+        curve = SamplesMark(Samples(time, rng.normal(size=len(time))), "noise")
+        page.place(f"plot{k}", one(Scale("Time", "s"), Scale("Noise"), [curve], 100.0), True)
+    text = page.text(PageFrame("noise", "", "report", (), ""))
+    assert 1_000_000 < len(text.encode()) <= LARGEST
+    for k, drawn in enumerate(page_data(text)["figures"]):
+        whole = page.plots[k]["data"][0]["samples"].values
+        (trace,) = drawn["data"]
+        values = unwoven(trace["samples"]["values"])
+        assert not trace["samples"]["all"]
+        assert values.max() == pytest.approx(whole.max(), rel=1e-5)
+        assert values.min() == pytest.approx(whole.min(), rel=1e-5)
+
+
+def test_the_script_is_cut_to_the_curves_of_pages() -> None:
+    """The installed plotly is bundled as the cut expects, and less is left than half."""
+    whole = plotly_script._file().read_text("utf-8")
+    cut = plotly_script.cut(whole, plotly_script.PLANE)
+    assert len(cut) < 0.5 * len(whole)
+    assert plotly_script.cut("a=1", plotly_script.PLANE) == "a=1"  # bundled otherwise: whole
+    back = gzip.decompress(base64.b64decode(plotly_script.packed_script(False)))
+    assert back.decode() == cut

@@ -1,6 +1,5 @@
 """The page and the picture of a study."""
 
-import json
 import math
 import re
 from dataclasses import replace
@@ -9,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from few_cases import few
-from page_curves import unpacked
+from page_curves import page_data, unpacked
 from test_sweep import CIRCLE, GAIN, SHORT
 
 from motionfmu.study import worker
@@ -53,7 +52,7 @@ def test_the_page_shows_the_cost_over_what_was_varied(
     assert cost_field.kind(outcome) == way
     outcome.study.tuned.update(dict.fromkeys(names, 30))
     text = sweep_page.write_sweep(outcome, tmp_path).read_text()
-    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])
+    data = page_data(text)
     (drawn,) = data["figures"]
     marked = {t.get("name") for t in drawn["data"]}
     assert f"best: run {outcome.best}" in marked
@@ -103,7 +102,7 @@ def test_nothing_is_drawn_below_zero_of_a_cost_that_is_not_negative(tmp_path: Pa
         outcome = synthetic(names, "grid", 5, tmp_path)
         outcome.rows[1:] = [replace(r, values=(r.run % 25, 0.0, 0.0)) for r in outcome.rows[1:]]
         text = sweep_page.page_text(outcome)
-        (drawn,) = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])["figures"]
+        (drawn,) = page_data(text)["figures"]
         if count == 2:
             even = drawn["data"][0]["contours"]
             assert even["start"] - even["size"] == pytest.approx(0.0, abs=1e-12)

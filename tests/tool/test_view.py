@@ -2,7 +2,6 @@
 
 import json
 import math
-import re
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,6 +11,7 @@ import pytest
 from conftest import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
+from page_curves import page_data
 from py_mini_racer import MiniRacer
 
 import motionfmu
@@ -171,9 +171,8 @@ def test_a_scene_is_the_run(circle, tmp_path: Path) -> None:
     gap = np.linalg.norm(scene.lines[0].gap, axis=1)
     assert gap.max() == pytest.approx(circle.contour().error.max, rel=1e-9)
     page = write_report(circle, circle.contour(), tmp_path).read_text()
-    found = re.search(r'id="data">(.*?)</script>', page, re.DOTALL)
-    assert found and page.count("<h2>The machine in motion</h2>") == 1
-    data = json.loads(found[1])["views"][0]
+    assert page.count("<h2>The machine in motion</h2>") == 1
+    data = page_data(page)["views"][0]
     assert len(json.dumps(data)) < 200_000
     values = of(_engine(), f"Array.from(numbers({json.dumps(data['tool'][0])}))")
     assert np.allclose(values, scene.tool[:, 0], atol=np.ptp(scene.tool[:, 0]) / 65535)

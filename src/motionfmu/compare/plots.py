@@ -25,7 +25,8 @@ from motionfmu.report.diagram import (
     path_diagram,
     path_lines,
 )
-from motionfmu.report.numbers import label, magnification, unit
+from motionfmu.report.error_scale import magnification, scale_end, within
+from motionfmu.report.numbers import label, unit
 from motionfmu.report.polar_chart import deviation_line, polar_rings
 from motionfmu.report.samples import Samples
 from motionfmu.report.signal_chart import recolored, signal_chart
@@ -213,7 +214,7 @@ def path_figure(a: Side, b: Side) -> tuple[Diagram, float]:
             lines.append(path_lines(nominal, name="programmed path", **look))
         told = [f"{run}: {1e3 * error:.2f} µm" for error in x.track["error"][kept]]
         look = {"name": run, "color": color, "width": 1.8, "hover": told}
-        lines.append(path_lines(foot + factor * gap, **look))
+        lines.append(path_lines(foot + factor * within(gap, scale_end(worst)), **look))
     return path_diagram(["XYZ"[i] for i in drawn], lines, HEIGHT), factor
 
 

@@ -75,6 +75,7 @@ class Measured {
     this.place.on("plotly_afterplot", () => this.lay());
     this.place.on("plotly_relayouting", () => this.lay());
     this.place.on("plotly_restyle", () => this.update());
+    addEventListener("theme", () => this.update());
   }
 
   get view() { return this.plot.view; }
@@ -151,11 +152,11 @@ class Measured {
       const tr = made(body, "tr"), name = made(tr, "td", { class: "key" });
       const axis = this.plot.layout["yaxis" + (trace.yaxis ?? "y").slice(1)];
       const unit = unitOf(axis), title = unit ? ` [${unit}]` : "";
-      made(name, "i", { class: "swatch", style: `background:${trace.line.color}` });
+      const swatch = made(name, "i", { class: "swatch" });
       name.append(withoutMarks(trace.name || axis?.title?.text || "") + title);
       if (!packed.all) made(name, "div", { class: "sub" }, "peaks of a longer recording");
       const cells = COLUMNS.slice(1).map(() => made(tr, "td", { class: "n" }));
-      return { tr, cells, curve, k };
+      return { tr, cells, curve, k, swatch };
     });
     if (this.cursors.members.length) return; // said once
     made(this.readout, "p", { class: "note" }, "Least, largest, mean and RMS are those of the"
@@ -176,7 +177,8 @@ class Measured {
     this.length.textContent = `\u0394t = ${written(dt, 9)} ${this.unit}, 1/\u0394t = `
       + (dt ? `${written(1 / Math.abs(dt))} ${rate}` : "\u2013");
     const [from, to] = [Math.min(...at), Math.max(...at)];
-    for (const { tr, cells, curve, k } of this.rows) {
+    for (const { tr, cells, curve, k, swatch } of this.rows) {
+      swatch.style.background = this.place.data[k].line.color;
       tr.hidden = this.place.data[k].visible === "legendonly";
       if (tr.hidden) continue;
       const [a, b] = at.map((t) => valueAt(curve, t));

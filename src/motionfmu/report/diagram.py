@@ -90,6 +90,7 @@ class PointMark:
     side: str = "top right"  # of the point on which its text stands
     hover: Sequence[str] | None = None
     heat: Heat | None = None
+    z: Array | None = None  # (n,) in space
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from motionfmu.analysis.contour.path import Path, outline
 from motionfmu.analysis.contour.scaled_values import blocks, places
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.iso9283.simplify import simplified
-from motionfmu.report.numbers import magnification
+from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.run.decimate import peaks_of
 
 # The error is drawn through so many points, which are even along the magnified curve. Its peaks
@@ -34,6 +34,7 @@ PART = 1 << 14  # segments that are worked on at a time
 JOINED = 1e-9  # [mm]
 # Number of hairs: short lines from the path to the magnified error.
 HAIRS = 320
+OUTLIERS_MAX = 50  # the largest, that are marked
 AXES = "XYZ"
 
 
@@ -51,10 +52,17 @@ class ErrorPath:
     line: NDArray[np.int64]  # (n,) line of the program
     hairs: NDArray[np.int64]  # points that have a hair
     magnify: float  # a magnification that suits path and error
+    end: float  # where the colours end [mm]
+    outliers: NDArray[np.int64]  # points with the largest error of each stretch beyond that
 
     def magnified(self, factor: float) -> Array:
-        """The path (n, k) with its error so many times as large [mm]."""
-        return self.foot + factor * self.gap
+        """The path (n, k) with its error so many times as large, outliers cut short [mm]."""
+        return self.foot + factor * self.shown
+
+    @property
+    def shown(self) -> Array:
+        """The error as it is drawn (n, k): no longer than the colours reach [mm]."""
+        return within(self.gap, self.end)
 
 
 def draw(contour: ContourResult) -> ErrorPath:
@@ -64,8 +72,9 @@ def draw(contour: ContourResult) -> ErrorPath:
     cutting = _outlined(path, np.flatnonzero(path.cut), basis)
     size = float(np.max(np.nanmax(cutting, axis=0) - np.nanmin(cutting, axis=0)))
     reach = float(path.lengths[path.cut].sum()) / (len(contour.corners) + 1)
-    magnify = magnification((contour.error.p95, contour.error.max), size, reach)
-    kept, whole = _choose(contour, magnify)
+    errors = contour.error.p95, contour.error.max
+    magnify, end = magnification(errors, size, reach), scale_end(errors)
+    kept, whole = _choose(contour, magnify, end)
     foot = track.feet(kept) @ basis.T
     gap = np.where(whole[:, None], places(contour.run.actual, kept) @ basis.T - foot, np.nan)
     error = track.distance[kept]
@@ -80,10 +89,12 @@ def draw(contour: ContourResult) -> ErrorPath:
         line=path.lines[track.segment[kept]],
         hairs=_even(track.along[kept], ~np.isnan(gap[:, 0])),
         magnify=magnify,
+        end=end,
+        outliers=_outliers(np.where(whole, np.abs(error), 0.0), end),
     )
 
 
-def _choose(contour: ContourResult, magnify: float) -> tuple[Index, NDArray[np.bool_]]:
+def _choose(contour: ContourResult, magnify: float, end: float) -> tuple[Index, NDArray[np.bool_]]:
     """Samples that draw the magnified error well, and which of them are to be drawn.
 
     Where the curve has to be interrupted, the next sample is there but not drawn.
@@ -99,7 +110,7 @@ def _choose(contour: ContourResult, magnify: float) -> tuple[Index, NDArray[np.b
             continue
         moved[count : count + len(rows)] = rows
         foot = track.feet(rows)
-        shown = foot + magnify * (places(actual, rows) - foot)
+        shown = foot + magnify * within(places(actual, rows) - foot, end)
         segment = track.segment[rows]
         if last is not None:
             shown = np.concatenate([last[0], shown])
@@ -129,6 +140,15 @@ def _choose(contour: ContourResult, magnify: float) -> tuple[Index, NDArray[np.b
     kept = np.insert(rows, breaks, rows[breaks])
     whole = np.insert(np.ones(len(chosen), dtype=bool), breaks, False)
     return kept, whole
+
+
+def _outliers(size: Array, end: float) -> NDArray[np.int64]:
+    """Where each stretch beyond the end of the colours is largest; of very many the largest."""
+    beyond = np.concatenate([[False], size > end, [False]])
+    starts, ends = np.flatnonzero(np.diff(beyond)).reshape(-1, 2).T
+    places = [a + int(np.argmax(size[a:b])) for a, b in zip(starts, ends, strict=True)]
+    chosen = np.array(places, dtype=np.int64)
+    return np.sort(chosen[np.argsort(-size[chosen], kind="stable")[:OUTLIERS_MAX]])
 
 
 def _outlined(path: Path, chosen: Index, basis: Array) -> Array:

@@ -1,23 +1,27 @@
 """An HTML page of sections and interactive plots that needs no network."""
 
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from hashlib import sha256
 from html import escape
 from importlib.resources import files
-from importlib.util import find_spec
-from pathlib import Path
 from string import Template
 from typing import Any
 
 from motionfmu.report.diagram import Diagram
 from motionfmu.report.plotly_figure import plotly_figure
+from motionfmu.report.plotly_script import packed_script, packed_text
 from motionfmu.report.samples import Samples, bits, clock
+from motionfmu.report.style import dark_colors
 from motionfmu.run.checks import Verdict, tally
+from motionfmu.run.decimate import MOST
 
 # The name of the cursors that all plots over the time of one run share.
 RUN = "run"
+# [bytes] of a page; samples of a curve that it has at least.
+LARGEST, FEWEST = 2_000_000, 2000
 SCRIPTS = ("samples.js", "cursors.js", "page.js")
 
 
@@ -37,71 +41,96 @@ class Page:
 
     def __init__(self) -> None:
         self.sections: list[str] = []
+        self.contents: list[str] = []  # titles of the sections, as HTML
         self.plots: list[dict[str, Any]] = []
-        self.times: list[dict[str, Any]] = []
-        self._known: dict[bytes, int] = {}
 
     def place(self, name: str, diagram: Diagram, over_time: bool = False, cursors: str = "") -> str:
         """Add the plot of a diagram and give its HTML element, which goes into a section."""
         # Plots over time are zoomed together and share the cursors of the run. Any other plot with
         # curves of samples may have cursors, too: plots with one name for them share them.
         drawn = plotly_figure(diagram)
-        data = [self._trace(trace) for trace in drawn["data"]]
         more = {"over_time": over_time, "cursors": cursors or (RUN if over_time else "")}
-        self.plots.append({"id": name, "data": data, "layout": drawn["layout"]} | more)
+        self.plots.append({"id": name} | drawn | more)
         height = drawn["layout"]["height"]
         return f'<div class="plot"><div id="{name}" style="min-height:{height}px"></div></div>'
 
-    def _trace(self, trace: dict[str, Any]) -> dict[str, Any]:
-        """A trace as the page's script takes it: samples packed, times named."""
-        whole: Samples | None = trace.get("samples")
-        if whole is None:
-            return trace
-        few = whole.few()
-        key = sha256(few.time.tobytes()).digest()
-        if key not in self._known:
-            self._known[key] = len(self.times)
-            self.times.append(clock(few.time))
-        samples = {"time": self._known[key], "values": bits(few.values)}
-        samples |= {"steps": few.steps, "dots": few.dots, "all": few.all}
-        if few.lines is not None:
-            samples["lines"] = bits(few.lines)
-        return trace | {"samples": samples}
-
     def section(self, title: str, note: str, content: str) -> None:
         """Add a section of HTML; the note may be empty."""
+        self.contents.append(title)
         note = f'<p class="note">{note}</p>' if note else ""
-        self.sections.append(f"<section><h2>{title}</h2>{note}{content}</section>")
+        head = f'<section id="{_anchor(len(self.contents))}"><h2>{title}</h2>'
+        self.sections.append(f"{head}{note}{content}</section>")
 
     def text(self, frame: PageFrame, scripts: Sequence[str] = (), **data: Any) -> str:
         """The whole page as HTML, with scripts that follow page.js and the data they read."""
         here = files("motionfmu.report")
-        everything = {"figures": self.plots, "times": self.times} | data
         run = [(here / s).read_text(encoding="utf-8") for s in (*SCRIPTS, *scripts)]
-        return Template((here / "page.html").read_text(encoding="utf-8")).substitute(
-            title=escape(f"{frame.name}: {frame.kind}"),
-            kicker=escape(f"motionfmu {frame.kind}"),
-            name=escape(frame.name),
-            about=escape(frame.about),
-            verdict=_verdict(frame.checks),
-            footer=frame.footer,
-            body="\n".join(self.sections),
-            style=(here / "page.css").read_text(encoding="utf-8"),
-            script="\n".join(run),
-            plotly=_plotly(),
-            # "</" would end the script element
-            data=json.dumps(everything, separators=(",", ":")).replace("</", "<\\/"),
-        )
+        ways = enumerate(map(_plain, self.contents), 1)
+        template = (here / "page.html").read_text(encoding="utf-8")
+        parts = {
+            "title": escape(f"{frame.name}: {frame.kind}"),
+            "kicker": escape(f"motionfmu {frame.kind}"),
+            "name": escape(frame.name),
+            "about": escape(frame.about),
+            "verdict": _verdict(frame.checks),
+            "footer": frame.footer,
+            "contents": "".join(f'<li><a href="#{_anchor(k)}">{t}</a></li>' for k, t in ways),
+            "body": "\n".join(self.sections),
+            "style": (here / "page.css").read_text(encoding="utf-8"),
+            "theme": (here / "theme.js").read_text(encoding="utf-8"),
+            "script": "\n".join(run),
+            "plotly": packed_script(any("scene" in plot["layout"] for plot in self.plots)),
+        }
+        room = LARGEST - len(template) - sum(len(text.encode()) for text in parts.values())
+        parts["data"] = self._packed(room, {"dark": dark_colors()} | data)
+        return Template(template).substitute(parts)
+
+    def _packed(self, room: int, data: dict[str, Any]) -> str:
+        """The plots' data; if they do not fit into the room, long curves have their peaks alone."""
+        most = MOST
+        while True:
+            text = packed_text(json.dumps(self._drawn(most) | data, separators=(",", ":")))
+            if len(text) <= room or most <= FEWEST:
+                return text
+            most //= 2
+
+    def _drawn(self, most: int) -> dict[str, Any]:
+        """The plots, with so many samples of a curve at most, and the times of their samples."""
+        times: list[dict[str, Any]] = []
+        known: dict[bytes, int] = {}
+        figures = []
+        for plot in self.plots:
+            traces = [_trace(t, most, times, known) for t in plot["data"]]
+            figures.append(plot | {"data": traces})
+        return {"figures": figures, "times": times}
 
 
-def _plotly() -> str:
-    """The script that draws plots: the wheel's, else that of plotly's package."""
-    own = Path(__file__).parent / "plotly"
-    if not own.is_dir():
-        found = find_spec("plotly")
-        assert found is not None and found.submodule_search_locations
-        own = Path(found.submodule_search_locations[0]) / "package_data"
-    return (own / "plotly.min.js").read_text(encoding="utf-8")
+def _trace(
+    drawn: dict[str, Any], most: int, times: list[dict[str, Any]], known: dict[bytes, int]
+) -> dict[str, Any]:
+    """A trace as the page's script takes it: samples packed, times named."""
+    whole: Samples | None = drawn.get("samples")
+    if whole is None:
+        return drawn
+    few = whole.few(most)
+    key = sha256(few.time.tobytes()).digest()
+    if key not in known:
+        known[key] = len(times)
+        times.append(clock(few.time))
+    samples = {"time": known[key], "values": bits(few.values)}
+    samples |= {"steps": few.steps, "dots": few.dots, "all": few.all}
+    if few.lines is not None:
+        samples["lines"] = bits(few.lines)
+    return drawn | {"samples": samples}
+
+
+def _anchor(number: int) -> str:
+    return f"section{number}"
+
+
+def _plain(html: str) -> str:
+    """A title without its marks."""
+    return re.sub("<[^>]*>", "", html)
 
 
 def _verdict(checks: Sequence[Verdict]) -> str:

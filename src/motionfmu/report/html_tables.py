@@ -10,13 +10,15 @@ import numpy as np
 
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CirclePass, CircularTest
+from motionfmu.analysis.contour.kinds import Corner
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
 from motionfmu.run.checks import Verdict, beyond, of_one_number, parts, together
 
 # The words on every page for the time over which the RMS of a contour error is taken.
 RMS = "over time where the tool cuts"
-CORNERS_SHOWN = 10
+# Rows of a table with the rest folded, and rows of that.
+SHOWN, FOLDED = 10, 1000
 LINES_SHOWN = 10
 # A value of a card with more letters than LONG is written small.
 LONG, SMALL = 13, ' style="font-size:17px"'
@@ -217,9 +219,23 @@ def _evaluated(way: CirclePass) -> str:
     return f"{math.degrees(way.coverage):.0f}°<br>{figure(way.speed)} mm/s{steady}"
 
 
+def folded(make: Callable[[Sequence[Any]], str], rows: Sequence[Any]) -> str:
+    """A table of the first rows; a line opens one of the others, of very many as `FOLDED`."""
+    first, rest = rows[:SHOWN], rows[SHOWN : SHOWN + FOLDED]
+    if not rest:
+        return make(first)
+    left = len(rows) - len(first) - len(rest)
+    more = f", the first of {len(rest) + left}" if left else ""
+    head = f"<summary>{len(rest)} more{more}</summary>"
+    return f"{make(first)}<details>{head}{make(rest)}</details>"
+
+
 def corner_table(contour: ContourResult) -> str:
-    """Corners with the largest errors."""
-    worst = sorted(contour.corners, key=lambda c: -c.error)[:CORNERS_SHOWN]
+    """Corners, the largest errors first."""
+    return folded(_corner_rows, sorted(contour.corners, key=lambda c: -c.error))
+
+
+def _corner_rows(corners: Sequence[Corner]) -> str:
     rows = [
         (
             f"{c.line_before} → {c.line_after}",
@@ -229,7 +245,7 @@ def corner_table(contour: ContourResult) -> str:
             length(c.error),
             f"{c.time:.3f} s",
         )
-        for c in worst
+        for c in corners
     ]
     return table(("Lines", "At X, Y, Z [mm]", "Turn", "Least feed", "Error", "Time"), rows, 2)
 

@@ -19,10 +19,11 @@ from motionfmu.report.diagram import (
     path_diagram,
     path_lines,
 )
+from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.report.formula import readable
 from motionfmu.report.html_page import Page
 from motionfmu.report.html_tables import picture_buttons, table
-from motionfmu.report.numbers import figure, length, magnification, unit
+from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.style import AXES, INK, MUTED
 
 PICTURE = "iso9283"
@@ -162,9 +163,10 @@ def magnified_chart(path: Performance) -> tuple[Diagram, float]:
     gap = path.point - path.command
     sizes = np.linalg.norm(gap, axis=2)
     extent = float(np.linalg.norm(np.ptp(path.command, axis=0)))
-    factor = magnification((float(np.percentile(sizes, 95)), float(sizes.max())), extent, extent)
+    errors = float(np.percentile(sizes, 95)), float(sizes.max())
+    factor = magnification(errors, extent, extent)
     lines = [path_lines(path.given.path.points @ basis.T, name="command", color=MUTED)]
-    for j, own in enumerate(path.command + factor * gap):
+    for j, own in enumerate(path.command + factor * within(gap, scale_end(errors))):
         look: Any = {"name": f"cycle {j + 1}", "color": AXES[j % len(AXES)], "width": 1.2}
         lines.append(path_lines(own @ basis.T, **look))
     names = ["XYZ"[int(np.argmax(np.abs(b)))] for b in basis]

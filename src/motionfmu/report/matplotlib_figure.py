@@ -380,20 +380,19 @@ def _samples(axes: Any, _: Diagram, __: Subplot, mark: SamplesMark, name: str, o
     )
 
 
-def _point(axes: Any, _: Diagram, __: Subplot, mark: PointMark, name: str, order: int) -> None:
+def _point(axes: Any, diagram: Diagram, _: Subplot, mark: PointMark, name: str, order: int) -> None:
     look: Any = {"label": name, "marker": SYMBOLS[mark.symbol], "zorder": 3.0 + 0.01 * order}
     edge = mark.edge or ("none" if mark.symbol not in ("ring", "x") else mark.color)
     size = (POINT * mark.size) ** 2
+    at = (mark.x, mark.y) if diagram.shape != SPACE or mark.z is None else (mark.x, mark.y, mark.z)
     if mark.heat:
         colors: Any = {"c": mark.heat.values, "cmap": COLORS, "norm": _norm(mark.heat)}
-        axes.scatter(mark.x, mark.y, s=size, linewidths=0, **colors, **look)
+        axes.scatter(*at, s=size, linewidths=0, **colors, **look)
     elif mark.symbol == "x":
-        axes.scatter(mark.x, mark.y, s=size, color=mark.color, lw=1, **look)
+        axes.scatter(*at, s=size, color=mark.color, lw=1, **look)
     else:
         face = "none" if mark.symbol == "ring" else mark.color
-        axes.scatter(
-            mark.x, mark.y, s=size, facecolors=face, edgecolors=edge, clip_on=False, **look
-        )
+        axes.scatter(*at, s=size, facecolors=face, edgecolors=edge, clip_on=False, **look)
     for x, y, text in zip(mark.x, mark.y, mark.texts, strict=False):
         up, right = "top" in mark.side, "right" in mark.side
         place: Any = {"va": "bottom" if up else "top", "ha": "left" if right else "right"}

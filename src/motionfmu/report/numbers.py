@@ -5,11 +5,6 @@ import math
 from motionfmu.base.units import spelled
 
 MINUS = "\N{MINUS SIGN}"
-# At the chosen magnification the usual error, and the largest, are these parts of the path's size.
-SHARE_USUAL = 0.05
-SHARE_LARGEST = 0.2
-# The largest error stays below this part of the way between two corners: details stay apart.
-SHARE_REACH = 0.5
 # Lengths from here on read better in mm than in µm [mm].
 MILLIMETRES_FROM = 1.0
 
@@ -56,18 +51,3 @@ def round_up(value: float) -> float:
     power = 10.0 ** math.floor(math.log10(value))
     steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
     return min(m * power for m in steps if m * power >= value * (1.0 - 1e-12))
-
-
-def magnification(errors: tuple[float, float], size: float, reach: float) -> float:
-    """Round magnification that makes an error easy to see.
-
-    From the error's 95th percentile and maximum, the size of the path, and the mean way between two
-    corners [mm]; 1 where nothing has to be magnified.
-    """
-    usual, largest = errors
-    if largest <= 0.0 or size <= 0.0:
-        return 1.0
-    wanted = min(SHARE_LARGEST * size, SHARE_REACH * reach) / largest
-    if usual > 0.0:
-        wanted = min(wanted, SHARE_USUAL * size / usual)
-    return max(1.0, round_down(wanted))

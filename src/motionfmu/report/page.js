@@ -1,4 +1,6 @@
-const page = JSON.parse(document.getElementById("data").textContent);
+// What the page's other scripts do once its data are there.
+const ready = [];
+let page, plots;
 const options = {
   responsive: true, displaylogo: false, displayModeBar: true, doubleClick: "reset",
   modeBarButtonsToRemove: ["lasso2d", "select2d", "autoScale2d", "sendChartToCloud"],
@@ -6,11 +8,10 @@ const options = {
 const QUIET = { bgcolor: "rgba(0,0,0,0)", color: "#8a98a5", activecolor: "#0b5cad" };
 // So much more than what is in view is drawn on either side, for those who shift it.
 const BESIDE = 1;
-const GAP = 8, LOWEST = 200; // [pixel] of a plot of axes of one scale: beside it, its height
+const BELOW = 8, LOWEST = 200; // [pixel] of a plot of axes of one scale: beside it, its height
 
 const BAR = 62; // [pixel] of a scale below a plot
 const narrow = document.documentElement.clientWidth < 500;
-if (narrow) page.figures.forEach(fitted);
 
 // A telephone: a scene from further away, a scale below its plot, no taller than it needs to be;
 // a finger scrolls the page until a tool of the plot is chosen.
@@ -34,12 +35,38 @@ function fitted({ data, layout }) {
       layout.margin.b = BAR + (layout.margin.b ?? 0);
     }
     if (bar.title) bar.title.text = bar.title.text.replaceAll("<br>", " ");
-    if (bar.tickvals?.length > 6) {
-      const thin = (_, i) => i % Math.ceil(bar.tickvals.length / 6) === 0;
+    if (bar.tickvals) { // no closer than a number is wide
+      const apart = (bar.tickvals.at(-1) - bar.tickvals[0]) / 3;
+      let last = -Infinity;
+      const kept = bar.tickvals.map((v) => (v - last >= apart ? ((last = v), true) : false));
+      const thin = (_, i) => kept[i];
       [bar.ticktext, bar.tickvals] = [bar.ticktext.filter(thin), bar.tickvals.filter(thin)];
     }
   }
 }
+
+// The colour that replaces another one, which may be seen through.
+function other(color, colors) {
+  const [r, g, b, part] = /^rgba\(/.test(color) ? color.match(/[\d.]+/g).map(Number) : [];
+  if (part === undefined) return colors[color] ?? color;
+  const solid = `#${[r, g, b].map((c) => c.toString(16).padStart(2, "0")).join("")}`;
+  return colors[solid] ? clear(colors[solid], part) : color;
+}
+
+// The same plot with other colours; numbers are left alone.
+function recolored(part, colors) {
+  for (const [key, value] of Object.entries(part)) {
+    if (typeof value === "string") part[key] = other(value, colors);
+    else if (value && typeof value === "object" && !ArrayBuffer.isView(value) && !(value.length > 99)) {
+      recolored(value, colors);
+    }
+  }
+  return part;
+}
+
+// What replaces the colours of a light page on a dark one, or the other way.
+const palette = (dark) => Object.fromEntries(
+  Object.entries(page.dark).map((pair) => (dark ? pair : pair.toReversed())));
 
 const clear = (color, part) => {
   const parts = [1, 3, 5].map((k) => parseInt(color.slice(k, k + 2), 16));
@@ -96,7 +123,7 @@ class Plot {
     const { yaxis, _size } = this.place._fullLayout;
     if (!this.layout.yaxis?.scaleanchor) return;
     const height = this.layout.height - Math.round(_size.h - yaxis._length);
-    if (height > this.layout.height - GAP) return;
+    if (height > this.layout.height - BELOW) return;
     this.place.style.minHeight = `${Math.max(height, LOWEST)}px`;
     await Plotly.relayout(this.place, { height: Math.max(height, LOWEST) });
   }
@@ -145,31 +172,89 @@ function linked(plots) {
   }
 }
 
-// On paper a plot is as wide as the paper.
+// On paper a plot is as wide as the paper, and light.
 const PAPER = 720;
 function printed(on) {
-  document.documentElement.classList.toggle("paper", on);
+  root.classList.toggle("paper", on);
+  themed(!on && isDark());
   for (const { place } of plots) {
     Plotly.relayout(place, on ? { width: Math.min(PAPER, place.clientWidth) } : { width: null });
   }
 }
 
-// A plot as a picture, a file of its own.
+// A plot as a picture, a file of its own: it goes into documents, so it is light.
 addEventListener("click", ({ target }) => {
   const [name, format] = target.dataset?.save?.split(".") ?? [];
   const place = name && document.getElementById(name);
   if (place) {
-    Plotly.downloadImage(place, { format, filename: name, width: place.clientWidth,
-      height: place.clientHeight, scale: format === "png" ? 2 : 1 });
+    const { data, layout } = place, shown = structuredClone({ data, layout });
+    Plotly.downloadImage(plotsDark ? recolored(shown, palette(false)) : shown, { format, filename: name,
+      width: place.clientWidth, height: place.clientHeight, scale: format === "png" ? 2 : 1 });
   }
 });
 
-const clocks = page.times.map(timesOf);
-const plots = page.figures.map((figure) => new Plot(figure, clocks));
-// For tests: everything is drawn.
-const opened = Promise.all(plots.map((p) => p.open())).then(() => {
+// The plots as dark as they are to be; what is in view stays.
+let plotsDark = false;
+function themed(dark) {
+  if (dark === plotsDark) return;
+  plotsDark = dark;
+  for (const { place } of plots) {
+    recolored([place.data, place.layout], palette(dark));
+    Plotly.redraw(place);
+  }
+  dispatchEvent(new Event("theme"));
+}
+
+document.getElementById("theme").addEventListener("click", () => {
+  root.dataset.theme = isDark() ? "light" : "dark";
+  try { localStorage.setItem("theme", root.dataset.theme); } catch { /* for this page alone */ }
+  themed(isDark());
+});
+system.addEventListener("change", () => themed(isDark()));
+
+// The contents stand beside a wide page, open, and say where the reader is.
+const contents = document.querySelector(".contents details");
+const wide = matchMedia("(min-width: 1100px)");
+const unfold = () => { contents.open = wide.matches; };
+unfold();
+wide.addEventListener("change", unfold);
+const ways = new Map([...contents.querySelectorAll("a")]
+  .map((a) => [document.getElementById(a.hash.slice(1)), a]));
+const seen = new Set();
+const watch = new IntersectionObserver((changes) => {
+  for (const { target, isIntersecting } of changes) seen[isIntersecting ? "add" : "delete"](target);
+  const [first] = [...ways.keys()].filter((section) => seen.has(section));
+  for (const [section, a] of ways) a.classList.toggle("here", section === first);
+});
+for (const section of ways.keys()) watch.observe(section);
+contents.addEventListener("click", ({ target }) => { if (target.hash) unfold(); });
+
+// What the page has packed under a name, as text.
+async function unpacked(name) {
+  const packed = Uint8Array.from(atob(document.getElementById(name).textContent), (c) => c.charCodeAt(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+}
+
+async function open() {
+  if (!("DecompressionStream" in window)) {
+    document.getElementById("unable").hidden = false;
+    return;
+  }
+  const script = document.createElement("script");
+  [page, script.textContent] = await Promise.all([unpacked("data").then(JSON.parse), unpacked("plotly")]);
+  document.head.append(script);
+  if (narrow) page.figures.forEach(fitted);
+  plotsDark = isDark();
+  if (plotsDark) recolored(page.figures, palette(true));
+  const clocks = page.times.map(timesOf);
+  plots = page.figures.map((figure) => new Plot(figure, clocks));
+  await Promise.all(plots.map((p) => p.open()));
   linked(plots.filter((p) => p.overTime));
   measured(plots.filter((p) => p.cursors && p.traces.length));
   addEventListener("beforeprint", () => printed(true));
   addEventListener("afterprint", () => printed(false));
-});
+  for (const begin of ready) begin();
+}
+
+// For tests: everything is drawn.
+const opened = open();

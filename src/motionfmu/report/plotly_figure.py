@@ -302,7 +302,7 @@ def _points(mark: LineMark | PointMark, space: bool) -> Figure:
     z = getattr(mark, "z", None)
     exact = isinstance(mark, PointMark)
     found = {"x": packed(mark.x, exact), "y": packed(mark.y, exact)}
-    return found | ({"z": packed(z)} if space and z is not None else {})
+    return found | ({"z": packed(z, exact)} if space and z is not None else {})
 
 
 def _line(mark: LineMark, diagram: Diagram, subplot: Subplot, _: Figure) -> Any:
@@ -340,9 +340,10 @@ def _point(mark: PointMark, diagram: Diagram, _: Subplot, at: Figure) -> Any:
     marker |= _heat(mark.heat) if mark.heat else {"color": mark.color}
     if mark.edge:
         marker["line"] = {"color": mark.edge, "width": 1.6}
-    trace: Figure = {"type": "scatter", "mode": "markers", "name": text_of(mark.name)}
-    trace["marker"] = marker
-    trace |= {"cliponaxis": False} | _points(mark, False) | _hover(mark.hover)
+    space = diagram.shape == SPACE
+    trace: Figure = {"type": "scatter3d" if space else "scatter", "mode": "markers"}
+    trace |= {"name": text_of(mark.name), "marker": marker}
+    trace |= ({} if space else {"cliponaxis": False}) | _points(mark, space) | _hover(mark.hover)
     if len(mark.texts):
         trace |= {"mode": "markers+text", "text": [text_of(t) for t in mark.texts]}
         trace |= {"textposition": mark.side, "textfont": {"size": 12, "color": INK}}

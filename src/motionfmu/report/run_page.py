@@ -10,8 +10,8 @@ from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.error_path import ErrorPath, draw
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import (
-    CORNERS_SHOWN,
     RMS,
+    SHOWN,
     cards,
     circle_table,
     corner_table,
@@ -22,7 +22,7 @@ from motionfmu.report.html_tables import (
 )
 from motionfmu.report.iso9283_section import write_iso9283
 from motionfmu.report.numbers import figure, length
-from motionfmu.report.path_chart import path_chart, path_titles
+from motionfmu.report.path_chart import outlier_words, path_chart, path_titles
 from motionfmu.report.polar_chart import polar_chart
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary, as_written, summary_of
@@ -144,8 +144,9 @@ def page_text(
     _add_corners(page, contour)
     path = {
         "foot": [packed(c) for c in drawing.foot.T],
-        "gap": [packed(c) for c in drawing.gap.T],
+        "gap": [packed(c) for c in drawing.shown.T],
         "hairs": packed(drawing.hairs),
+        "outliers": packed(drawing.outliers),
     }
     sign = "Positive is to the left of the direction of travel, negative to the right. "
     footer = FOOTER.format(sign="" if contour.track.signed is None else sign)
@@ -188,7 +189,7 @@ def _add_path(page: Page, contour: ContourResult, drawing: ErrorPath) -> None:
     )
     note = (
         f"The contour error is drawn <b><span data-magnification>{factor:,.0f}</span> times</b> as"
-        " large as it is; colour is its true size."
+        f" large as it is; colour is its true size. {outlier_words(drawing)}"
     )
     plot = page.place("path", path_chart(drawing)) + picture_buttons("path")
     left = f"<div>{control}{plot}</div>"
@@ -230,5 +231,5 @@ def _add_time(page: Page, result: ReportInput, contour: ContourResult) -> None:
 def _add_corners(page: Page, contour: ContourResult) -> None:
     if contour.corners:
         count = len(contour.corners)
-        more = f", worst {CORNERS_SHOWN} of {count}" if count > CORNERS_SHOWN else ""
+        more = f", worst {SHOWN} of {count}" if count > SHOWN else ""
         page.section(f"Corners{more}", "", corner_table(contour))

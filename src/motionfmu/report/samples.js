@@ -1,25 +1,35 @@
 "use strict";
 // Curves over time: all samples are in the page, what is in view is drawn.
 
-const KINDS = { i4: Int32Array, f4: Float32Array, f8: Float64Array };
+const GAP = -(2 ** 31);
 
 // Numbers that `bits` has packed.
-async function unwoven({ kind, count, bdata }) {
+async function unwoven({ kind, count, bdata, step }) {
   const packed = Uint8Array.from(atob(bdata), (c) => c.charCodeAt(0));
   const plain = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   const bytes = new Uint8Array(await new Response(plain).arrayBuffer());
-  const size = KINDS[kind].BYTES_PER_ELEMENT, raw = new Uint8Array(size * count);
+  const size = kind === "f8" ? 8 : 4, raw = new Uint8Array(size * count);
   for (let k = 0; k < size; k++) {
     for (let i = 0; i < count; i++) raw[i * size + k] = bytes[k * count + i];
   }
-  const words = size === 8 ? new BigUint64Array(raw.buffer) : new Uint32Array(raw.buffer);
-  for (let i = 1; i < count; i++) words[i] += words[i - 1];
-  return new KINDS[kind](raw.buffer);
+  if (size === 8) {
+    const words = new BigUint64Array(raw.buffer);
+    for (let i = 1; i < count; i++) words[i] += words[i - 1];
+    return new Float64Array(raw.buffer);
+  }
+  const whole = new Int32Array(raw.buffer);
+  for (let i = 0, last = 0; i < count; i++) {
+    last = (last + ((whole[i] >>> 1) ^ -(whole[i] & 1))) | 0;
+    whole[i] = last;
+  }
+  return step ? Float64Array.from(whole, (k) => (k === GAP ? NaN : k * step)) : whole;
 }
 
-function timesOf(clock) {
+async function timesOf(clock) {
   if (clock.bdata) return unwoven(clock);
-  return Float64Array.from({ length: clock.count }, (_, k) => clock.start + k * clock.step);
+  const { start, step, count } = clock;
+  if (clock.steps) return Float64Array.from(await unwoven(clock.steps), (k) => start + k * step);
+  return Float64Array.from({ length: count }, (_, k) => start + k * step);
 }
 
 // How many of the times are at or before t.

@@ -1,5 +1,5 @@
 // The moving picture: a machine in 3D on a canvas, with its path.
-for (const data of page.views || []) machineView(data);
+ready.push(() => page.views.forEach(machineView));
 
 function machineView(data) {
   const root = document.getElementById(data.id);
@@ -89,10 +89,12 @@ function machineView(data) {
 
   let theme = {};
   function readTheme() {
-    const style = getComputedStyle(root);
+    const style = getComputedStyle(root), colors = isDark() ? page.dark : {};
     const get = (name) => style.getPropertyValue(name).trim();
-    theme = { body: [142, 160, 180], joint: [62, 80, 100], tool: [190, 40, 60],
-      ink: get("--ink"), muted: get("--muted"), line: "#cfd8e0", accent: get("--accent") };
+    const own = (list) => list.map((color) => other(color, colors));
+    theme = { body: [142, 160, 180], joint: isDark() ? [104, 124, 146] : [62, 80, 100], tool: [190, 40, 60],
+      ink: get("--ink"), muted: get("--muted"), line: get("--floor"), accent: get("--accent"),
+      colours: own(data.colours), curves: own(data.curves) };
   }
 
   function shade(color, normal) {
@@ -199,7 +201,7 @@ function machineView(data) {
       const visited = a < done;
       while (b < shown.length - 1 && b - a < 24 && level(b) === level(a) && (b < done) === visited) b++;
       const piece = shown.slice(a, b + 1);
-      const color = colour(data.colours, level(a) / 15);
+      const color = colour(theme.colours, level(a) / 15);
       items.push({ depth: piece[piece.length >> 1][2],
         draw: () => stroke(piece, color, visited ? 2.6 : 1.6, visited ? faded : 0.22) });
       a = b;
@@ -209,7 +211,7 @@ function machineView(data) {
 
   function deviation(line, number, factor, look) {
     const shown = line.map((p) => look(add(p.foot, p.gap, factor)));
-    const color = data.curves[number % data.curves.length], items = [];
+    const color = theme.curves[number % theme.curves.length], items = [];
     for (let a = 0; a < shown.length - 1; a += 12) {
       const piece = shown.slice(a, a + 13);
       items.push({ depth: piece[piece.length >> 1][2] - 1e-3 * size,
@@ -371,6 +373,7 @@ function machineView(data) {
   part("look").addEventListener("change", (e) => lookFrom(e.target.value));
   for (const name of ["machine", "solid", "magnify"]) part(name)?.addEventListener("input", later);
   new ResizeObserver(later).observe(canvas);
+  addEventListener("theme", () => { readTheme(); later(); });
   readTheme();
   lookFrom("whole");
   // For those who write in the console, and for tests.

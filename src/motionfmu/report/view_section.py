@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.report.html_page import Page
-from motionfmu.report.numbers import figure, magnification
+from motionfmu.report.numbers import figure
 from motionfmu.report.style import AXES
 from motionfmu.report.view.scene import Scene
 
@@ -47,6 +48,7 @@ def add_view(page: Page, scene: Scene | None) -> dict[str, Any]:
 def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
     """The data that the script of the view draws."""
     arm = scene.arm
+    end = scale_end(_errors(scene)) if scene.lines else 0.0
     return {
         "id": "view",
         "time": quantised(scene.time),
@@ -69,7 +71,7 @@ def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
         "lines": [
             {
                 "foot": [quantised(c) for c in _few(line.foot).T],
-                "gap": [quantised(c) for c in _few(line.gap).T],
+                "gap": [quantised(c) for c in within(_few(line.gap), end).T],
             }
             for line in scene.lines
         ],
@@ -98,10 +100,15 @@ def _few(values: NDArray[Any]) -> NDArray[Any]:
 
 def _magnify(scene: Scene) -> float:
     """Round magnification that suits the largest deviation and the path."""
-    gaps = np.concatenate([np.linalg.norm(line.gap, axis=1) for line in scene.lines])
     feet = np.concatenate([line.foot for line in scene.lines])
     size = float(np.linalg.norm(np.ptp(feet, axis=0)))
-    return magnification((float(np.percentile(gaps, 95)), float(gaps.max())), size, size)
+    return magnification(_errors(scene), size, size)
+
+
+def _errors(scene: Scene) -> tuple[float, float]:
+    """The 95th percentile of all deviations, and the largest [mm]."""
+    gaps = np.concatenate([np.linalg.norm(line.gap, axis=1) for line in scene.lines])
+    return float(np.percentile(gaps, 95)), float(gaps.max())
 
 
 def _html(speed: float, factor: float, deviates: bool, fastest: float) -> str:

@@ -28,15 +28,15 @@ def reader(values: Any) -> Read:
     return read
 
 
-def few(count: int, read: Read, steps: bool) -> Index | None:
+def few(count: int, read: Read, steps: bool, most: int = MOST) -> Index | None:
     """The samples of a curve of `count` that a figure has; None for all."""
 
     def plain(first: int, last: int) -> Array:
         return np.nan_to_num(np.asarray(read(first, last), dtype=np.float64))
 
-    if count <= MOST:
+    if count <= most:
         return None
-    return (steps_of if steps else peaks_of)(count, plain, MOST // 2 - 1)
+    return (steps_of if steps else peaks_of)(count, plain, most // 2 - 1)
 
 
 def at(read: Read, samples: Index) -> Array:

@@ -16,7 +16,7 @@ from motionfmu.analysis.explain.theory import CornerRow
 from motionfmu.report.diagram import BarMark, Diagram, LineMark, Scale, one
 from motionfmu.report.formula import readable
 from motionfmu.report.html_page import Page, PageFrame
-from motionfmu.report.html_tables import CORNERS_SHOWN, RMS, cards, circle_table, overrides, table
+from motionfmu.report.html_tables import RMS, cards, circle_table, folded, overrides, table
 from motionfmu.report.numbers import figure, length, unit
 from motionfmu.report.polar_chart import polar_chart
 from motionfmu.report.style import AXES, INK, MUTED
@@ -206,12 +206,8 @@ def _circle_title(test: CircularTest) -> str:
 
 
 def _corners(found: Explanation) -> str:
-    """The corners with the largest errors; a line opens the list of all other corners."""
-    worst = sorted(found.corners, key=lambda c: -c.error)
-    shown = _corner_rows(worst[:CORNERS_SHOWN])
-    if not (rest := worst[CORNERS_SHOWN:]):
-        return shown
-    return f"{shown}<details><summary>{len(rest)} more</summary>{_corner_rows(rest)}</details>"
+    """The corners, the largest errors first."""
+    return folded(_corner_rows, sorted(found.corners, key=lambda c: -c.error))
 
 
 def _corner_rows(corners: Sequence[CornerRow]) -> str:
