@@ -28,6 +28,11 @@ def machines() -> dict[str, Path]:
     return _named(MACHINE, PACKAGE / "machines", Path("machines"))
 
 
+def rigs() -> dict[str, Path]:
+    """Folders of parts of machines on the bench, which a scenario names as it does a machine."""
+    return _named(MACHINE, PACKAGE / "rigs")
+
+
 def _named(file: str, *places: Path) -> dict[str, Path]:
     """Folders with such a file by their names; one of a later place hides those before."""
     found = [one.parent for place in places for one in sorted(place.glob(f"*/{file}"))]

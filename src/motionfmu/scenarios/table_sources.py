@@ -110,11 +110,12 @@ def machine_file(path: str | Path, folder: Path) -> Path:
     """The machine.toml, absolute, that a path or the name of a machine means.
 
     A path is the file's or its folder's, in `folder` if it is relative; a name, where there is no
-    such path, that of a folder in ./machines or of a machine that comes with the package.
+    such path, that of a folder in ./machines, or of a machine or rig that comes with the package.
     """
     file = folder / path
     if package_files.is_name(path) and not os.path.lexists(file):
-        file = package_files.machines().get(str(path), file)
+        known = package_files.rigs() | package_files.machines()
+        file = known.get(str(path), file)
     file = file / package_files.MACHINE if is_file(file / package_files.MACHINE) else file
     if not is_file(file):
         hint = ""
