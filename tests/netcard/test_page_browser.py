@@ -17,6 +17,7 @@ import pytest
 from browser import tab as browser_tab
 from conftest import ROOT
 from fleet import Fleet, circle, status
+from page_words import WORDS
 from soft_card import SoftCard, serve_card
 
 from motionfmu.cards import messages
@@ -124,6 +125,23 @@ def test_a_job_is_opened_sent_started_paused_stopped_homed(tab: Any, served: Ser
     assert tab.locator("html").evaluate("e => e.scrollWidth") == 390
     box = tab.get_by_role("button", name="Stop").bounding_box()
     assert box["y"] + box["height"] <= 844 and box["width"] > 300
+
+
+@pytest.mark.parametrize("width", [390, 1400])
+def test_no_text_lies_over_text(tab: Any, served: Served, width: int) -> None:
+    from playwright.sync_api import expect
+
+    tab.set_viewport_size({"width": width, "height": 900})
+    name = f"{'a_job_with_a_name_of_forty_letters_':_<36}.mcj"
+    file = {"name": name, "mimeType": "application/octet-stream", "buffer": circle()}
+    tab.get_by_label("Open drawing or job").set_input_files(files=[file])
+    tab.get_by_role("button", name="Send to card").click()
+    expect(tab.locator("#job-name")).to_have_text(name)
+    expect(tab.locator("#job-about")).to_contain_text("in the card.")
+    for view in ("#tab-config", "#tab-cards"):
+        assert tab.evaluate(WORDS) == []
+        assert tab.locator("html").evaluate("e => e.scrollWidth") == width
+        tab.locator(view).click()
 
 
 def test_the_picture_shows_the_speed_and_the_tool(tab: Any, served: Served) -> None:

@@ -259,7 +259,7 @@ def test_outliers_are_drawn_no_longer_than_the_colours_reach() -> None:
     gap = np.array([[3.0, 4.0], [0.3, 0.4], [0.0, 0.0], [np.nan, np.nan]])
     shown = within(gap, 1.0)
     assert np.allclose(shown[0], [0.6, 0.8]) and np.array_equal(shown[1:], gap[1:], equal_nan=True)
-    assert scale_end((0.02, 2.0)) == 0.03 and scale_end((0.02, 0.025)) == 0.025
+    assert scale_end((0.02, 2.0)) == 0.03 and scale_end((0.02, 0.039)) == 0.039
     assert scale_end((0.0, 2.0)) == 2.0  # of a path with fewer errors than 5 %
 
 

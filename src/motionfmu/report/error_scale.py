@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from motionfmu.report.numbers import round_down
 
-# Colours end at so many times the error below which 95 % are; what is larger is an outlier.
-BEYOND = 1.5
+# Where the largest error is more than so many times the one below which 95 % are, there are
+# outliers; colours end at so many times that one.
+FAR, BEYOND = 2.0, 1.5
 # At the chosen magnification the usual error, and the one where colours end, are these parts of
 # the path's size.
 SHARE_USUAL = 0.05
@@ -20,7 +21,7 @@ SHARE_REACH = 0.5
 def scale_end(errors: tuple[float, float]) -> float:
     """Where the colours end, from the error's 95th percentile and its maximum [mm]."""
     usual, largest = errors
-    return min(largest, BEYOND * usual) if usual > 0.0 else largest
+    return BEYOND * usual if 0.0 < FAR * usual < largest else largest
 
 
 def within(gap: NDArray[Any], end: float) -> NDArray[Any]:

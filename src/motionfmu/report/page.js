@@ -29,7 +29,8 @@ function fitted({ data, layout }) {
     }
     const bar = trace.colorbar ?? trace.marker?.colorbar;
     if (!bar) continue;
-    Object.assign(bar, { orientation: "h", x: 0.5, y: -0.02, len: 0.9, yanchor: "top", thickness: 10 });
+    Object.assign(bar, { orientation: "h", x: 0.5, y: -0.02, len: 0.9, yanchor: "top", thickness: 10,
+      nticks: 4, tickangle: 0 });
     if (!layout.scene) { // below the title of the axis, however tall the plot is
       Object.assign(bar, { yref: "container", y: 0, yanchor: "bottom" });
       layout.margin.b = BAR + (layout.margin.b ?? 0);

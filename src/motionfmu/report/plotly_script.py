@@ -100,7 +100,7 @@ def _modules(text: str, wrappers: list[str]) -> dict[str, tuple[int, int]]:
     return found
 
 
-# CCN 17: a case for each kind of token in which a bracket is none.
+# CCN 16: a case for each kind of token in which a bracket is none.
 def _closed(text: str, place: int) -> int:
     """The end of what the bracket at a place opens."""
     depth, end, before = 0, place, ""
