@@ -170,6 +170,7 @@ def _ending(body: Body, sources: Sources) -> list[str]:
     return found
 
 
+# CCN 17: each table that has times or bounds, in all the forms that a file may give it.
 def _numbers(tables: Tables) -> Tables:
     """Tables with floats where a time or a bound is a whole number, and tuples for pairs."""
 
