@@ -6,6 +6,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file, shown
+from motionfmu.run.program_translation import program_for, time_of
 from motionfmu.run.result import Result
 from motionfmu.run.runner import Scenario
 from motionfmu.scenarios.document import Document, made
@@ -13,6 +14,8 @@ from motionfmu.scenarios.table_sources import machine_file
 
 # [s] Longer than any program that is not told how long it may take.
 LIMIT = 600.0
+START = 0.05  # [s] when a machine with a start input is started
+APPROACH = 0.5  # [s] that a card may take until it plays a job
 
 
 class Machine:
@@ -46,8 +49,9 @@ class Machine:
 
     @property
     def takes_programs(self) -> bool:
-        """Whether its file says where a program goes and what tells that it is done."""
-        return self._signals.program is not None and self._signals.done is not None
+        """Whether its file says where a program goes and how it ends."""
+        ends = self._signals.done or self._signals.config
+        return self._signals.program is not None and ends is not None
 
     def __repr__(self) -> str:
         return f"<Machine {self.name}: {self.file}>"
@@ -66,7 +70,9 @@ class Machine:
         Parameters
         ----------
         program : str or Path
-            File of the program, in the language of the machine's controller.
+            File of the program, in the language of the machine's controller; or a drawing
+            (.plt), which a mill gets as G-code, and a network card as a job, as it gets a part
+            program.
         limit : float
             The longest run [s]; one that is not done by then has a warning.
         settle : float
@@ -93,8 +99,13 @@ class Machine:
         if not self.takes_programs:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
-        values: dict[str, Any] = {str(self._signals.program): str(file.resolve()), **(set or {})}
+        ready = program_for(self._made({"stop": 1.0}, self.name, ""), file.resolve())
+        values = ready.values | {str(self._signals.program): str(ready.file)} | dict(set or {})
         given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
+        if ready.seconds is not None:
+            given = {"stop": time_of(ready.seconds, START, APPROACH + settle)}
+        if self._signals.start is not None:
+            given["drive"] = [{"input": self._signals.start, "at": [START], "value": [1]}]
         about = f"{file.name} on {self.name}"
         return Scenario(self._made(given | tables | {"set": values}, file.stem, about))
 

@@ -10,13 +10,11 @@ from typing import Any
 from motionfmu.analysis.gcode.subprogram_files import called
 from motionfmu.base.errors import InputError
 from motionfmu.base.new_folder import new_folder
+from motionfmu.run.program_translation import GCODE
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import package_files
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.toml_text import pair_lines, table_lines
-
-# Endings of part programs, which may call other files.
-GCODE = (".ngc", ".nc", ".tap", ".gcode")
 
 
 def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
@@ -62,7 +60,7 @@ def _machine_name(file: Path, folder: Path) -> str:
 
 def _called(file: Path) -> list[Path]:
     """Files that a part program calls."""
-    return called(file) if file.suffix in GCODE else []
+    return called(file) if file.suffix.lower() in GCODE else []
 
 
 def read_files(resolver: Resolver, values: Mapping[str, Any]) -> dict[str, Path]:

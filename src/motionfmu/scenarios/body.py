@@ -111,6 +111,8 @@ class MachineSignals(BaseModel):
     model_config = _STRICT
     program: Name | None = None  # parameter that names it
     done: Name | None = None
+    start: Name | None = None  # input that starts it when it becomes 1
+    config: Name | None = None  # configuration of a network card, for which drawings are planned
 
 
 class MachineAxis(BaseModel):

@@ -179,12 +179,14 @@ class Stroke:
     line: NDArray[np.int64]
 
 
-def strokes(program: Program) -> Iterator[Stroke]:
+def strokes(program: Program, chord: float | None = None) -> Iterator[Stroke]:
     """The path in pieces of one kind and tool.
 
     Parameters
     ----------
     program : Program
+    chord : float, optional
+        The most that a chord is off its arc [mm]; else arcs have a point every 0.05 rad.
 
     Yields
     ------
@@ -197,7 +199,10 @@ def strokes(program: Program) -> Iterator[Stroke]:
     if not len(c):
         return
     rapid, tools = np.isin(_kinds(c), ("rapid", "rapid_joints")), tools[moves]
-    count = np.where(c["arc"], np.ceil(np.abs(c["sweep"]) / STEP).astype(int) + 1, 2)
+    step = np.full(len(c), STEP)
+    if chord is not None:  # chord = r (1 - cos(step / 2)), nearly r step^2 / 8
+        step = np.minimum(STEP, np.sqrt(8.0 * chord / np.maximum(c["radius"], chord)))
+    count = np.where(c["arc"], np.ceil(np.abs(c["sweep"]) / step).astype(int) + 1, 2)
     count = np.where(c["cubic"], CURVE, count).astype(np.int64)
     begin = np.concatenate([[0], np.cumsum(count)]).astype(np.int64)
     points = np.empty((begin[-1], AXES))
