@@ -23,7 +23,15 @@ PROGRAMS = {
     "xy_table": ("square/square.ngc", {}),
 }
 # These play what a network card or a field bus gives them.
-WITHOUT = {"engraver", "hydraulic_slide"}
+WITHOUT = {
+    "engraver",
+    "hydraulic_slide",
+    "fifo_card",
+    "lone_card",
+    "networked_card",
+    "pulse_robot",
+    "single_buffer",
+}
 
 
 def scenario_at(folder: Path, text: str) -> Path:
