@@ -19,7 +19,7 @@ from motionfmu.scenarios import document
 from motionfmu.scenarios.body import Bounds
 
 FOLDERS = sorted(p.parent for p in ROOT.glob("scenarios/*/scenario.toml"))
-SMALL = ROOT / "scenarios/interrupt_sources/scenario.toml"
+SMALL = Path(__file__).parent / "interrupt_sources.toml"
 
 
 def numbers(folder: Path) -> list[int | None]:
@@ -258,7 +258,7 @@ def test_every_axis_changes_for_itself() -> None:
 def test_several_tables_of_one_signal(tmp_path: Path) -> None:
     """Each has its own windows; a wrong one is named like a single one."""
     text = SMALL.read_text()
-    text = text[: text.index("[[figure]]")] + '[check]\n"mcc.serving" = '
+    text = text[: text.index("[check]")] + '[check]\n"mcc.serving" = '
     (tmp_path / "scenario.toml").write_text(text + "[{ at = 0.05, max = 1 }, { min = 0 }]\n")
     result = motionfmu.load(tmp_path).run(stop=0.06)
     assert [v.bounds for v in result.checks] == ["<= 1, at 0.05 s", ">= 0"]

@@ -9,7 +9,7 @@ import typer
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install
 from motionfmu.cli.card import card, on_end, stopped
-from motionfmu.cli.common import FAILED, Group, bare_table, out
+from motionfmu.cli.common import FAILED, App, Group, bare_table, out
 
 if TYPE_CHECKING:
     from motionfmu.cards.server import Cards
@@ -20,7 +20,7 @@ Folder = Annotated[Path, typer.Option("--folder", help="The server's folder.")]
 Id = Annotated[int, typer.Argument(metavar="ID", help="The card's id.")]
 HERE = Path("cards")
 
-key = typer.Typer(cls=Group, rich_markup_mode=None, help="Keys of cards.", no_args_is_help=True)
+key = App(cls=Group, rich_markup_mode=None, help="Keys of cards.", no_args_is_help=True)
 card.add_typer(key, name="key")
 
 

@@ -39,6 +39,7 @@ class Mode:
     quiet: bool = False
     verbose: bool = False
     open: bool = False
+    loud: Any = None  # what was stdout before -q
 
 
 mode = Mode()
@@ -54,11 +55,15 @@ def _chosen(ctx: typer.Context, option: typer.CallbackParam, value: bool) -> Non
     if name == "quiet":
         usual, silence = sys.stdout, open(os.devnull, "w", encoding="utf-8")
         ctx.call_on_close(silence.close)
-        ctx.call_on_close(lambda: setattr(sys, "stdout", usual))
-        sys.stdout = silence
+        ctx.call_on_close(lambda: _loud(usual))
+        sys.stdout, mode.loud = silence, usual
     if name == "verbose":
         began = time.perf_counter()
         ctx.call_on_close(lambda: _took(time.perf_counter() - began))
+
+
+def _loud(usual: Any) -> None:
+    sys.stdout, mode.loud = usual, None
 
 
 def _took(seconds: float) -> None:
@@ -235,7 +240,7 @@ def _given(texts: list[str]) -> dict[str, tuple[Any, str]]:
 
 def give(text: str) -> None:
     """Print what was asked for by --json, also with -q."""
-    print(text, file=sys.__stdout__ if mode.quiet else sys.stdout)
+    print(text, file=mode.loud or sys.stdout)
 
 
 def detail(text: str) -> None:
