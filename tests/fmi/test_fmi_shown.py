@@ -265,7 +265,10 @@ def test_types_of_files_and_numbers(fmi: int) -> None:
     assert {p.name for p in ports("mcc").values() if p.file == "read"} == {
         "program", "comp_file", "tool_table"
     }  # fmt: skip
-    assert [p.name for p in ports("mcc").values() if p.file == "written"] == ["path_file"]
+    assert [p.name for p in ports("mcc").values() if p.file == "written"] == [
+        "path_file",
+        "plan_file",
+    ]
 
 
 @every_fmu

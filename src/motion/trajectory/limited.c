@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 /* Share of a limit from which on it counts as reached. */
 static const double REACHED = 1.0 - 1e-6;
 
@@ -31,7 +33,7 @@ static bool bends(const struct profile *p)
     before.t = p->t - step;
     after.t = p->t + step;
     const double a = profile_state(&before).a, b = profile_state(&after).a;
-    return fabs(b - a) > 1e-9 * fmax(fabs(a), fabs(b));
+    return fabs(b - a) > 1e-9 * el_max(fabs(a), fabs(b));
 }
 
 struct limited limited_profile(const struct profile *p, struct limited held)

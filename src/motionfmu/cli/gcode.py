@@ -23,11 +23,11 @@ from motionfmu.cli.common import (
 )
 
 if TYPE_CHECKING:
-    from motionfmu.analysis.cycle_time import Lifted, Plan
+    from motionfmu.analysis.cycle_time import CommandedMotion, Lifted
     from motionfmu.analysis.gcode import Fault, Program
 
 AXES = "XYZUVW"
-Planned = tuple["Plan", list["Lifted"]]
+Planned = tuple["CommandedMotion", list["Lifted"]]
 
 
 @app.command()
@@ -63,8 +63,6 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     With --machine its speeds, ramps, travel, tools and words count, where no option says other, and
     the time is that of its controller's planner, which tells where it goes.
     """
-    if set_ and machine is None:
-        raise InputError(f"--set {set_[0]}: --machine is missing")
     from motionfmu.analysis.gcode import read
     from motionfmu.analysis.gcode.program import text_in
 
@@ -80,9 +78,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     for file in files:
         program = read(file, table, **read_as)
         good = good and not program.faults
-        planned = None
-        if machine is not None and not program.faults:
-            planned = _planned(file, machine, settings(set_))
+        planned = None if program.faults else _planned(file, machine, settings(set_))
         told[str(file)] = found = _numbers(program, planned)
         if not as_json:
             target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
@@ -140,8 +136,12 @@ def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
     return {"bounded": bounded, "low": low, "high": high}
 
 
-def _planned(file: Path, machine: str, given: dict[str, Any]) -> Planned:
-    """The program as the machine's controller commands it, and with each limit lifted."""
+def _planned(file: Path, machine: str | None, given: dict[str, Any]) -> Planned | None:
+    """The program as a machine's controller commands it, and with each limit lifted."""
+    if machine is None:
+        if given:
+            raise InputError(f"--set {next(iter(given))}: --machine is missing")
+        return None
     from motionfmu.analysis.cycle_time import planned, what_if
     from motionfmu.run import Machine
 

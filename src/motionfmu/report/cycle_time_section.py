@@ -5,7 +5,8 @@ from html import escape
 
 import numpy as np
 
-from motionfmu.analysis.cycle_time import CAUSES, Lifted, Plan, Share
+from motionfmu.analysis.cycle_time import CAUSES, CommandedMotion, Lifted, Share
+from motionfmu.base import units
 from motionfmu.report.diagram import Diagram, path_diagram, path_lines
 from motionfmu.report.html_page import Page
 from motionfmu.report.html_tables import table
@@ -36,7 +37,6 @@ WORDS = {
     "dwell": "",
     "waiting": "hold, operator",
 }
-SPELLING = {"N.m": "N·m", "1": ""}
 
 
 def name_of(share: Share) -> str:
@@ -44,7 +44,7 @@ def name_of(share: Share) -> str:
     return f"{share.cause} of {share.axis}" if share.axis else share.cause
 
 
-def add_cycle_time(page: Page, plan: Plan, lifted: Sequence[Lifted] = ()) -> None:
+def add_cycle_time(page: Page, plan: CommandedMotion, lifted: Sequence[Lifted] = ()) -> None:
     """Add sections on where the time goes; with limits lifted, on what they would save."""
     if not plan.time:
         return
@@ -83,7 +83,7 @@ def add_cycle_time(page: Page, plan: Plan, lifted: Sequence[Lifted] = ()) -> Non
         page.section("What if", note, table(("limit", "s", "saved [s]", "%"), rows))
 
 
-def path_by_cause(plan: Plan) -> Diagram:
+def path_by_cause(plan: CommandedMotion) -> Diagram:
     """The path, coloured by what limits the motion on it."""
     rows = plan.rows[:: max(1, len(plan.rows) // POINTS)]
     place, cause = rows["place"][:, :3], rows["cause"]
@@ -117,7 +117,7 @@ def add_axes(page: Page, found: Sequence[AxisFigure]) -> None:
     heads = [name.replace("_", " ") for name in names.split()]
     rows = []
     for f in found:
-        unit = SPELLING.get(f.limit.unit, f.limit.unit)
+        unit = units.spelled(f.limit.unit)
         title = f.limit.figure.replace("_", " ") + (f" [{unit}]" if unit else "")
         rows.append(
             (

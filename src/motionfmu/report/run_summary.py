@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour import ContourResult
-from motionfmu.analysis.cycle_time import Plan, planned
+from motionfmu.analysis.cycle_time import CommandedMotion, planned
 from motionfmu.analysis.cycle_time.program_plan import controller
 from motionfmu.analysis.linear import LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines
@@ -56,7 +56,7 @@ class RunSummary:
     gains: tuple[LoopGain, ...]
     tools: tuple[ToolGap, ...]  # each beside its command
     axes: tuple[AxisFigure, ...] = ()  # of a machine whose limits are known
-    plan: Plan | None = None  # of its program, if the machine names its axes
+    plan: CommandedMotion | None = None  # of its program, if the machine names its axes
 
     @property
     def cycle(self) -> float | None:

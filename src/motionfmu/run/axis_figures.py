@@ -16,28 +16,15 @@ REACHED = 0.999
 
 @dataclass(frozen=True)
 class AxisFigure:
-    """A figure of an axis over a run, in the unit of its limit.
+    """A figure of an axis over a run, in the unit of its limit."""
 
-    Attributes
-    ----------
-    limit : AxisLimit
-        Axis, figure, unit and what limits it.
-    low, high : float
-        Least and greatest value.
-    largest, at : float
-        Value of the largest size, and when [s].
-    rms : float
-    time_at_limit : float
-        [s] at or beyond `limit.limit`, `low` or `high`.
-    """
-
-    limit: AxisLimit
+    limit: AxisLimit  # axis, figure, unit and what limits it
     low: float
     high: float
-    largest: float
-    at: float
+    largest: float  # value of the largest size
+    at: float  # [s] when
     rms: float
-    time_at_limit: float
+    time_at_limit: float  # [s] at or beyond its limit, low or high
 
     @property
     def share(self) -> float | None:

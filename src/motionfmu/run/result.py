@@ -392,7 +392,7 @@ class Result(Mapping[str, NDArray[Any]]):
 
     @cached_property
     def checks(self) -> list[Verdict]:
-        """The verdict of every bound in the scenario's [check], then in its [expect].
+        """Verdicts of all bounds in [check], then of those in [expect].
 
         What is expected of a scenario as written is judged in such a run only, else ``ok`` is None.
         A number that this run does not have is a failed check with its reason.

@@ -1,5 +1,5 @@
-/* The preview of a program: its points are those of a run with a card, and each limit of its time is
- * told by a program made for it. */
+/* The preview of a program: its points are those of a run with a card, and each limit of its time
+ * is told by a program made for it. */
 #include "limited.h"
 #include "mcc_card.h"
 #include "preview.h"

@@ -1,6 +1,12 @@
 """Where the time of a part program goes on a machine, and what it would take to make it shorter."""
 
 from motionfmu.analysis.cycle_time.lifted import Lifted, what_if
-from motionfmu.analysis.cycle_time.program_plan import CAUSES, Block, Plan, Share, planned
+from motionfmu.analysis.cycle_time.program_plan import (
+    CAUSES,
+    Block,
+    CommandedMotion,
+    Share,
+    planned,
+)
 
-__all__ = ["CAUSES", "Block", "Lifted", "Plan", "Share", "planned", "what_if"]
+__all__ = ["CAUSES", "Block", "CommandedMotion", "Lifted", "Share", "planned", "what_if"]

@@ -11,7 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from motionfmu.analysis.cycle_time.program_plan import Plan, controller, planned
+from motionfmu.analysis.cycle_time.program_plan import (
+    AXES,
+    CommandedMotion,
+    controller,
+    planned,
+    settings,
+)
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of
 from motionfmu.fmu.archive_names import EXTRA
@@ -20,12 +26,13 @@ from motionfmu.scenarios.values import start_values
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
+    from motionfmu.scenarios.fmus import Port
 
 RESOURCE = f"{EXTRA}/limits.toml"
 SHARE = 0.25
 
 
-class Limit(BaseModel):
+class LimitLift(BaseModel):
     """How a limit is lifted: a variable of power p becomes (1 + share)**p times as large."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
@@ -60,7 +67,7 @@ class Lifted:
 
 
 @functools.cache
-def of_fmu(name: str) -> dict[str, Limit]:
+def of_fmu(name: str) -> dict[str, LimitLift]:
     """A built FMU's limits.toml, if any."""
     with zipfile.ZipFile(fmus.fmu_path(name)) as archive:
         if RESOURCE not in archive.namelist():
@@ -68,7 +75,7 @@ def of_fmu(name: str) -> dict[str, Limit]:
         text = archive.read(RESOURCE).decode()
     where = f"fmus/{name}/limits.toml"
     try:
-        found = {k: Limit.model_validate(v) for k, v in tables_of(text, where).items()}
+        found = {k: LimitLift.model_validate(v) for k, v in tables_of(text, where).items()}
     except ValidationError as error:
         raise InputError(f"{where}: {' '.join(str(error).split())}") from None
     ports = fmus.ports(name)
@@ -80,7 +87,7 @@ def of_fmu(name: str) -> dict[str, Limit]:
 
 def what_if(
     scenario: "Scenario",
-    plan: Plan | None = None,
+    plan: CommandedMotion | None = None,
     *,
     set: Mapping[str, Any] | None = None,
     share: float = SHARE,
@@ -90,7 +97,7 @@ def what_if(
     Parameters
     ----------
     scenario : Scenario
-    plan : Plan, optional
+    plan : CommandedMotion, optional
         With no limit lifted; planned if it is not given.
     set : mapping, optional
         Values by ``component.variable``, stronger than the scenario's.
@@ -124,25 +131,35 @@ def _lifts(
     name = controller(scenario, set)
     if name is None:
         return
-    ports = fmus.ports(scenario.document.body.component[name])
-    from motionfmu.run.run_plan import Options
-
-    given = {s.end.name: s.values for s in scenario.resolved(Options(set=set)).settings}
-
-    def of(variable: str) -> list[float]:
-        values = given.get(f"{name}.{variable}") or start_values(ports[variable])
-        count = ports[variable].count
-        return [float(v) for v in (values if len(values) == count else values * count)]
-
-    used = of("active") if "active" in ports else []
-    for limit in of_fmu(scenario.document.body.component[name]).values():
-        lifted = {v: [x * factor**p for x in of(v)] for v, p in limit.power.items()}
-        if any(any(x) for x in lifted.values()):
-            pairs = lifted.items()
-            values = {f"{name}.{v}": x if ports[v].shape else x[0] for v, x in pairs}
-            yield limit.title, "", values
+    fmu = scenario.document.body.component[name]
+    values = _Values(name, fmus.ports(fmu), scenario, set)
+    for limit in of_fmu(fmu).values():
+        together = {v: [x * factor**p for x in values.of(v)] for v, p in limit.power.items()}
+        if any(any(listed) for listed in together.values()):
+            yield limit.title, "", dict(values.given(v, listed) for v, listed in together.items())
         for variable, power in limit.each.items():
-            for k, x in enumerate(of(variable)):
-                if x and (not used or used[k]):
+            for k, x in enumerate(values.of(variable)):
+                if x and values.used[k]:
                     key = f"{name}.{variable}[{k + 1}]"
                     yield limit.title, axes[k], {key: x * factor**power}
+
+
+class _Values:
+    """Parameters of a controller in a run, as lists."""
+
+    def __init__(
+        self, name: str, ports: "Mapping[str, Port]", scenario: "Scenario", set: Mapping[str, Any]
+    ) -> None:
+        self._name, self._ports = name, ports
+        self._set = {s.end.name: s.values for s in settings(scenario, set)}
+        self.used = self.of("active") if "active" in ports else [1.0] * len(AXES)
+
+    def of(self, variable: str) -> list[float]:
+        port = self._ports[variable]
+        values = self._set.get(f"{self._name}.{variable}") or start_values(port)
+        return [float(v) for v in (values if len(values) == port.count else values * port.count)]
+
+    def given(self, variable: str, listed: list[float]) -> tuple[str, Any]:
+        """Name and value as a run takes them."""
+        shape = self._ports[variable].shape
+        return f"{self._name}.{variable}", listed if shape else listed[0]

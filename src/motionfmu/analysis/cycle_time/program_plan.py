@@ -29,6 +29,7 @@ CAUSES = {
     8: "waiting",
 }
 DWELL = 7
+AXES = "XYZUVW"
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Plan:
+class CommandedMotion:
     """The commanded motion of a program.
 
     Attributes
@@ -97,7 +98,7 @@ class Plan:
         return len(self.rows) * self.frame
 
     def shares(self, rows: NDArray[Any] | None = None) -> list[Share]:
-        """Where the time goes, the longest first; the sum is the time of the rows, by default all.
+        """Time of each limit, the longest first, of all rows or of some.
 
         Parameters
         ----------
@@ -113,7 +114,7 @@ class Plan:
         return sorted(shares, key=lambda s: -s.time)
 
     def blocks(self, most: int | None = None) -> list[Block]:
-        """Lines of the program by what they lose, the most first.
+        """Lines of the program, those that lose most first.
 
         Parameters
         ----------
@@ -134,7 +135,7 @@ class Plan:
         ]
 
     def numbers(self) -> dict[str, Any]:
-        """Cycle time, where it goes, and the ten lines that lose most, for JSON."""
+        """Cycle time, where it goes, the ten slowest lines, for JSON."""
 
         def listed(shares: Sequence[Share]) -> list[dict[str, Any]]:
             return [{"cause": s.cause, "axis": s.axis, "time": s.time} for s in shares]
@@ -148,17 +149,17 @@ class Plan:
 
 def controller(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> str | None:
     """The component that can plan a program and has one; None if there is none."""
-    settings = {s.end.name: s.values for s in _settings(scenario, set or {})}
+    given = {s.end.name: s.values for s in settings(scenario, set or {})}
     for name, fmu in scenario.document.body.component.items():
         if fmus.is_ours(fmu) and FILE in fmus.ports(fmu):
-            program = settings.get(f"{name}.{PROGRAM}", ("",))
+            program = given.get(f"{name}.{PROGRAM}", ("",))
             if program[0]:
                 return name
     return None
 
 
-def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
-    """Plan the program of a scenario as its controller will command it.
+def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> CommandedMotion:
+    """Plan a program as the scenario's controller will command it.
 
     Waits for an operator, an input, a probe or an axis' position take no time.
 
@@ -170,7 +171,7 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
 
     Returns
     -------
-    Plan
+    CommandedMotion
 
     Raises
     ------
@@ -183,7 +184,7 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
         raise InputError(f"{scenario.name}: {told}")
     fmu = scenario.document.body.component[name]
     values: dict[str, Any] = {}
-    for s in _settings(scenario, set or {}):
+    for s in settings(scenario, set or {}):
         if s.end.component == name:
             values[s.end.name] = list(s.values) if s.end.port.shape else s.values[0]
     with tempfile.TemporaryDirectory() as folder:
@@ -200,11 +201,11 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Plan:
 
         Scenario(made(tables, scenario.name, Path.cwd(), "")).run(engine="native")
         rows = np.load(file)
-    axes = ["X", "Y", "Z", "U", "V", "W"]
+    axes = list(AXES)
     for axis in scenario.document.axes:
         if axis.row and axis.row <= len(axes):
             axes[axis.row - 1] = axis.name
-    return Plan(float(rows["time"][0]) if len(rows) else 0.0, rows, tuple(axes))
+    return CommandedMotion(float(rows["time"][0]) if len(rows) else 0.0, rows, tuple(axes))
 
 
 def _options(set: Mapping[str, Any]) -> Any:
@@ -213,5 +214,6 @@ def _options(set: Mapping[str, Any]) -> Any:
     return Options(set=set)
 
 
-def _settings(scenario: "Scenario", set: Mapping[str, Any]) -> Sequence[Any]:
+def settings(scenario: "Scenario", set: Mapping[str, Any]) -> Sequence[Any]:
+    """What a run with these values sets."""
     return scenario.resolved(_options(set)).settings

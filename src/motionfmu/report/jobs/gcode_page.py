@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.analysis.cycle_time import Lifted, Plan
+from motionfmu.analysis.cycle_time import CommandedMotion, Lifted
 from motionfmu.analysis.gcode import Fault, Program, Stroke, Summary
 from motionfmu.report.cycle_time_section import add_cycle_time
 from motionfmu.report.diagram import DOT, Diagram, path_diagram, path_lines
@@ -47,7 +47,7 @@ def page_text(
     program: Program,
     summary: Summary,
     drawn: Sequence[Stroke],
-    planned: tuple[Plan, Sequence[Lifted]] | None = None,
+    planned: tuple[CommandedMotion, Sequence[Lifted]] | None = None,
 ) -> str:
     """The whole HTML page; with the plan of a machine's controller, where the time goes."""
     page = Page()
