@@ -106,11 +106,29 @@ def causes(folder: Path) -> str:
 
 
 def program() -> str:
+    """A program on a machine: where its time goes, too, and what each limit costs."""
+    from motionfmu.analysis.cycle_time import planned, what_if
     from motionfmu.analysis.gcode import read, strokes, summarise
     from motionfmu.report.jobs import gcode_page
+    from motionfmu.run import machine
+    from motionfmu.run.program_reading import reading_on
 
-    found = read((CIRCLE / "circle.ngc").read_text())
-    return gcode_page.page_text(long_name("circle"), found, summarise(found), list(strokes(found)))
+    file = CIRCLE / "circle.ngc"
+    read_as, tools = reading_on("mill3")
+    found = read(file, tools, **read_as)
+    assert not found.faults
+    scenario = machine("mill3").scenario(file)
+    way = planned(scenario)
+    drawn = list(strokes(found))
+    both = way, what_if(scenario, way)
+    return gcode_page.page_text(long_name("circle"), found, summarise(found), drawn, both)
+
+
+def on_a_machine(stop: float) -> str:
+    """A program on a mill, whose axes have every kind of limit."""
+    from motionfmu.run import machine
+
+    return contour(machine("mill3").scenario(CIRCLE / "circle.ngc").run(stop=stop))
 
 
 def plan() -> str:
@@ -180,6 +198,7 @@ def made(folder: Path) -> tuple[dict[str, Path], motionfmu.Result]:
         "path": lambda: path_causes(folder),
         "sweep": lambda: swept(folder),
         "gcode": program,
+        "machine": lambda: on_a_machine(1.5),
         "plan": plan,
         "documentation": documentation,
         "notebook": lambda: notebook(result),
