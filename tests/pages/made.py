@@ -13,6 +13,9 @@ import motionfmu
 from motionfmu.report.run_page import page_text
 from motionfmu.report.run_summary import summary_of
 from motionfmu.report.signal_page import plain_text
+from motionfmu.scenarios import document
+from motionfmu.scenarios.table_sources import ARRAYS, ORIGINS
+from motionfmu.scenarios.toml_text import pair_lines, table_lines
 
 CIRCLE = ROOT / "scenarios/circle"
 LONG = 40  # letters of a name
@@ -29,12 +32,27 @@ def renamed(name: str, folder: Path, *components: str) -> Path:
     if place.is_dir():
         return place
     shutil.copytree(ROOT / "scenarios" / name, place)
-    file = place / "scenario.toml"
-    text = file.read_text()
-    for one in components:
-        text = re.sub(rf'(?m)(^|")({one})(?=\s*=\s*"|\.)', rf"\g<1>{long_name(one)}", text)
-    file.write_text(text)
+    if components:
+        file = place / "scenario.toml"
+        text = whole_text(file)
+        for one in components:
+            text = re.sub(rf'(?m)(^|")({one})(?=\s*=\s*"|\.)', rf"\g<1>{long_name(one)}", text)
+            assert f"\n{long_name(one)} " in text
+        file.write_text(text)
     return place
+
+
+def whole_text(file: Path) -> str:
+    """A scenario that stands alone: with its machine, and with names in the place of patterns."""
+    found = document.read(file)
+    tables = {k: v for k, v in found.tables.items() if k not in ("machine", *ORIGINS)}
+    inner = {k: v for k, v in tables.items() if k in ARRAYS or isinstance(v, dict)}
+    lines = [f"# {found.about}"]
+    for key, value in tables.items():
+        lines += [] if key in inner else pair_lines(key, value)
+    for key, table in inner.items():
+        lines += table_lines(key, table)
+    return "\n".join(lines) + "\n"
 
 
 def contour_run(folder: Path) -> motionfmu.Result:
@@ -88,11 +106,29 @@ def causes(folder: Path) -> str:
 
 
 def program() -> str:
+    """A program on a machine: where its time goes, too, and what each limit costs."""
+    from motionfmu.analysis.cycle_time import planned, what_if
     from motionfmu.analysis.gcode import read, strokes, summarise
     from motionfmu.report.jobs import gcode_page
+    from motionfmu.run import machine
+    from motionfmu.run.program_reading import reading_on
 
-    found = read((CIRCLE / "circle.ngc").read_text())
-    return gcode_page.page_text(long_name("circle"), found, summarise(found), list(strokes(found)))
+    file = CIRCLE / "circle.ngc"
+    read_as, tools = reading_on("mill3")
+    found = read(file, tools, **read_as)
+    assert not found.faults
+    scenario = machine("mill3").scenario(file)
+    way = planned(scenario)
+    drawn = list(strokes(found))
+    both = way, what_if(scenario, way)
+    return gcode_page.page_text(long_name("circle"), found, summarise(found), drawn, both)
+
+
+def on_a_machine(stop: float) -> str:
+    """A program on a mill, whose axes have every kind of limit."""
+    from motionfmu.run import machine
+
+    return contour(machine("mill3").scenario(CIRCLE / "circle.ngc").run(stop=stop))
 
 
 def plan() -> str:
@@ -162,6 +198,7 @@ def made(folder: Path) -> tuple[dict[str, Path], motionfmu.Result]:
         "path": lambda: path_causes(folder),
         "sweep": lambda: swept(folder),
         "gcode": program,
+        "machine": lambda: on_a_machine(1.5),
         "plan": plan,
         "documentation": documentation,
         "notebook": lambda: notebook(result),

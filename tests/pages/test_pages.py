@@ -29,8 +29,16 @@ KINDS = (
     "path",
     "sweep",
     "gcode",
+    "machine",
     "plan",
 )
+# Sections on what limits a program, of the pages that have them.
+TIME = ("Where the time goes", "Slowest lines")
+LIMITED = {
+    "contour": ("Axes and their limits", *TIME),
+    "machine": ("Axes and their limits", *TIME),
+    "gcode": (*TIME, "What if"),
+}
 OTHERS = ("documentation", "notebook")  # without plots of a script
 FRAME = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 # What is wrong with how a page looks, in words.
@@ -142,6 +150,8 @@ def test_nothing_overlaps_overflows_or_breaks(browser: Any, pages: Any, kind: st
         if kind in ON_A_PHONE:
             ON_A_PHONE[kind](page, run)
             assert page.evaluate(LOOK) == []  # with the readouts too
+        titles = page.locator("main h2").all_inner_texts()
+        assert set(LIMITED.get(kind, ())) <= set(titles)
         page.set_viewport_size(DESK)
         for _ in range(200):  # plots follow their size in 100 ms, on a busy machine later
             page.wait_for_timeout(150)

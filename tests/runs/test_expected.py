@@ -101,7 +101,7 @@ def test_a_run_without_any_check_says_so(tmp_path: Path) -> None:
 
 
 def test_contrary_runs_judge_all() -> None:
-    cases = suite.judged(ROOT / "scenarios/mismatch_line", {}, contraries=True)
+    cases = suite.judged(ROOT / "scenarios/mismatch_line", {}, suite.SuiteWays(contraries=True))
     assert cases and all(case.ok for case in cases)
     assert all(v.ok is not None for case in cases for v in case.checks)
 
