@@ -204,3 +204,9 @@ def test_whatever_stands_in_a_file_is_told(found: dict[str, Any]) -> None:
     wrong = faults(found)
     assert wrong  # it has no whole axis
     assert all(place and why for place, _, why in wrong)
+
+
+@pytest.mark.parametrize("depth", [10**400, -(10**400)])
+def test_a_whole_number_of_any_size_is_refused_in_words(depth: int) -> None:
+    wrong = faults({"fifo": {"depth": depth}})
+    assert [why for place, _, why in wrong if place == "fifo.depth"] != []

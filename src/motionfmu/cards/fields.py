@@ -11,6 +11,8 @@ from motionfmu.base.units import spelled
 STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 # A rule: field, "<" or "<=", field of the same table. The card's numbers must keep it as well.
 Rule = tuple[str, str, str]
+# Farther from 0 than any field allows.
+FAR = 1e30
 
 
 @dataclass(frozen=True)
@@ -111,5 +113,6 @@ def numbers(table: Table) -> dict[str, WholeNumber]:
             found[name] = WholeNumber(of_words, words.index(value), value)
         elif not isinstance(value, str):
             scale = what.factor * (pulses_per_mm if what.pulses else 1.0)
-            found[name] = WholeNumber(what, round(value * scale), value)
+            near = max(-FAR, min(FAR, value))  # a whole number may have any size
+            found[name] = WholeNumber(what, round(near * scale), value)
     return found
