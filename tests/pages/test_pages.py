@@ -173,6 +173,7 @@ def test_no_text_lies_over_text(browser: Any, pages: Any, kind: str, size: Any) 
     with tab(browser, pages[0][kind].as_uri(), size) as page:
         drawn(page)
         assert page.evaluate(WORDS) == []
+        assert "nan" not in page.locator("body").inner_text()
         room = page.evaluate("document.documentElement.clientWidth")
         assert page.evaluate("document.documentElement.scrollWidth") == room
         for part in page.locator("details").all():

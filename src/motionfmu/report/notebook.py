@@ -38,6 +38,8 @@ STYLE = """
 .motionfmu .head b { font-size: 16px; }
 .motionfmu .sub { opacity: .7; }
 .motionfmu .row { display: flex; flex-wrap: wrap; gap: 12px 28px; align-items: flex-start; }
+.motionfmu .row > div { min-width: 0; max-width: 100%; }
+.motionfmu .scroll { overflow-x: auto; }
 .motionfmu img { background: #fff; border-radius: 6px; max-width: 100%; margin: 0; }
 .motionfmu table { border-collapse: collapse; margin: 0 0 12px; font-size: 13px; }
 .motionfmu th, .motionfmu td { text-align: left; padding: 2px 14px 2px 0; border: 0;
@@ -161,7 +163,9 @@ def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequenc
         return f"<tr>{''.join(parts)}</tr>"
 
     body = "".join(line("td", row) for row in rows)
-    return f"<table><thead>{line('th', heads)}</thead><tbody>{body}</tbody></table>"
+    head = line("th", heads)
+    table = f"<table><thead>{head}</thead><tbody>{body}</tbody></table>"
+    return f'<div class="scroll">{table}</div>'
 
 
 _MARKS = {
@@ -181,7 +185,7 @@ def _checks(checks: Sequence[Verdict]) -> str:
             escape(v.name),
             "none" if v.reason else f"{v.value:.6g}",
             escape(v.bounds),
-            f"{v.beyond:+.4g}" if v.ok is None and v.beyond else "",
+            f"{v.beyond:+.4g}" if v.ok is None and abs(v.beyond) > 0.0 else "",  # NaN: no number
         )
         for v in listed[:CHECKS_SHOWN]
     ]
