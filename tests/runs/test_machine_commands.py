@@ -11,6 +11,7 @@ from console import within
 from refusals import refusal
 
 import motionfmu
+from motionfmu.cli.common import loaded
 from motionfmu.run.machine_copy import copy_machine
 from motionfmu.run.run_plan import Options
 from motionfmu.run.saved_scenario import save_scenario
@@ -212,3 +213,9 @@ def test_a_feed_above_the_machines_is_driven_at_its_limit_and_noted_once(here: P
     (here / "slow.ngc").write_text("G1 X5 F9000\nM2\n")
     (note,) = motionfmu.machine("mill3").run(here / "slow.ngc", set=slow).warnings
     assert "(9000, limit 6000)" in note
+
+
+def test_a_program_longer_than_the_usual_limit_has_time_enough(here: Path) -> None:
+    (here / "long.ngc").write_text("G4 P700\nM2\n")
+    assert loaded(here / "ring.ngc", "xy_table").stop_limit < 1000.0
+    assert loaded(here / "long.ngc", "xy_table").stop_limit >= 1400.0

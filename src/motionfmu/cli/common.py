@@ -1,6 +1,8 @@
 """Common parts of the commands: application, options, settings, runs with a progress bar."""
 
+import contextlib
 import functools
+import math
 import os
 import sys
 import time
@@ -119,6 +121,8 @@ app = App(
     rich_markup_mode=None,  # to load what draws boxes takes longer than all else
 )
 
+# How many times its planned time a program may take on a machine.
+LONGER = 2.0
 FAILED, WRONG, STOPPED = 1, 2, 130
 
 
@@ -201,7 +205,17 @@ def loaded(path: Path, machine: str | None) -> "Scenario":
     """The scenario that a path means; with a machine, the program there on that machine."""
     from motionfmu import run
 
-    return run.load(path) if machine is None else run.machine(machine).scenario(path)
+    if machine is None:
+        return run.load(path)
+    from motionfmu.analysis.cycle_time import planned
+    from motionfmu.run.machine_program import LIMIT
+
+    on = run.machine(machine)
+    scenario = on.scenario(path)
+    longest = 0.0
+    with contextlib.suppress(InputError):  # the run tells what is wrong
+        longest = LONGER * planned(scenario).time
+    return scenario if longest <= LIMIT else on.scenario(path, limit=float(math.ceil(longest)))
 
 
 def setting(text: str) -> tuple[str, Any]:

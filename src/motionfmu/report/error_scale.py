@@ -27,7 +27,8 @@ def scale_end(errors: tuple[float, float]) -> float:
 def within(gap: NDArray[Any], end: float) -> NDArray[Any]:
     """Errors (n, k) as vectors, those of outliers no longer than the colours reach [mm]."""
     size = np.linalg.norm(gap, axis=-1, keepdims=True)
-    return np.asarray(np.where(size > end, gap * (end / np.maximum(size, end)), gap))
+    shorter = np.divide(end, size, out=np.ones_like(size), where=size > end)
+    return np.asarray(gap * shorter)
 
 
 def magnification(errors: tuple[float, float], size: float, reach: float) -> float:
