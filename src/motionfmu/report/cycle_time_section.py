@@ -15,7 +15,7 @@ from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID
 from motionfmu.run.axis_figures import AxisFigure
 
 HEIGHT = 500  # [pixel] of the path
-POINTS = 20_000  # of the path, at most
+POINTS = 6_000  # of the path, at most
 BLOCKS = 10
 COLORS = {
     "feed": AXES[0],
@@ -96,16 +96,13 @@ def path_by_cause(plan: CommandedMotion) -> Diagram:
         own = cause == number
         if name not in shares or not own.any():
             continue
-        points = np.where(own[:, None], place, np.nan)
-        before = np.flatnonzero(own[1:] & ~own[:-1])
-        points[before] = place[before]  # from where the limit before it ended
-        told = [
-            f"line {n}, {v * 60.0:.4g} mm/min"
-            for n, v in zip(rows["line"], rows["speed"], strict=True)
-        ]
-        lines.append(
-            path_lines(points[:, :width], name=name, color=COLORS[name], width=2.2, hover=told)
-        )
+        before = np.append(own[1:] & ~own[:-1], False)  # from where the limit before it ended
+        kept = np.flatnonzero(own | before)
+        gaps = np.flatnonzero(before[kept])
+        points = np.insert(place[kept, :width], gaps, np.nan, axis=0)
+        told = [f"line {rows['line'][k]}, {rows['speed'][k] * 60.0:.4g} mm/min" for k in kept]
+        told = list(np.insert(np.array(told, object), gaps, ""))
+        lines.append(path_lines(points, name=name, color=COLORS[name], width=2.2, hover=told))
     return path_diagram("XYZ"[:width], lines, HEIGHT)
 
 
