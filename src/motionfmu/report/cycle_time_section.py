@@ -15,7 +15,7 @@ from motionfmu.report.style import AXES, HEAT, INK, MUTED, RAPID
 from motionfmu.run.axis_figures import AxisFigure
 
 HEIGHT = 500  # [pixel] of the path
-POINTS = 6_000  # of the path, at most
+POINTS, TOLD = 12_000, 5_000  # of the path: at most; and with words at most
 BLOCKS = 10
 COLORS = {
     "feed": AXES[0],
@@ -100,8 +100,10 @@ def path_by_cause(plan: CommandedMotion) -> Diagram:
         kept = np.flatnonzero(own | before)
         gaps = np.flatnonzero(before[kept])
         points = np.insert(place[kept, :width], gaps, np.nan, axis=0)
-        told = [f"line {rows['line'][k]}, {rows['speed'][k] * 60.0:.4g} mm/min" for k in kept]
-        told = list(np.insert(np.array(told, object), gaps, ""))
+        told: list[str] = []
+        if len(rows) <= TOLD:
+            words = [f"line {r['line']}, {r['speed'] * 60.0:.4g} mm/min" for r in rows[kept]]
+            told = list(np.insert(np.array(words, object), gaps, ""))
         lines.append(path_lines(points, name=name, color=COLORS[name], width=2.2, hover=told))
     return path_diagram("XYZ"[:width], lines, HEIGHT)
 
