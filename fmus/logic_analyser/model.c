@@ -184,8 +184,12 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     }
 }
 
-static void put_events(FILE *file, const struct events *e, int64_t events)
+static const char *put_events(const void *model, FILE *file)
 {
+    const struct fmu *f = model;
+    const struct events *e = f->blob;
+    const int64_t events = f->s.m.held;
+
     fputs("channel,edge_clock,response_clock\n", file);
     for (int64_t k = 0; k < events && k < e->held; k++) {
         const struct analyser_event *of = &e->of[k];
@@ -196,25 +200,12 @@ static void put_events(FILE *file, const struct events *e, int64_t events)
             fprintf(file, "%" PRId64, of->response);
         fputc('\n', file);
     }
+    return NULL;
 }
 
 static int model_end(struct fmu *f)
 {
     const struct fmu_path path = fmu_path(f, f->s.v.record_file, FMU_WRITTEN);
-    struct output o;
-    int bad;
-    if (!path.text[0])
-        return 0;
-    const char *why = output_check(path.text, NULL, 0);
-    why = why ? why : output_begin(&o, path.text);
-    if (why)
-        return cannot_write(f, why);
-    errno = 0;
-    put_events(o.file, f->blob, f->s.m.held);
-    why = output_end(&o, true);
-    why = why ? why : output_show(&o, 1, &bad);
-    if (!why)
-        return 0;
-    output_drop(&o, 1);
-    return cannot_write(f, why);
+    const char *why = path.text[0] ? output_write(path.text, NULL, 0, put_events, f) : NULL;
+    return why ? cannot_write(f, why) : 0;
 }

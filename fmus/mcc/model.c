@@ -235,7 +235,8 @@ static int write_plan(struct fmu *f)
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
     task_operate(&f->s.m.pc.mcc, false, f->s.v.override);
-    const char *why = plan_write(path.text, inputs.of, INPUTS, &f->s.m.pc.mcc, &source);
+    const struct plan_rows rows = { &f->s.m.pc.mcc, &source };
+    const char *why = output_write(path.text, inputs.of, INPUTS, plan_fill, &rows);
     return why ? cannot_write(f, "plan_file", name, why) : 0;
 }
 
@@ -357,7 +358,7 @@ static int model_end(struct fmu *f)
     in.tools.table = mcc->tools;
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
-    const char *why =
-        path_write(path.text, inputs.of, INPUTS, &in, &program, mcc->trajectory.started);
+    const struct path_rows rows = { &in, &program, mcc->trajectory.started };
+    const char *why = output_write(path.text, inputs.of, INPUTS, path_fill, &rows);
     return why ? cannot_write(f, "path_file", v->path_file, why) : 0;
 }

@@ -73,27 +73,19 @@ static void put_path(FILE *file, struct interpreter in, const struct program *pr
     }
 }
 
-/* Write one row per command up to the index `last`; the interpreter makes them again from its
- * start. Returns NULL, or what is wrong; then there is no new file and an old one is untouched. */
-static const char *path_write(const char *name, const struct output_input *input, int inputs,
-                              const struct interpreter *start, const struct program *program,
-                              int32_t last)
+/* The commands of a path: of a program, made again from the interpreter's start, up to an index. */
+struct path_rows {
+    const struct interpreter *start;
+    const struct program *program;
+    int32_t last;
+};
+
+static const char *path_fill(const void *from, FILE *file)
 {
-    struct output o;
-    int bad;
-    const char *why = output_check(name, input, inputs);
-    why = why ? why : output_begin(&o, name);
-    if (why) {
-        return why;
-    }
-    errno = 0;
-    put_path(o.file, *start, program, last);
-    why = output_end(&o, true);
-    why = why ? why : output_show(&o, 1, &bad);
-    if (why) {
-        output_drop(&o, 1);
-    }
-    return why;
+    const struct path_rows *rows = from;
+
+    put_path(file, *rows->start, rows->program, rows->last);
+    return NULL;
 }
 
 #endif

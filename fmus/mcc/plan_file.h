@@ -61,32 +61,23 @@ static void plan_point(void *to, const struct point *p, const struct limited *l)
     f->rows++;
 }
 
-/* Write the plan of a program by a library at rest, which is left where the program ends. Returns
- * NULL, or what is wrong; then there is no new file and an old one is untouched. */
-static const char *plan_write(const char *name, const struct output_input *input, int inputs,
-                              struct mcc *m, const struct source *s)
+/* A library at rest, which is left where the program ends, and that program. */
+struct plan_rows {
+    struct mcc *mcc;
+    const struct source *source;
+};
+
+static const char *plan_fill(const void *from, FILE *file)
 {
-    const double frame = machine_dda_time(&m->machine), most = PLAN_LONGEST / frame;
-    struct output o;
-    int bad;
-    const char *why = output_check(name, input, inputs);
-    why = why ? why : output_begin(&o, name);
-    if (why) {
-        return why;
-    }
-    errno = 0;
-    struct plan_file f = { o.file, frame, 0 };
+    const struct plan_rows *rows = from;
+    const double frame = machine_dda_time(&rows->mcc->machine), most = PLAN_LONGEST / frame;
+    struct plan_file f = { file, frame, 0 };
+
     plan_head(&f);
-    const enum preview_end end = preview_run(m, s, (int64_t)most, plan_point, &f);
+    const enum preview_end end =
+        preview_run(rows->mcc, rows->source, (int64_t)most, plan_point, &f);
     plan_head(&f);
-    why = output_end(&o, true);
-    why = why                   ? why
-          : end == PREVIEW_LONG ? "the program takes more than a day"
-                                : output_show(&o, 1, &bad);
-    if (why) {
-        output_drop(&o, 1);
-    }
-    return why;
+    return end == PREVIEW_LONG ? "the program takes more than a day" : NULL;
 }
 
 #endif

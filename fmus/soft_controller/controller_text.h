@@ -158,14 +158,17 @@ static struct controller_inputs inputs_of(const struct fmu *f)
 
 /* Write the points as joint angles, which are unambiguous whatever the tool, and also in the wrist
  * singularity, where axes 4 and 6 are in line. */
-static void put_points(FILE *file, const struct controller *s)
+static const char *put_points(const void *controller, FILE *file)
 {
+    const struct controller *s = controller;
+
     for (int n = 0; n < s->taught_count; n++) {
         char line[ROBOT_JOB_POINT_TEXT];
         if (controller_taught(s, n, line) == 0) {
             fprintf(file, "%s\n", line);
         }
     }
+    return NULL;
 }
 
 /* Write teach_file. Returns NULL, or why it cannot be written. */
@@ -173,21 +176,8 @@ static const char *write_points(const struct fmu *f, const struct controller *s)
 {
     const struct controller_inputs in = inputs_of(f);
     const struct fmu_path path = fmu_path(f, f->s.v.teach_file, FMU_WRITTEN);
-    struct output o;
-    int bad;
 
-    const char *why = output_check(path.text, in.of, CONTROLLER_INPUTS);
-    why = why ? why : output_begin(&o, path.text);
-    if (why) {
-        return why;
-    }
-    put_points(o.file, s);
-    why = output_end(&o, true);
-    why = why ? why : output_show(&o, 1, &bad);
-    if (why) {
-        output_drop(&o, 1);
-    }
-    return why;
+    return output_write(path.text, in.of, CONTROLLER_INPUTS, put_points, s);
 }
 
 #endif

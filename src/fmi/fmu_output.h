@@ -143,4 +143,29 @@ static const char *output_try(const char *name, const struct output_input *input
     return why;
 }
 
+/* Puts the content of a file; NULL, or why there is none. */
+typedef const char *output_fill(const void *from, FILE *file);
+
+/* Write one file in full. NULL, or what is wrong; then there is no new file and an old one is
+ * untouched. */
+static inline const char *output_write(const char *name, const struct output_input *input,
+                                       int inputs, output_fill *fill, const void *from)
+{
+    struct output o;
+    int bad;
+    const char *why = output_check(name, input, inputs);
+    why = why ? why : output_begin(&o, name);
+    if (why) {
+        return why;
+    }
+    errno = 0;
+    const char *told = fill(from, o.file);
+    why = output_end(&o, true);
+    why = why ? why : told ? told : output_show(&o, 1, &bad);
+    if (why) {
+        output_drop(&o, 1);
+    }
+    return why;
+}
+
 #endif

@@ -27,6 +27,7 @@ from motionfmu.analysis.explain import (
 from motionfmu.analysis.explain.parameter_expression import evaluate
 from motionfmu.analysis.explain.servo_formulas import ServoAxis
 from motionfmu.base.errors import InputError
+from motionfmu.fmu.archive_names import EXTRA
 from motionfmu.report.cause_pages.explain_page import page_text
 from motionfmu.report.numbers import length
 from motionfmu.scenarios import fmus
@@ -371,7 +372,7 @@ def test_the_causes_of_every_fmu_are_in_it_and_name_its_variables(file: Path) ->
     found = cause_switches.of_fmu(file.parent.name)
     assert len(found) > 1 and cause_switches.THEORY in found
     with zipfile.ZipFile(fmus.fmu_path(file.parent.name)) as archive:
-        assert archive.read(cause_switches.RESOURCE) == file.read_bytes()
+        assert archive.read(f"{EXTRA}/{cause_switches.FILE}") == file.read_bytes()
 
 
 @pytest.mark.parametrize(
@@ -392,7 +393,7 @@ def test_an_fmu_brings_its_causes_with_it(text, message, tmp_path, monkeypatch) 
         zipfile.ZipFile(tmp_path / "own.fmi3.fmu", "w") as new,
     ):
         for item in old.namelist():
-            new.writestr(item, text if item == cause_switches.RESOURCE else old.read(item))
+            new.writestr(item, text if item == f"{EXTRA}/{cause_switches.FILE}" else old.read(item))
     monkeypatch.setenv("MOTIONFMU_FMUS", str(tmp_path))
     cause_switches.of_fmu.cache_clear()
     fmus._ports.cache_clear()

@@ -151,9 +151,7 @@ def archive(folder: Path, out: Path, fmi: int, compiled: CompilerOutput, target:
         files["documentation/README.md"] = readme.encode()
     if fmi == 3:
         for extra in (
-            *folder.glob("linear.toml"),
-            *folder.glob("causes.toml"),
-            *folder.glob("limits.toml"),
+            *(file for file in folder.glob("*.toml") if file.name != "fmu.toml"),
             *out.glob("*.json"),
         ):
             files[f"{EXTRA}/{extra.name}"] = extra.read_bytes()

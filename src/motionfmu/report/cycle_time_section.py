@@ -16,7 +16,6 @@ from motionfmu.run.axis_figures import AxisFigure
 
 HEIGHT = 500  # [pixel] of the path
 POINTS, TOLD = 12_000, 5_000  # of the path: at most; and with words at most
-BLOCKS = 10
 COLORS = {
     "feed": AXES[0],
     "speed": AXES[2],
@@ -67,7 +66,7 @@ def add_cycle_time(page: Page, plan: CommandedMotion, lifted: Sequence[Lifted] =
             f"{b.time:.3f}",
             f"{b.lost:.3f}",
         )
-        for b in plan.blocks(BLOCKS)
+        for b in plan.slowest
     ]
     note = "Lines that take longest beyond the time at their programmed feed; dwells lose none."
     page.section(

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.cycle_time import CommandedMotion, planned
-from motionfmu.analysis.cycle_time.program_plan import controller
 from motionfmu.analysis.linear import LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines
 from motionfmu.base.columns import ROWS
@@ -85,9 +84,8 @@ def summary_of(result: ReportInput, contour: ContourResult | None) -> RunSummary
     plan = None
     if isinstance(scenario, Scenario) and scenario.document.body.axis:
         axes = tuple(axis_figures(result, scenario.axis_limits(given)))
-        if controller(scenario, given) is not None:
-            with contextlib.suppress(InputError):
-                plan = planned(scenario, given)
+        with contextlib.suppress(InputError):  # none of its components plans a part program
+            plan = planned(scenario, given)
     return replace(_motion_of(result, contour), axes=axes, plan=plan)
 
 

@@ -9,7 +9,7 @@ from motionfmu.analysis.gcode.program import text_in
 from motionfmu.base.errors import InputError
 from motionfmu.run.machine_program import Machine
 from motionfmu.run.run_plan import Options
-from motionfmu.scenarios.values import start_values
+from motionfmu.scenarios.values import values_in
 
 # Parameters of a controller that are settings of the reader, under the same name or another.
 SAME = tuple(
@@ -30,9 +30,8 @@ def reading_on(name: str) -> tuple[dict[str, Any], str]:
     given = {s.end.name: s.values for s in plan.resolved(Options()).settings}
 
     def value(key: str) -> Any:
-        values = list(given.get(f"{component}.{key}") or start_values(ports[key]))
-        listed = values * ports[key].count if len(values) == 1 and ports[key].shape else values
-        return np.array(listed) if ports[key].shape else listed[0]
+        values = values_in(given, component, ports[key])
+        return np.array(values) if ports[key].shape else values[0]
 
     gear = value("lead") / value("gear_ratio")  # [mm] a motor turn
     s_shaped = [value(key) == "S" for key in ("acc_type", "dec_type")]

@@ -53,7 +53,7 @@ def _tables(own: Mapping[str, Any], options: Options) -> dict[str, Any]:
 
 def _machine_name(file: Path, folder: Path) -> str:
     """How a scenario in a folder names a machine: by its name in the library, else by its path."""
-    if file.parent.parent in (package_files.PACKAGE / "machines", package_files.PACKAGE / "rigs"):
+    if file.parent.parent in (package_files.MACHINES, package_files.RIGS):
         return file.parent.name
     return os.path.relpath(file.parent, folder)
 

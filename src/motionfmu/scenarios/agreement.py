@@ -5,7 +5,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from motionfmu.base import units
-from motionfmu.fmu.archive_names import AGREE, EXTRA
+from motionfmu.fmu.archive_names import AGREE
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.port import Port
 from motionfmu.scenarios.system import System, Wire
@@ -24,10 +24,8 @@ def quantities(fmu: str) -> Mapping[str, str]:
     """The variable by quantity, such as arm.start, that an FMU states of things outside it."""
     if not fmus.is_ours(fmu):
         return {}
-    with fmus.opened(fmu) as archive:
-        file = f"{EXTRA}/{AGREE}"
-        there = file in archive.namelist()
-        return dict(json.loads(archive.read(file))) if there else {}
+    text = fmus.extra(fmu, AGREE)
+    return {} if text is None else dict(json.loads(text))
 
 
 def warnings(system: System) -> list[str]:

@@ -19,6 +19,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.platforms import here
 from motionfmu.base.toml_lines import is_file
 from motionfmu.fmu import terminals
+from motionfmu.fmu.archive_names import EXTRA
 from motionfmu.fmu.describe import Terminal
 from motionfmu.scenarios import foreign
 from motionfmu.scenarios.foreign import is_foreign
@@ -92,6 +93,13 @@ def opened(name: str) -> Iterator[zipfile.ZipFile]:
             yield archive
     except (OSError, zipfile.BadZipFile) as error:
         raise InputError(f"{path}: not a whole archive ({error})") from None
+
+
+def extra(name: str, file: str) -> str | None:
+    """Text of a file of ours beside an FMU's description; None if it carries none."""
+    with opened(name) as archive:
+        path = f"{EXTRA}/{file}"
+        return archive.read(path).decode() if path in archive.namelist() else None
 
 
 def digest(name: str) -> str:

@@ -4,7 +4,7 @@ import functools
 import json
 from collections.abc import Mapping
 
-from motionfmu.fmu.archive_names import EXTRA, GRID
+from motionfmu.fmu.archive_names import GRID
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System, nanoseconds
 from motionfmu.scenarios.values import start_values
@@ -13,10 +13,8 @@ from motionfmu.scenarios.values import start_values
 @functools.cache
 def grid(fmu: str) -> str:
     """The parameter that is an FMU's grid; empty if the FMU states none."""
-    with fmus.opened(fmu) as archive:
-        file = f"{EXTRA}/{GRID}"
-        there = fmus.is_ours(fmu) and file in archive.namelist()
-        return str(json.loads(archive.read(file))["grid"]) if there else ""
+    text = fmus.extra(fmu, GRID) if fmus.is_ours(fmu) else None
+    return "" if text is None else str(json.loads(text)["grid"])
 
 
 def warnings(system: System) -> list[str]:

@@ -12,7 +12,7 @@ from motionfmu.scenarios import recording
 from motionfmu.scenarios.body import FigureLimit, MachineAxis
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.system import End, Resolver, Setting
-from motionfmu.scenarios.values import start_values
+from motionfmu.scenarios.values import values_in
 
 BOUNDS = ("limit", "low", "high", "continuous")
 _PER_TIME = re.compile(r"(.*)/s(\d*)")
@@ -175,5 +175,4 @@ def _bounds(source: FigureLimit) -> Iterator[tuple[str, Any]]:
 
 def _value(end: End, row: int, given: Mapping[str, Any]) -> Any:
     """A parameter's value for an axis: the run's, else the FMU's."""
-    values = given.get(end.name) or start_values(end.port)
-    return values[row if end.port.shape and len(values) > 1 else 0]
+    return values_in(given, end.component, end.port)[row if end.port.shape else 0]

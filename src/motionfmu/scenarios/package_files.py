@@ -8,6 +8,7 @@ from pathlib import Path
 from motionfmu.base.errors import InputError, suggestion
 
 PACKAGE = Path(__file__).resolve().parents[1]
+MACHINES, RIGS = PACKAGE / "machines", PACKAGE / "rigs"
 SCENARIO, MACHINE = "scenario.toml", "machine.toml"
 _OTHER = re.compile(r"""["']\.\./(\w+)["'/]""")
 
@@ -25,12 +26,12 @@ def scenarios() -> dict[str, Path]:
 
 def machines() -> dict[str, Path]:
     """Folders of the machines that have a name: those of the package and of ./machines."""
-    return _named(MACHINE, PACKAGE / "machines", Path("machines"))
+    return _named(MACHINE, MACHINES, Path("machines"))
 
 
 def rigs() -> dict[str, Path]:
     """Folders of parts of machines on the bench, which a scenario names as it does a machine."""
-    return _named(MACHINE, PACKAGE / "rigs")
+    return _named(MACHINE, RIGS)
 
 
 def _named(file: str, *places: Path) -> dict[str, Path]:

@@ -79,6 +79,12 @@ def start_values(port: Port) -> Values:
     return tuple(kind(x) for x in listed)
 
 
+def values_in(given: Mapping[str, Values], component: str, port: Port) -> Values:
+    """A variable's values, one per element, where these are set by ``component.variable``."""
+    values = given.get(f"{component}.{port.name}") or start_values(port)
+    return values if len(values) == port.count else values * port.count
+
+
 def _file_beside(document: Document, values: Values) -> Values:
     """Values in which a string that names a file beside the scenario is replaced by its path."""
     return tuple(str(document.beside(x) or x) if isinstance(x, str) else x for x in values)

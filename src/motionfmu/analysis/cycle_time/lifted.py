@@ -4,31 +4,25 @@ The limits.toml in an FMU lists its limits and how each is lifted.
 """
 
 import functools
-import zipfile
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.analysis.cycle_time.program_plan import (
     AXES,
     CommandedMotion,
-    controller,
+    Controller,
+    controller_of,
     planned,
-    settings,
 )
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of
-from motionfmu.fmu.archive_names import EXTRA
+from motionfmu.run import Scenario
 from motionfmu.scenarios import fmus
-from motionfmu.scenarios.values import start_values
 
-if TYPE_CHECKING:
-    from motionfmu.run import Scenario
-    from motionfmu.scenarios.fmus import Port
-
-RESOURCE = f"{EXTRA}/limits.toml"
+FILE = "limits.toml"
 SHARE = 0.25
 
 
@@ -69,11 +63,10 @@ class Lifted:
 @functools.cache
 def of_fmu(name: str) -> dict[str, LimitLift]:
     """A built FMU's limits.toml, if any."""
-    with zipfile.ZipFile(fmus.fmu_path(name)) as archive:
-        if RESOURCE not in archive.namelist():
-            return {}
-        text = archive.read(RESOURCE).decode()
-    where = f"fmus/{name}/limits.toml"
+    text = fmus.extra(name, FILE)
+    if text is None:
+        return {}
+    where = f"fmus/{name}/{FILE}"
     try:
         found = {k: LimitLift.model_validate(v) for k, v in tables_of(text, where).items()}
     except ValidationError as error:
@@ -86,7 +79,7 @@ def of_fmu(name: str) -> dict[str, LimitLift]:
 
 
 def what_if(
-    scenario: "Scenario",
+    scenario: Scenario,
     plan: CommandedMotion | None = None,
     *,
     set: Mapping[str, Any] | None = None,
@@ -118,48 +111,32 @@ def what_if(
         raise InputError(f"share = {share:g}: above 0 wanted")
     base = planned(scenario, set) if plan is None else plan
     found = []
-    for title, axis, values in _lifts(scenario, set or {}, 1.0 + share, base.axes):
+    controller = controller_of(scenario, set or {})
+    for title, axis, values in _lifts(controller, 1.0 + share, base.axes):
         time = planned(scenario, {**(set or {}), **values}).time
         found.append(Lifted(title, axis, values, time, base.time - time))
     return sorted(found, key=lambda one: -one.saved)
 
 
 def _lifts(
-    scenario: "Scenario", set: Mapping[str, Any], factor: float, axes: tuple[str, ...]
+    found: Controller, factor: float, axes: tuple[str, ...]
 ) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Title, axis and values of each limit that acts."""
-    name = controller(scenario, set)
-    if name is None:
-        return
-    fmu = scenario.document.body.component[name]
-    values = _Values(name, fmus.ports(fmu), scenario, set)
-    for limit in of_fmu(fmu).values():
-        together = {v: [x * factor**p for x in values.of(v)] for v, p in limit.power.items()}
+    name, ports = found.name, fmus.ports(found.fmu)
+    used = found.values("active") if "active" in ports else (True,) * len(AXES)
+    for limit in of_fmu(found.fmu).values():
+        together = {
+            v: [float(x) * factor**p for x in found.values(v)] for v, p in limit.power.items()
+        }
         if any(any(listed) for listed in together.values()):
-            yield limit.title, "", dict(values.given(v, listed) for v, listed in together.items())
+            pairs = together.items()
+            values = {f"{name}.{v}": x if ports[v].shape else x[0] for v, x in pairs}
+            yield limit.title, "", values
         for variable, power in limit.each.items():
-            for k, x in enumerate(values.of(variable)):
-                if x and values.used[k]:
-                    key = f"{name}.{variable}[{k + 1}]"
-                    yield limit.title, axes[k], {key: x * factor**power}
-
-
-class _Values:
-    """Parameters of a controller in a run, as lists."""
-
-    def __init__(
-        self, name: str, ports: "Mapping[str, Port]", scenario: "Scenario", set: Mapping[str, Any]
-    ) -> None:
-        self._name, self._ports = name, ports
-        self._set = {s.end.name: s.values for s in settings(scenario, set)}
-        self.used = self.of("active") if "active" in ports else [1.0] * len(AXES)
-
-    def of(self, variable: str) -> list[float]:
-        port = self._ports[variable]
-        values = self._set.get(f"{self._name}.{variable}") or start_values(port)
-        return [float(v) for v in (values if len(values) == port.count else values * port.count)]
-
-    def given(self, variable: str, listed: list[float]) -> tuple[str, Any]:
-        """Name and value as a run takes them."""
-        shape = self._ports[variable].shape
-        return f"{self._name}.{variable}", listed if shape else listed[0]
+            for k, x in enumerate(found.values(variable)):
+                if x and used[k]:
+                    yield (
+                        limit.title,
+                        axes[k],
+                        {f"{name}.{variable}[{k + 1}]": float(x) * factor**power},
+                    )

@@ -3,18 +3,19 @@
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
+from motionfmu.run import Scenario
+from motionfmu.run.run_plan import Options
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import made
-
-if TYPE_CHECKING:
-    from motionfmu.run import Scenario
+from motionfmu.scenarios.values import Values, values_in
 
 PROGRAM, FILE = "program", "plan_file"
 # What limits the motion, by the numbers of src/motion/trajectory/limited.h.
@@ -29,6 +30,7 @@ CAUSES = {
     8: "waiting",
 }
 DWELL = 7
+SLOWEST = 10
 AXES = "XYZUVW"
 
 
@@ -134,6 +136,11 @@ class CommandedMotion:
             for k in order
         ]
 
+    @cached_property
+    def slowest(self) -> list[Block]:
+        """The lines that lose most, ten at most."""
+        return self.blocks(SLOWEST)
+
     def numbers(self) -> dict[str, Any]:
         """Cycle time, where it goes, the ten slowest lines, for JSON."""
 
@@ -142,23 +149,35 @@ class CommandedMotion:
 
         blocks = [
             {"line": b.line, "time": b.time, "lost": b.lost, "where": listed(b.shares)}
-            for b in self.blocks(10)
+            for b in self.slowest
         ]
         return {"time": self.time, "where": listed(self.shares()), "blocks": blocks}
 
 
-def controller(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> str | None:
-    """The component that can plan a program and has one; None if there is none."""
-    given = {s.end.name: s.values for s in settings(scenario, set or {})}
+@dataclass(frozen=True)
+class Controller:
+    """The component of a run that plans its program, and the values that the run sets."""
+
+    name: str
+    fmu: str
+    given: Mapping[str, Values]  # by ``component.variable``
+
+    def values(self, variable: str) -> Values:
+        """One per element."""
+        return values_in(self.given, self.name, fmus.ports(self.fmu)[variable])
+
+
+def controller_of(scenario: Scenario, set: Mapping[str, Any]) -> Controller:
+    """The first component that can plan a program and has one; an InputError if none does."""
+    given = {s.end.name: s.values for s in scenario.resolved(Options(set=set)).settings}
     for name, fmu in scenario.document.body.component.items():
-        if fmus.is_ours(fmu) and FILE in fmus.ports(fmu):
-            program = given.get(f"{name}.{PROGRAM}", ("",))
-            if program[0]:
-                return name
-    return None
+        plans = fmus.is_ours(fmu) and FILE in fmus.ports(fmu)
+        if plans and given.get(f"{name}.{PROGRAM}", ("",)) != ("",):
+            return Controller(name, fmu, given)
+    raise InputError(f"{scenario.name}: none of its components plans a part program")
 
 
-def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> CommandedMotion:
+def planned(scenario: Scenario, set: Mapping[str, Any] | None = None) -> CommandedMotion:
     """Plan a program as the scenario's controller will command it.
 
     Waits for an operator, an input, a probe or an axis' position take no time.
@@ -178,27 +197,20 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Comma
     InputError
         No controller of the scenario plans programs, or it refuses one.
     """
-    name = controller(scenario, set)
-    if name is None:
-        told = "none of its components plans a part program"
-        raise InputError(f"{scenario.name}: {told}")
-    fmu = scenario.document.body.component[name]
-    values: dict[str, Any] = {}
-    for s in settings(scenario, set or {}):
-        if s.end.component == name:
-            values[s.end.name] = list(s.values) if s.end.port.shape else s.values[0]
+    found = controller_of(scenario, set or {})
+    ports = fmus.ports(found.fmu)
+    own = {n: v for n, v in found.given.items() if n.partition(".")[0] == found.name}
+    values = {n: list(v) if ports[n.partition(".")[2]].shape else v[0] for n, v in own.items()}
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "plan.npy"
         tables = {
-            "component": {name: fmu},
+            "component": {found.name: found.fmu},
             "step": 1e-3,
             "stop": 1e-3,
-            "record": {"signals": [f"{name}.done"]},
-            "leave": [f"{name}.*"],
-            "set": values | {f"{name}.{FILE}": str(file)},
+            "record": {"signals": [f"{found.name}.done"]},
+            "leave": [f"{found.name}.*"],
+            "set": values | {f"{found.name}.{FILE}": str(file)},
         }
-        from motionfmu.run import Scenario
-
         Scenario(made(tables, scenario.name, Path.cwd(), "")).run(engine="native")
         rows = np.load(file)
     axes = list(AXES)
@@ -206,14 +218,3 @@ def planned(scenario: "Scenario", set: Mapping[str, Any] | None = None) -> Comma
         if axis.row and axis.row <= len(axes):
             axes[axis.row - 1] = axis.name
     return CommandedMotion(float(rows["time"][0]) if len(rows) else 0.0, rows, tuple(axes))
-
-
-def _options(set: Mapping[str, Any]) -> Any:
-    from motionfmu.run.run_plan import Options
-
-    return Options(set=set)
-
-
-def settings(scenario: "Scenario", set: Mapping[str, Any]) -> Sequence[Any]:
-    """What a run with these values sets."""
-    return scenario.resolved(_options(set)).settings

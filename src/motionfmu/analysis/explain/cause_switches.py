@@ -5,7 +5,6 @@ FMUs that have it.
 """
 
 import functools
-import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -16,14 +15,13 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 from motionfmu.analysis.explain.parameter_expression import evaluate
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of
-from motionfmu.fmu.archive_names import EXTRA
 from motionfmu.scenarios import fmus
 
 if TYPE_CHECKING:
     from motionfmu.run import Result, Scenario
     from motionfmu.scenarios.fmus import Port
 
-RESOURCE = f"{EXTRA}/causes.toml"
+FILE = "causes.toml"
 THEORY = "theory"
 AXES = 6
 INT_MAX = 2**31 - 1
@@ -80,11 +78,10 @@ class CauseOff:
 @functools.cache
 def of_fmu(name: str) -> dict[str, Switch | dict[str, str]]:
     """A built FMU's causes.toml, if any: switch by cause, and the expressions under ``theory``."""
-    with zipfile.ZipFile(fmus.fmu_path(name)) as archive:
-        if RESOURCE not in archive.namelist():
-            return {}
-        text = archive.read(RESOURCE).decode()
-    where = f"fmus/{name}/causes.toml"
+    text = fmus.extra(name, FILE)
+    if text is None:
+        return {}
+    where = f"fmus/{name}/{FILE}"
     try:
         tables = tables_of(text, where)
         theory = tables.pop(THEORY, {})

@@ -2,7 +2,6 @@
 
 import functools
 import tomllib
-import zipfile
 from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -12,7 +11,6 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.analysis.linear.block import Sampled
 from motionfmu.analysis.linear.linear_form import Form, Gain, Quantity, evaluate
-from motionfmu.fmu.archive_names import EXTRA
 from motionfmu.fmu.modelica import equation_text
 from motionfmu.fmu.modelica.ode import Ode
 from motionfmu.scenarios import fmus
@@ -67,13 +65,10 @@ def parse(text: str, file: str = LAW) -> Law:
 def carried(fmu: str) -> Law | Ode | None:
     """The sampled law or the plant's equation in an FMU's archive; None if it has neither."""
     # A ValueError if the law is wrong, an InputError if there is no such FMU.
-    with zipfile.ZipFile(fmus.fmu_path(fmu)) as archive:
-        names = archive.namelist()
-        if f"{EXTRA}/{LAW}" in names:
-            return parse(archive.read(f"{EXTRA}/{LAW}").decode(), f"{fmu}: {LAW}")
-        if f"{EXTRA}/{equation_text.FILE}" in names:
-            return equation_text.from_json(archive.read(f"{EXTRA}/{equation_text.FILE}").decode())
-    return None
+    if (law := fmus.extra(fmu, LAW)) is not None:
+        return parse(law, f"{fmu}: {LAW}")
+    plant = fmus.extra(fmu, equation_text.FILE)
+    return None if plant is None else equation_text.from_json(plant)
 
 
 class _LawNames(Mapping[str, Any]):
