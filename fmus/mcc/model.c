@@ -235,7 +235,8 @@ static int write_plan(struct fmu *f)
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
     task_operate(&f->s.m.pc.mcc, false, f->s.v.override);
-    const struct plan_rows rows = { &f->s.m.pc.mcc, &source };
+    char said[80];
+    const struct plan_rows rows = { &f->s.m.pc.mcc, &source, said, sizeof said };
     const char *why = output_write(path.text, inputs.of, INPUTS, plan_fill, &rows);
     return why ? cannot_write(f, "plan_file", name, why) : 0;
 }

@@ -61,10 +61,13 @@ static void plan_point(void *to, const struct point *p, const struct limited *l)
     f->rows++;
 }
 
-/* A library at rest, which is left where the program ends, and that program. */
+/* A library at rest, which is left where the program ends, that program, and a place for what
+ * ended it. */
 struct plan_rows {
     struct mcc *mcc;
     const struct source *source;
+    char *said;
+    size_t most; /* characters of it */
 };
 
 static const char *plan_fill(const void *from, FILE *file)
@@ -77,6 +80,11 @@ static const char *plan_fill(const void *from, FILE *file)
     const enum preview_end end =
         preview_run(rows->mcc, rows->source, (int64_t)most, plan_point, &f);
     plan_head(&f);
+    if (end == PREVIEW_ERROR) {
+        snprintf(rows->said, rows->most, "run-time error 0x%04X after line %d",
+                 (unsigned)MCC_get_errcode(rows->mcc), (int)rows->mcc->written.line);
+        return rows->said;
+    }
     return end == PREVIEW_LONG ? "the program takes more than a day" : NULL;
 }
 

@@ -1,8 +1,6 @@
 """Common parts of the commands: application, options, settings, runs with a progress bar."""
 
-import contextlib
 import functools
-import math
 import os
 import sys
 import time
@@ -121,8 +119,6 @@ app = App(
     rich_markup_mode=None,  # to load what draws boxes takes longer than all else
 )
 
-# How many times its planned time a program may take on a machine.
-LONGER = 2.0
 FAILED, WRONG, STOPPED = 1, 2, 130
 
 
@@ -207,15 +203,7 @@ def loaded(path: Path, machine: str | None) -> "Scenario":
 
     if machine is None:
         return run.load(path)
-    from motionfmu.analysis.cycle_time import planned
-    from motionfmu.run.machine_program import LIMIT
-
-    on = run.machine(machine)
-    scenario = on.scenario(path)
-    longest = 0.0
-    with contextlib.suppress(InputError):  # the run tells what is wrong
-        longest = LONGER * planned(scenario).time
-    return scenario if longest <= LIMIT else on.scenario(path, limit=float(math.ceil(longest)))
+    return run.machine(machine).scenario(path)
 
 
 def setting(text: str) -> tuple[str, Any]:

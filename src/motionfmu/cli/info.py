@@ -242,7 +242,8 @@ def _engine(scenario: "Scenario") -> str:
 
 def _until(body: Any) -> str:
     limit = getattr(body, "limit", None)
-    at_most = f", {limit:g} s at most" if limit else ""
+    seconds = "twice its planned time" if limit == "planned" else f"{limit or 0.0:g} s"
+    at_most = f", {seconds} at most" if limit else ""
     end = f"{body.stop:g} s" if isinstance(body.stop, float) else f"until {body.stop}{at_most}"
     return f"{end}, in steps of {body.step:g} s"
 

@@ -17,6 +17,7 @@ from motionfmu.export.resources import Resources
 from motionfmu.fmu import documentation
 from motionfmu.fmu.pack import RESOURCES, write_whole
 from motionfmu.fused.resource_files import carrying, placed
+from motionfmu.run.controller_plan import bounded
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 
@@ -79,7 +80,8 @@ def as_fmu(
         written.
     """
     check_version(fmi)
-    system, resources = scenario.resolved(Options(set=given)), Resources()
+    options = bounded(scenario, Options(set=given))
+    system, resources = scenario.resolved(options), Resources()
     check_scenario(scenario, system, given)
     system = placed(system, carrying(system))
     settings = tuple(resources.inside(s) for s in system.settings)

@@ -17,6 +17,7 @@ from motionfmu.export.stimuli import FMU, Stimuli, stimuli
 from motionfmu.fmu.describe import element_names
 from motionfmu.fmu.pack import repacked, write_whole
 from motionfmu.fmu.start_values import texts
+from motionfmu.run.controller_plan import bounded
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios.fmus import fmu_path, is_ours
 from motionfmu.scenarios.system import End, Setting, System, Wire
@@ -72,7 +73,7 @@ def as_ssp(
         Of a version, a pattern that matches nothing, or a file that cannot be written.
     """
     check_version(fmi)
-    system = scenario.resolved(Options(set=given))
+    system = scenario.resolved(bounded(scenario, Options(set=given)))
     check_scenario(scenario, system, given)
     _check_parts(scenario.name, system, fmi)
     shown = also_shown(scenario, inner, ("output", "input"))

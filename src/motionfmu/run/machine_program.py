@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file, shown
 from motionfmu.run.program_translation import program_for, time_of
 from motionfmu.run.result import Result
 from motionfmu.run.runner import Scenario
+from motionfmu.scenarios.body import PLANNED
 from motionfmu.scenarios.document import Document, made
 from motionfmu.scenarios.table_sources import machine_file
 
-# [s] Longer than any program that is not told how long it may take.
-LIMIT = 600.0
 START = 0.05  # [s] when a machine with a start input is started
 APPROACH = 0.5  # [s] that a card may take until it plays a job
 
@@ -60,7 +59,7 @@ class Machine:
         self,
         program: str | Path,
         *,
-        limit: float = LIMIT,
+        limit: float | Literal["planned"] = PLANNED,
         settle: float = 0.1,
         set: Mapping[str, Any] | None = None,
         **tables: Any,
@@ -73,8 +72,9 @@ class Machine:
             File of the program, in the language of the machine's controller; or a drawing
             (.plt), which a mill gets as G-code, and a network card as a job, as it gets a part
             program.
-        limit : float
-            The longest run [s]; one that is not done by then has a warning.
+        limit : float or "planned"
+            The longest run [s]; one that is not done by then has a warning. Planned: twice the
+            time that its controller plans, and 600 s at least.
         settle : float
             How long it runs on when the program is done [s].
         set : mapping, optional

@@ -40,6 +40,8 @@ class Options:
         Value by ``component.variable``, stronger than the scenario's.
     stop, step : float or None
         Instead of the scenario's [s].
+    limit : float or None
+        The longest run [s], instead of the scenario's.
     every : int or None
         Instead of the scenario's: of so many steps one is recorded.
     undriven : collection of str
@@ -57,6 +59,7 @@ class Options:
     set: Mapping[str, Any] = field(default_factory=dict)
     stop: float | None = None
     step: float | None = None
+    limit: float | None = None
     every: int | None = None
     undriven: Collection[str] = ()
     source: Mapping[str, str] = field(default_factory=dict)
@@ -188,7 +191,8 @@ class RunPlan:
         document, body = self.document, self.document.body
         key = "stop" if isinstance(body.stop, float) or options.stop is not None else "limit"
         step_ns = self._time("step", options.step, body.step)
-        stop_ns = self._time(key, options.stop, body.stop_limit)
+        longest = options.limit if options.stop is None else options.stop
+        stop_ns = self._time(key, longest, body.stop_limit)
         given = options.stop is not None or options.step is not None
         if step_ns % system.CLOCK_NS:
             text = f"step = {step_ns * 1e-9:.9g} s is no whole number of {system.CLOCK_NS} ns"

@@ -10,6 +10,7 @@ from motionfmu.base import columns
 from motionfmu.base.errors import Faults, InputError, NoNumber, suggestion
 from motionfmu.base.toml_lines import shown
 from motionfmu.run import engines
+from motionfmu.run.controller_plan import bounded
 from motionfmu.run.engines.engine_job import EngineResult
 from motionfmu.run.execution import Execution, own_settings
 from motionfmu.run.result import Result
@@ -127,6 +128,7 @@ class Scenario(RunPlan):
         faults.tell()
         with columns.temporary(asked.scratch) as name:
             folder = Path(name)
+            asked = bounded(self, asked)
             given = replace(asked, set={**asked.set, **own_settings(self, folder)})
             execution = Execution.plan(self, given, self.ends, folder)
 

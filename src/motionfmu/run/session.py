@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from motionfmu.base import columns
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import engines
+from motionfmu.run.controller_plan import bounded
 from motionfmu.run.engines.engine_job import Engine, EngineResult
 from motionfmu.run.execution import Execution, own_settings
 from motionfmu.run.result import Result
@@ -73,7 +74,7 @@ class Session:
         written = scenario.document.body.set
         there = {resolver.split(n)[0] for n in (*written, *self._given)}
         self._unset = {n: v for n, v in usual.items() if n not in there}
-        base = replace(self._options, set={**self._unset, **self._given})
+        base = bounded(scenario, replace(self._options, set={**self._unset, **self._given}))
         self._known = _known(scenario)
         used = scenario.ends if signals is None else list(signals)
         self._execution = Execution.plan(scenario, base, used, self._folder)

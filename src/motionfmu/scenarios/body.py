@@ -25,6 +25,9 @@ LISTED_MAX = 1000
 NAMED_MAX = 10_000  # exact names: elements of arrays, where an SSP has FMUs of FMI 2
 FIGURES_MAX = 100  # a picture each
 LONGEST = 1e5  # [s] run: more than a day of machine time
+# The limit of a run that may take twice the planned time of its program; at least so long [s].
+PLANNED: Literal["planned"] = "planned"
+PLANNED_LEAST = 600.0
 # Tables of bounds: what must hold whatever is set, and what the scenario as written must give.
 CHECK, EXPECT = JUDGED = ("check", "expect")
 Name = Annotated[str, Field(max_length=KEY_MAX)]
@@ -171,7 +174,7 @@ class Body(BaseModel):
     axis: list[MachineAxis] = Field(default_factory=list, max_length=LISTED_MAX)
     limits: dict[FigureName, FigureLimit] = Field(default_factory=dict, max_length=FIGURES_MAX)
     stop: Annotated[float, Field(gt=0)] | Name
-    limit: float | None = Field(default=None, gt=0)
+    limit: Annotated[float, Field(gt=0)] | Literal["planned"] | None = None
     settle: float | None = Field(default=None, ge=0)
     step: float = Field(gt=0)
     component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
@@ -191,8 +194,10 @@ class Body(BaseModel):
 
     @property
     def stop_limit(self) -> float:
-        """The latest time at which a run ends [s]."""
-        return self.stop if isinstance(self.stop, float) else self.limit or LONGEST
+        """The latest time at which a run ends [s]; before it is planned, the least."""
+        if isinstance(self.stop, float):
+            return self.stop
+        return PLANNED_LEAST if self.limit == "planned" else self.limit or LONGEST
 
     @property
     def asked(self) -> Iterator[tuple[str, str, tuple[Bounds, ...]]]:

@@ -13,13 +13,12 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from motionfmu.analysis.cycle_time.program_plan import (
     AXES,
     CommandedMotion,
-    Controller,
-    controller_of,
     planned,
 )
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import tables_of
 from motionfmu.run import Scenario
+from motionfmu.run.controller_plan import Controller, controller_of
 from motionfmu.scenarios import fmus
 
 FILE = "limits.toml"

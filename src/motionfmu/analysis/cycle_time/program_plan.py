@@ -1,23 +1,16 @@
 """The commanded motion of a whole program, by the controller of a scenario without its machine."""
 
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario
-from motionfmu.run.run_plan import Options
-from motionfmu.scenarios import fmus
-from motionfmu.scenarios.document import made
-from motionfmu.scenarios.values import Values, values_in
+from motionfmu.run.controller_plan import plan_rows
 
-PROGRAM, FILE = "program", "plan_file"
 # What limits the motion, by the numbers of src/motion/trajectory/limited.h.
 CAUSES = {
     1: "feed",
@@ -154,29 +147,6 @@ class CommandedMotion:
         return {"time": self.time, "where": listed(self.shares()), "blocks": blocks}
 
 
-@dataclass(frozen=True)
-class Controller:
-    """The component of a run that plans its program, and the values that the run sets."""
-
-    name: str
-    fmu: str
-    given: Mapping[str, Values]  # by ``component.variable``
-
-    def values(self, variable: str) -> Values:
-        """One per element."""
-        return values_in(self.given, self.name, fmus.ports(self.fmu)[variable])
-
-
-def controller_of(scenario: Scenario, set: Mapping[str, Any]) -> Controller:
-    """The first component that can plan a program and has one; an InputError if none does."""
-    given = {s.end.name: s.values for s in scenario.resolved(Options(set=set)).settings}
-    for name, fmu in scenario.document.body.component.items():
-        plans = fmus.is_ours(fmu) and FILE in fmus.ports(fmu)
-        if plans and given.get(f"{name}.{PROGRAM}", ("",)) != ("",):
-            return Controller(name, fmu, given)
-    raise InputError(f"{scenario.name}: none of its components plans a part program")
-
-
 def planned(scenario: Scenario, set: Mapping[str, Any] | None = None) -> CommandedMotion:
     """Plan a program as the scenario's controller will command it.
 
@@ -197,22 +167,7 @@ def planned(scenario: Scenario, set: Mapping[str, Any] | None = None) -> Command
     InputError
         No controller of the scenario plans programs, or it refuses one.
     """
-    found = controller_of(scenario, set or {})
-    ports = fmus.ports(found.fmu)
-    own = {n: v for n, v in found.given.items() if n.partition(".")[0] == found.name}
-    values = {n: list(v) if ports[n.partition(".")[2]].shape else v[0] for n, v in own.items()}
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "plan.npy"
-        tables = {
-            "component": {found.name: found.fmu},
-            "step": 1e-3,
-            "stop": 1e-3,
-            "record": {"signals": [f"{found.name}.done"]},
-            "leave": [f"{found.name}.*"],
-            "set": values | {f"{found.name}.{FILE}": str(file)},
-        }
-        Scenario(made(tables, scenario.name, Path.cwd(), "")).run(engine="native")
-        rows = np.load(file)
+    rows = plan_rows(scenario, set or {})
     axes = list(AXES)
     for axis in scenario.document.axes:
         if axis.row and axis.row <= len(axes):
