@@ -257,7 +257,9 @@ static int model_start(struct fmu *f)
         const struct source source = source_of_program(f);
         struct fault_list all;
         task_check_all(&m->pc.mcc, &source, &all);
-        if (judge_program(f, "program", v->program, f->blob, &all)) {
+        const char *axes = v->rotary_names ? "XYZABC" : "XYZUVW";
+        const struct named_program named = { "program", v->program, axes, f->blob };
+        if (judge_program(f, &named, &all)) {
             return -1;
         }
         if (v->plan_file[0] && (write_plan(f) || set_out(f, &machine))) {

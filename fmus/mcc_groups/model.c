@@ -198,7 +198,8 @@ static int create(struct fmu *f, int n)
         group_program(&m->groups, code,
                       (int64_t)ceil(clocks(v->start_delay[n]) - FMU_PERIOD_TOLERANCE));
         task_check_all(mcc, &source, &all);
-        return judge_program(f, name, w.program, programs->of[n], &all);
+        const struct named_program named = { name, w.program, "XYZUVW", programs->of[n] };
+        return judge_program(f, &named, &all);
     }
     return 0;
 }

@@ -177,7 +177,8 @@ static int rehearse(struct fmu *f, const struct orders_text *t)
     struct fault_list all;
 
     orders_check(&b->config.orders, t, &s->robot.pose, &all);
-    if (judge_program(f, "program", f->s.v.program, b->gcode, &all)) {
+    const struct named_program named = { "program", f->s.v.program, "XYZABC", b->gcode };
+    if (judge_program(f, &named, &all)) {
         return -1;
     }
     controller_rehearse(s, &b->config, t);

@@ -4,6 +4,7 @@
 #define PROGRAM_FAULT_H
 
 #include <math.h>
+#include <string.h>
 
 #include "fault.h"
 #include "program_file.h"
@@ -35,10 +36,16 @@ static struct file_name file_of(const char *program, const struct fault_report *
     return n;
 }
 
-/* Report a fault in a line of the program `name`; returns -1. */
-static int tell_fault(struct fmu *f, const char *name, struct program_file *program,
-                      const struct fault_report *r)
+/* A program as a parameter names it, and the letters of its axes; A B C turn. */
+struct named_program {
+    const char *parameter, *name, *axes;
+    struct program_file *file;
+};
+
+/* Report a fault in a line of a program; returns -1. */
+static int tell_fault(struct fmu *f, const struct named_program *p, const struct fault_report *r)
 {
+    struct program_file *program = p->file;
     char detail[SOURCE_LINE_MAX + 96] = "";
 
     if (r->other_length) {
@@ -50,23 +57,25 @@ static int tell_fault(struct fmu *f, const char *name, struct program_file *prog
         snprintf(detail, sizeof detail, " (%.6g, limit %.6g; F%.0f mm/min is possible)", r->value,
                  r->limit, floor(r->feed));
     } else if (r->fault == FAULT_TRAVEL) {
-        snprintf(detail, sizeof detail, " (%c to %.6g mm, limit %.6g mm)", "XYZUVW"[r->axis],
-                 r -> value, r -> limit);
+        const char letter = p->axes[r->axis];
+        const char *unit = strchr("ABC", letter) ? "deg" : "mm";
+        snprintf(detail, sizeof detail, " (%c to %.6g %s, limit %.6g %s)", letter, r->value, unit,
+                 r->limit, unit);
     } else if (r->fault == FAULT_ARC_END) {
         snprintf(detail, sizeof detail, " (by %.6g mm)", r->value);
     } else if (r->fault == FAULT_ARC_CHORD) {
         snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
                  r->limit);
     }
-    return fmu_fail(f, "%s: line %d: %s \"%s\"%s, column %d", file_of(name, r).text, (int)r->line,
-                    fault_text(r->fault), quote(program, r, r->at, r->length).text, detail,
-                    (int)r->at + 1);
+    return fmu_fail(f, "%s: line %d: %s \"%s\"%s, column %d", file_of(p->name, r).text,
+                    (int)r->line, fault_text(r->fault), quote(program, r, r->at, r->length).text,
+                    detail, (int)r->at + 1);
 }
 
-/* Send the notes on the program that a parameter names, and refuse it if it has a fault. */
-static int judge_program(struct fmu *f, const char *parameter, const char *name,
-                         struct program_file *program, const struct fault_list *all)
+/* Send the notes on a program, and refuse it if it has a fault. */
+static int judge_program(struct fmu *f, const struct named_program *p, const struct fault_list *all)
 {
+    struct program_file *program = p->file;
     int status = 0;
 
     for (int i = 0; i < all->notes; i++) {
@@ -75,17 +84,17 @@ static int judge_program(struct fmu *f, const char *parameter, const char *name,
         if (r->fault == FAULT_NOTE_FEED) {
             snprintf(detail, sizeof detail, " (%.6g, limit %.6g)", r->value, r->limit);
         }
-        fmu_warn(f, "%s: line %d: note: %s \"%s\"%s, column %d", file_of(name, r).text,
+        fmu_warn(f, "%s: line %d: note: %s \"%s\"%s, column %d", file_of(p->name, r).text,
                  (int)r->line, fault_text(r->fault), quote(program, r, r->at, r->length).text,
                  detail, (int)r->at + 1);
     }
     for (int i = 0; i < all->count; i++) {
         status = all->of[i].fault != FAULT_READ
-                     ? tell_fault(f, name, program, &all->of[i])
-                     : fmu_fail(f, "%s: cannot read %s: %s", parameter,
-                                file_of(name, &all->of[i]).text, strerror(program->error));
+                     ? tell_fault(f, p, &all->of[i])
+                     : fmu_fail(f, "%s: cannot read %s: %s", p->parameter,
+                                file_of(p->name, &all->of[i]).text, strerror(program->error));
     }
-    return all->more ? fmu_fail(f, "%s: ... and more", name) : status;
+    return all->more ? fmu_fail(f, "%s: ... and more", p->name) : status;
 }
 
 /* Open the program that a parameter names; NULL without a name. */

@@ -114,7 +114,7 @@ def program() -> str:
     from motionfmu.run.program_reading import reading_on
 
     file = CIRCLE / "circle.ngc"
-    read_as, tools = reading_on("mill3")
+    read_as, tools = reading_on("mill3", {})
     found = read(file, tools, **read_as)
     assert not found.faults
     scenario = machine("mill3").scenario(file)

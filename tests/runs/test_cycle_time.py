@@ -11,7 +11,9 @@ from few_cases import few
 
 import motionfmu
 from motionfmu.analysis.cycle_time import planned, what_if
+from motionfmu.run import Options, Session
 from motionfmu.run.axis_figures import axis_figures
+from motionfmu.run.controller_plan import bounded
 
 # F6000 with ramps of 0.1 s: 100 mm/s, 1000 mm/s2; rapids 500 mm/s.
 BY_HAND = {
@@ -121,3 +123,48 @@ def test_command(tmp_path):
     told = json.loads((tmp_path / "part.gcode/result.json").read_text())
     assert told["time"] == pytest.approx(1.6, abs=2 * FRAME)
     assert sum(s["time"] for s in told["where"]) == pytest.approx(told["time"], abs=1e-9)
+
+
+def test_command_reads_with_the_values_that_are_set(tmp_path):
+    file = tmp_path / "part.ngc"
+    file.write_text("G1 A400 F1000\nM2\n")
+    values = ("check_over_travel=true", "low_limit=-300", "high_limit=300")
+    sets = [x for v in values for x in ("--set", f"mcc.{v}")]
+    good = command("gcode", file, "--machine", "mill4", "--out", tmp_path).stdout
+    assert "A 0.0000 .. 400.0000 °" in good
+    bad = command("gcode", file, "--machine", "mill4", *sets).stdout
+    assert "A to 400, limit 300" in bad
+    run = command("run", file, "--machine", "mill4", *sets)
+    assert '"G1 A400 F1000" (A to 400 deg, limit 300 deg)' in run.stderr
+
+
+def test_a_program_may_take_twice_its_planned_time(tmp_path):
+    """Told when it runs, from the values of the run; checked and exported without a run."""
+    slow = on_table(tmp_path, "G1 X50 F60\n" + "X0\nX50\n" * 8)  # 850 s
+    assert slow.stop_limit == 600.0
+    plan = bounded(slow, Options())
+    assert plan.limit == np.ceil(2 * planned(slow).time) == 1704.0
+    quick = bounded(slow, Options(set={"mcc.override": 2.0}))
+    assert quick.limit == 857.0  # 17 lines of 25 s and 0.2 s for the ramps
+    assert bounded(slow, Options(stop=1.0)).limit is None
+    assert bounded(on_table(tmp_path, "G1 X50 F60", limit=70.0), Options()).limit is None
+
+
+@pytest.mark.more
+def test_runs_end_at_the_planned_limit(tmp_path):
+    result = on_table(tmp_path, "G1 X50 F60\nM0").run()
+    assert result.stopped == "limit 600 s, mcc.done never came"
+    slow = on_table(tmp_path, "G1 X50 F60\n" + "X0\nX50\n" * 8)
+    with Session(slow, ["mcc.p_gain"]) as session:
+        assert session.run({}).stopped.startswith("mcc.done at 851.7")
+
+
+def test_figures_of_an_axis_that_turns_are_in_degrees(tmp_path):
+    result = motionfmu.machine("mill4").run("src/motionfmu/machines/mill4/example.ngc")
+    found = axis_figures(result, result.scenario.axis_limits())
+    travel = {f.limit.axis.name: f for f in found if f.limit.figure == "travel"}
+    assert (travel["A"].limit.unit, travel["X"].limit.unit) == ("deg", "m")
+    assert travel["A"].high == pytest.approx(1e3 * result["machine.table_position"][:, 3].max())
+    assert travel["A"].limit.high == 36_000.0
+    page = result.save(tmp_path / "out") and (tmp_path / "out/report.html").read_text()
+    assert "Following error A" in page and "Following error U" not in page

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.axis_names import LINEAR, ROTARY
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install, missing
 from motionfmu.cli.common import (
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from motionfmu.analysis.cycle_time import CommandedMotion, Lifted
     from motionfmu.analysis.gcode import Fault, Program
 
-AXES = "XYZUVW"
 Planned = tuple["CommandedMotion", list["Lifted"]]
 
 
@@ -66,7 +66,8 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.analysis.gcode import read
     from motionfmu.analysis.gcode.program import text_in
 
-    read_as, table = _of_machine(machine)
+    given = settings(set_)
+    read_as, table = _of_machine(machine, given)
     read_as |= _rates(max_feed, rapid, acceleration, jerk)
     switches = {"fanuc": fanuc, "angles": angles, "strict_feed": strict_feed}
     read_as |= {name: True for name, on in switches.items() if on}
@@ -78,7 +79,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     for file in files:
         program = read(file, table, **read_as)
         good = good and not program.faults
-        planned = None if program.faults else _planned(file, machine, settings(set_))
+        planned = None if program.faults else _planned(file, machine, given)
         told[str(file)] = found = _numbers(program, planned)
         if not as_json:
             target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
@@ -89,13 +90,15 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         raise typer.Exit(FAILED)
 
 
-def _of_machine(machine: str | None) -> tuple[dict[str, Any], str]:
+def _of_machine(machine: str | None, given: dict[str, Any]) -> tuple[dict[str, Any], str]:
     """Settings of the reader and the tool table of a machine; none without one."""
     if machine is None:
+        if given:
+            raise InputError(f"--set {next(iter(given))}: --machine is missing")
         return {}, ""
     from motionfmu.run.program_reading import reading_on
 
-    return reading_on(machine)
+    return reading_on(machine, given)
 
 
 def _rates(
@@ -121,7 +124,7 @@ def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
     """Settings of travel by ``X=0:300``."""
     if not texts:
         return {}
-    names = "XYZABC" if angles else AXES
+    names = "".join(axis.name for axis in (ROTARY if angles else LINEAR))
     bounded, low, high = [False] * 6, [0.0] * 6, [0.0] * 6
     for text in texts:
         name, _, span = text.partition("=")
@@ -139,8 +142,6 @@ def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
 def _planned(file: Path, machine: str | None, given: dict[str, Any]) -> Planned | None:
     """The program as a machine's controller commands it, and with each limit lifted."""
     if machine is None:
-        if given:
-            raise InputError(f"--set {next(iter(given))}: --machine is missing")
         return None
     from motionfmu.analysis.cycle_time import planned, what_if
     from motionfmu.run import Machine
@@ -217,9 +218,9 @@ def _show(
     low, high = s.feeds
     out.print(f"feed {metres(s.feed_way)} at {low:.4g} to {high:.4g} mm/min", end=", ")
     out.print(f"rapid {metres(s.rapid_way)}")
-    for name, a, b in zip(AXES, s.low, s.high, strict=True):
+    for axis, a, b in zip(program.axes, s.low, s.high, strict=True):
         if a != b:
-            out.print(f"  {name} {a:.4f} .. {b:.4f} mm")
+            out.print(f"  {axis.name} {a:.4f} .. {b:.4f} {axis.unit}")
     table = bare_table("tool", "time", "way with feed", "deepest Z")
     for u in s.tools:
         name = f"T{u.tool}" if u.tool else "none"

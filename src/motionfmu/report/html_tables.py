@@ -11,6 +11,7 @@ import numpy as np
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CirclePass, CircularTest
 from motionfmu.analysis.contour.kinds import Corner
+from motionfmu.base.axis_names import AXIS_NAMES, ControllerAxis
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.report.numbers import unit as length_unit
 from motionfmu.run.checks import Verdict, beyond, of_one_number, parts, together
@@ -161,16 +162,18 @@ def judged(value: Any, bounds: str, unit: str) -> tuple[str, str]:
     return f"{text} {unit}" if unit and not words.startswith(("changes", "rate")) else text, bounds
 
 
-def error_table(contour: ContourResult) -> str:
+def error_table(contour: ContourResult, axes: Sequence[ControllerAxis]) -> str:
     """Maximum, RMS and percentiles of the errors."""
     rows = []
     for name, size in (("Contour error", contour.error), ("Command error", contour.command_error)):
         shown = (size.max, size.rms, size.p50, size.p95)
         rows.append((name, *(length(v) for v in shown)))
     per_axis = contour.numbers()["following"]
-    for axis, both in per_axis.items():
-        cells = (length(both["max"]), length(both["rms"]), "", "")
-        rows.append((f"Following error {axis.upper()}", *cells))
+    for letter, both in per_axis.items():
+        axis = axes[AXIS_NAMES.index(letter.upper())]
+        sizes = both["max"], both["rms"]
+        cells = [length(v) if axis.unit == "mm" else f"{figure(v)}{axis.unit}" for v in sizes]
+        rows.append((f"Following error {axis.name}", *cells, "", ""))
     note = (
         f'<p class="note">RMS, median and 95 % are {RMS}; of following errors where it moves.</p>'
     )

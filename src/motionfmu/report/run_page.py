@@ -6,6 +6,7 @@ from pathlib import Path
 
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.circles import CircularTest
+from motionfmu.base.axis_names import ControllerAxis
 from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.error_path import ErrorPath, draw
 from motionfmu.report.html_page import Page, PageFrame
@@ -125,7 +126,7 @@ def page_text(
     result, ran = run
     page = Page()
     page.sections.append(_cards(contour))
-    _add_path(page, contour, drawing)
+    _add_path(page, contour, drawing, result.scenario.document.controller_axes)
     add_verdict(page, result)
     add_summary(page, result, ran)
     if result.warnings:
@@ -175,7 +176,9 @@ def _cards(contour: ContourResult) -> str:
     return cards(rows)
 
 
-def _add_path(page: Page, contour: ContourResult, drawing: ErrorPath) -> None:
+def _add_path(
+    page: Page, contour: ContourResult, drawing: ErrorPath, axes: Sequence[ControllerAxis]
+) -> None:
     factor = drawing.magnify
     choices = "".join(
         f'<option value="{m}"{" selected" if m == factor else ""}>&times; {m:,}</option>'
@@ -192,8 +195,9 @@ def _add_path(page: Page, contour: ContourResult, drawing: ErrorPath) -> None:
         f" large as it is; colour is its true size. {outlier_words(drawing)}"
     )
     plot = page.place("path", path_chart(drawing)) + picture_buttons("path")
+    errors = error_table(contour, axes)
     left = f"<div>{control}{plot}</div>"
-    right = f"<h3>Errors</h3>{error_table(contour)}<h3>Worst lines</h3>{line_table(contour)}"
+    right = f"<h3>Errors</h3>{errors}<h3>Worst lines</h3>{line_table(contour)}"
     content = f'<div class="wide">{left}<div>{right}</div></div>'
     page.section("Path and contour error", note, content)
 
@@ -211,18 +215,20 @@ def _add_circle(page: Page, name: str, test: CircularTest) -> None:
 
 
 def _add_time(page: Page, result: ReportInput, contour: ContourResult) -> None:
+    axes = result.scenario.document.controller_axes
+    names = [a.name if a.unit == "mm" else f"{a.name} (1 mm for 1{a.unit})" for a in axes]
     sign = "" if contour.track.signed is None else " Positive is left of the direction of travel."
     zoom = " Zooming one plot zooms all plots over time."
     note = "Where the tool is cutting." + sign + zoom
     page.section("Contour error", note, page.place("error", error_chart(contour), True))
     note = "Pulses put out minus actual position."
-    content = page.place("following", following_chart(contour), True)
+    content = page.place("following", following_chart(contour, names), True)
     page.section("Following error", note, content)
     fifo = fifo_chart(contour)
     if fifo is not None:
         note = "Least stock of the axes in use; an empty FIFO during motion means the PC was late."
         page.section("FIFO and interrupts", note, page.place("fifo", fifo, True))
-    for i, (title, drawn) in enumerate(trace_charts(contour)):
+    for i, (title, drawn) in enumerate(trace_charts(contour, names)):
         content = page.place(f"trace{i}", drawn, True)
         doc = result.resolver.end(title, "", "").port.doc
         page.section(escape(titled(title, doc)), "", content)

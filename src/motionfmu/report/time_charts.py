@@ -28,7 +28,6 @@ from motionfmu.run.tool_gap import ToolGap
 ROOM, PEAK_ROOM = 0.08, 0.16  # free part of the height above curves, and above a peak with a label
 LATE = 0.05  # part of a run at its end in which a text has no room
 HEIGHT, LOW = 188, 150  # [pixel] of a plot, and of one of several
-NAMES = "XYZUVW"
 
 
 @dataclass(frozen=True)
@@ -75,7 +74,7 @@ def error_chart(contour: ContourResult) -> Diagram:
     return _chart(time, [(Scale("Contour error", name, bounds), [curve, peak])])
 
 
-def following_chart(contour: ContourResult) -> Diagram:
+def following_chart(contour: ContourResult, names: Sequence[str]) -> Diagram:
     """Following error of each axis against time."""
     run = contour.run
     commanded, actual = reader(run.commanded), reader(run.actual)
@@ -88,7 +87,7 @@ def following_chart(contour: ContourResult) -> Diagram:
 
     top = max(float(np.abs(end).max()) for end in ends(len(run.time), following))
     factor, name = unit(top)
-    curves = [_curve(run.time, of_axis(i), NAMES[i], AXES[i]) for i in run.axes]
+    curves = [_curve(run.time, of_axis(i), names[i], AXES[i]) for i in run.axes]
     return _chart(run.time, [(_scale("Following error", name, curves), curves)])
 
 
@@ -127,7 +126,7 @@ def fifo_chart(contour: ContourResult) -> Diagram | None:
     return _chart(run.time, rows) if rows else None
 
 
-def trace_charts(contour: ContourResult) -> list[tuple[str, Diagram]]:
+def trace_charts(contour: ContourResult, names: Sequence[str]) -> list[tuple[str, Diagram]]:
     """Names and charts of the further signals against time."""
     out = []
     for trace in contour.run.traces:
@@ -137,7 +136,7 @@ def trace_charts(contour: ContourResult) -> list[tuple[str, Diagram]]:
             _curve(
                 contour.run.time,
                 reader(columns[:, i]),
-                NAMES[i] if several else trace.name,
+                names[i] if several else trace.name,
                 AXES[i],
             )
             for i in (contour.run.axes if several else (0,))

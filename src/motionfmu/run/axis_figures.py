@@ -75,6 +75,7 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
         x = np.concatenate([tail, x])
         tail = x[len(x) - n :] if n else tail
         x = np.diff(x, n) / step**n if n else x
+        x = x if limit.scale == 1.0 else limit.scale * x
         if not len(x):
             continue
         k = int(np.argmax(np.abs(x)))

@@ -1,5 +1,6 @@
 """What a machine says of the part programs that it reads, for a look at one without a run."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,8 +19,8 @@ SAME = tuple(
 )
 
 
-def reading_on(name: str) -> tuple[dict[str, Any], str]:
-    """Settings of `motionfmu.analysis.gcode.read` and the tool table of a machine."""
+def reading_on(name: str, set: Mapping[str, Any]) -> tuple[dict[str, Any], str]:
+    """Settings of `motionfmu.analysis.gcode.read` and the tool table of a machine with values."""
     machine = Machine(name)
     plan = machine.plan()
     document = plan.document
@@ -27,7 +28,7 @@ def reading_on(name: str) -> tuple[dict[str, Any], str]:
     ports = plan.resolver.ports.get(component, {})
     if not {*SAME, "max_rpm", "tool_table"} <= ports.keys():
         raise InputError(f"{machine.file}: it reads no part programs")
-    given = {s.end.name: s.values for s in plan.resolved(Options()).settings}
+    given = {s.end.name: s.values for s in plan.resolved(Options(set=set)).settings}
 
     def value(key: str) -> Any:
         values = values_in(given, component, ports[key])

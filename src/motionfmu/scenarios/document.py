@@ -8,6 +8,7 @@ from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from motionfmu.base.axis_names import LINEAR, ControllerAxis
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import is_file, ordered, shown
 from motionfmu.scenarios import body as tables_
@@ -62,6 +63,16 @@ class Document:
         """The machine's axes, each with its row."""
         listed = enumerate(self.body.axis, 1)
         return [a if a.row else a.model_copy(update={"row": k}) for k, a in listed]
+
+    @property
+    def controller_axes(self) -> list[ControllerAxis]:
+        """The six axes of a controller, as the machine names them."""
+        found = list(LINEAR)
+        for axis in self.axes:
+            if axis.row and axis.row <= len(found):
+                unit = "°" if axis.kind == "rotary" else "mm"
+                found[axis.row - 1] = ControllerAxis(axis.name, unit)
+        return found
 
     def beside(self, name: str) -> Path | None:
         """A file of this name beside the scenario, or beside one that it extends."""

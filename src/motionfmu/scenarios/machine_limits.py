@@ -15,6 +15,7 @@ from motionfmu.scenarios.system import End, Resolver, Setting
 from motionfmu.scenarios.values import values_in
 
 BOUNDS = ("limit", "low", "high", "continuous")
+_DEGREES = {"m": 1e3, "mm": 1.0, "um": 1e-3}  # [°] for a row that counts in this
 _PER_TIME = re.compile(r"(.*)/s(\d*)")
 
 
@@ -32,6 +33,7 @@ class AxisLimit:
     low: float | None = None
     high: float | None = None
     continuous: float | None = None  # of its RMS
+    scale: float = 1.0  # of the signal's unit, to `unit`
 
 
 def wanted(resolver: Resolver) -> list[str]:
@@ -164,8 +166,17 @@ def _of_axis(
             found[key] = float(_value(other, row, given)) * factor
         else:
             found[key] = value[place] if isinstance(value, tuple) else value
-    unit = _figure_unit(resolver, figure)
-    return AxisLimit(axis, figure, end, element, source.derivative, unit, **found)
+    unit, scale = _shown_as(axis, _figure_unit(resolver, figure))
+    found = {key: value * scale for key, value in found.items()}
+    return AxisLimit(axis, figure, end, element, source.derivative, unit, **found, scale=scale)
+
+
+def _shown_as(axis: MachineAxis, unit: str) -> tuple[str, float]:
+    """Unit in which a figure of an axis is shown, and its size in that; 1 mm is 1° of a turn."""
+    base, slash, time = unit.partition("/")
+    if axis.kind != "rotary" or base not in _DEGREES:
+        return unit, 1.0
+    return f"deg{slash}{time}", _DEGREES[base]
 
 
 def _bounds(source: FigureLimit) -> Iterator[tuple[str, Any]]:

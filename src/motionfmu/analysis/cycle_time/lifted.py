@@ -11,7 +11,6 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.analysis.cycle_time.program_plan import (
-    AXES,
     CommandedMotion,
     planned,
 )
@@ -122,7 +121,7 @@ def _lifts(
 ) -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Title, axis and values of each limit that acts."""
     name, ports = found.name, fmus.ports(found.fmu)
-    used = found.values("active") if "active" in ports else (True,) * len(AXES)
+    used = found.values("active") if "active" in ports else (True,) * len(axes)
     for limit in of_fmu(found.fmu).values():
         together = {
             v: [float(x) * factor**p for x in found.values(v)] for v, p in limit.power.items()

@@ -24,7 +24,6 @@ CAUSES = {
 }
 DWELL = 7
 SLOWEST = 10
-AXES = "XYZUVW"
 
 
 @dataclass(frozen=True)
@@ -168,8 +167,5 @@ def planned(scenario: Scenario, set: Mapping[str, Any] | None = None) -> Command
         No controller of the scenario plans programs, or it refuses one.
     """
     rows = plan_rows(scenario, set or {})
-    axes = list(AXES)
-    for axis in scenario.document.axes:
-        if axis.row and axis.row <= len(axes):
-            axes[axis.row - 1] = axis.name
-    return CommandedMotion(float(rows["time"][0]) if len(rows) else 0.0, rows, tuple(axes))
+    axes = tuple(axis.name for axis in scenario.document.controller_axes)
+    return CommandedMotion(float(rows["time"][0]) if len(rows) else 0.0, rows, axes)

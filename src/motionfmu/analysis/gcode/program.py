@@ -1,13 +1,14 @@
 """A part program as the commands that the C interpreter makes of it."""
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from motionfmu.base.axis_names import LINEAR, ROTARY, ControllerAxis
 from motionfmu.base.binding import Struct, dtype, library
 from motionfmu.base.binding import text as text_of
 from motionfmu.base.errors import InputError
@@ -15,7 +16,6 @@ from motionfmu.base.toml_lines import is_file
 
 AXES = 6
 ROOM = 4096
-NAMES = "XYZUVW"
 TRAVEL = "software limits"  # words of the fault that an axis has
 REPORTS = 64  # room for all faults and notes
 TYPES = (
@@ -63,7 +63,9 @@ _FILE = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p, ctypes.POINTER(ctypes
 
 
 def judged(
-    texts: Callable[[str], bytes], check: Callable[[ctypes.c_void_p, Any], Any]
+    texts: Callable[[str], bytes],
+    check: Callable[[ctypes.c_void_p, Any], Any],
+    axes: Sequence[ControllerAxis] = LINEAR,
 ) -> tuple[list[Fault], list[Fault], bool]:
     """Faults and notes that a C check finds in texts, and whether there are more faults.
 
@@ -71,11 +73,11 @@ def judged(
     """
     rows, count = np.zeros(REPORTS, dtype("report")), (ctypes.c_int32 * 3)()
     check(rows.ctypes.data_as(ctypes.c_void_p), count)
-    found = [_fault(texts, r) for r in rows[: count[0] + count[1]]]
+    found = [_fault(texts, r, axes) for r in rows[: count[0] + count[1]]]
     return found[: count[0]], found[count[0] :], bool(count[2])
 
 
-def _fault(texts: Callable[[str], bytes], r: Any) -> Fault:
+def _fault(texts: Callable[[str], bytes], r: Any, axes: Sequence[ControllerAxis]) -> Fault:
     file = b"".join(r["file"].tolist()).decode()
     text = texts(file)
     line, begin = int(r["offset"]), int(r["offset"] + r["at"])
@@ -84,7 +86,7 @@ def _fault(texts: Callable[[str], bytes], r: Any) -> Fault:
     why = library().fault_text(ctypes.c_int32(int(r["fault"]))).decode()
     limits = ""
     if TRAVEL in why or r["limit"]:
-        axis = f"{NAMES[int(r['axis'])]} to " if TRAVEL in why else ""
+        axis = f"{axes[int(r['axis'])].name} to " if TRAVEL in why else ""
         limits = f"{axis}{r['value']:.6g}, limit {r['limit']:.6g}"
     return Fault(int(r["line"]), column, len(words), words, why, file, limits)
 
@@ -148,15 +150,20 @@ class Program:
         Words that are accepted and do nothing here, each once.
     files : dict of str to str
         Texts of the files that it calls, by their names without ending.
+    axes : sequence of ControllerAxis
+        Name and unit of each of its six axes.
     """
 
     def __init__(self, texts: Texts, reader: Struct) -> None:
         self._texts, self._reader = texts, reader
         self.text = texts.text
+        self.axes = ROTARY if reader["angles"] else LINEAR
         library().binding_gcode_begin(reader.pointer, *texts.call())
         check = library().binding_gcode_check
         self.faults, self.notes, self.more = judged(
-            texts.of.__getitem__, lambda rows, count: check(reader.pointer, rows, count)
+            texts.of.__getitem__,
+            lambda rows, count: check(reader.pointer, rows, count),
+            self.axes,
         )
         self.commands = self._read()
         texts.tell()

@@ -10,13 +10,13 @@ import numpy as np
 
 from motionfmu.analysis.cycle_time import CommandedMotion, Lifted
 from motionfmu.analysis.gcode import Fault, Program, Stroke, Summary
+from motionfmu.base.axis_names import AXIS_NAMES, ControllerAxis
 from motionfmu.report.cycle_time_section import add_cycle_time
 from motionfmu.report.diagram import DOT, Diagram, path_diagram, path_lines
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, table
 from motionfmu.report.style import AXES, RAPID, heat
 
-NAMES = "XYZUVW"
 SHORT = 24  # [characters] a text that is told again behind what is wrong with it
 # Spans of the feed that are told apart by their colours.
 LEVELS = 8
@@ -80,7 +80,7 @@ def page_text(
             page.section("Feed along the path", "As programmed.", place)
     if planned is not None:
         add_cycle_time(page, *planned)
-    page.section("Extents", "", _extents(summary))
+    page.section("Extents", "", _extents(summary, program.axes))
     page.section("Tools", "", _tools(summary))
     if program.notes:
         rows = [(f"{n.file} {n.line}".strip(), escape(n.text), n.why) for n in program.notes]
@@ -89,13 +89,13 @@ def page_text(
     return page.text(PageFrame(name, "A part program", "program", [], FOOTER))
 
 
-def _extents(summary: Summary) -> str:
+def _extents(summary: Summary, axes: Sequence[ControllerAxis]) -> str:
     rows = [
-        (n, f"{a:.4f}", f"{b:.4f}", f"{b - a:.4f}")
-        for n, a, b in zip(NAMES, summary.low, summary.high, strict=True)
+        (n.name, f"{a:.4f}", f"{b:.4f}", f"{b - a:.4f}", n.unit)
+        for n, a, b in zip(axes, summary.low, summary.high, strict=True)
         if a != b or a != 0.0
     ]
-    return table(("axis", "from [mm]", "to [mm]", "over [mm]"), rows)
+    return table(("axis", "from", "to", "over", ""), rows)
 
 
 def _tools(summary: Summary) -> str:
@@ -175,7 +175,7 @@ def path_of_program(drawn: Sequence[Stroke], by_feed: bool) -> Diagram:
         told = [f"line {n:.0f}, F{f:.4g}" for n, f in zip(number, feed, strict=True)]
         look = {"name": name, "color": color, "width": 1.8, "hover": told}
         lines.append(path_lines(points[:, :width], **look))
-    return path_diagram(NAMES[:width], lines, HEIGHT)
+    return path_diagram(AXIS_NAMES[:width], lines, HEIGHT)
 
 
 def write_path(name: str, drawn: Sequence[Stroke], folder: Path) -> None:
