@@ -83,8 +83,8 @@ static void publish_times(struct vars *v, const struct controller *s)
     v->line_known_most = (double)r->told_most / FPGA_CLOCK_HZ;
 }
 
-static void publish_arm(struct vars *v, const struct controller *s,
-                        const struct controller_config *c)
+static void publish_arm(struct vars *v, struct controller *s, const struct controller_config *c,
+                        const struct controller_panel *panel)
 {
     const struct robot *r = &s->robot;
 
@@ -96,6 +96,10 @@ static void publish_arm(struct vars *v, const struct controller *s,
     memcpy(v->joint_rate, r->rate, sizeof v->joint_rate);
     v->configuration = opw_branch(&c->robot.arm.opw, r->joint);
     robot_factors(r, &c->robot, v->factors);
+    const struct limited limited = controller_limited(s, c, panel);
+    v->limited_by = limited.by;
+    v->limited_axis = limited.axis;
+    v->programmed_feed = limited.feed;
     v->path_feed = r->speed;
     v->path_length = r->length;
 }
@@ -155,7 +159,7 @@ static void publish(struct fmu *f)
     v->queue = s->count;
     if (cycle) { /* these outputs change only with the cycle */
         publish_times(v, s);
-        publish_arm(v, s, &b->config);
+        publish_arm(v, s, &b->config, &panel);
     }
     publish_card(v, s, &b->config);
     v->polls = s->report.polls;

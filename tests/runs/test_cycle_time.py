@@ -10,7 +10,7 @@ from console import command
 from few_cases import few
 
 import motionfmu
-from motionfmu.analysis.cycle_time import planned, what_if
+from motionfmu.analysis.cycle_time import driven, planned, what_if
 from motionfmu.run import Options, Session
 from motionfmu.run.axis_figures import axis_figures
 from motionfmu.run.controller_plan import bounded
@@ -106,6 +106,7 @@ def test_figures_of_axes_by_brute_force(name):
         x = x[:, f.limit.element] if x.ndim > 1 else x
         for _ in range(f.limit.derivative):
             x = (x[1:] - x[:-1]) / (result.time[1] - result.time[0])
+        x = x * (180.0 / np.pi if f.limit.unit.startswith("deg") else 1.0)
         assert (f.low, f.high) == (x.min(), x.max())
         assert abs(f.largest) == np.abs(x).max()
         assert f.rms == pytest.approx(np.sqrt((x**2).mean()), rel=1e-9, abs=1e-300)
@@ -168,3 +169,34 @@ def test_figures_of_an_axis_that_turns_are_in_degrees(tmp_path):
     assert travel["A"].limit.high == 36_000.0
     page = result.save(tmp_path / "out") and (tmp_path / "out/report.html").read_text()
     assert "Following error A" in page and "Following error U" not in page
+
+
+def test_what_limits_a_robot(tmp_path):
+    """300 mm at 100 mm/s and 1 m/s2; beside the singularity joint 4 takes all its speed."""
+    folder = Path("scenarios/robot_singularity").resolve()
+    values = {"soft.points": str(folder / "points.txt")}
+    job = motionfmu.machine("robot6").scenario(folder / "through.job", set=values)
+    result = job.changed(record=["soft.joint_rate", "soft.status"]).run()
+    plan = driven(result)
+    line = {b.line: {(s.cause, s.axis): s.time for s in b.shares} for b in plan.blocks()}
+    expected = {("feed", ""): 2.9, ("acceleration", ""): 0.1, ("exact stop", ""): 0.1}
+    assert line[4] == pytest.approx(expected, abs=2 * plan.frame)
+    assert 0.04 < line[6]["speed", "J4"] < 0.1 and line[6]["acceleration", "J4"] > 1.0
+    rows = result["soft.limited_by"] == 2
+    rate = np.abs(result["soft.joint_rate"][rows, 3]) / np.radians(300.0)
+    assert result["soft.limited_axis"][rows].tolist() == [4] * rows.sum()
+    assert 1 / 1.3 < rate.min() and rate.max() < 1.0 + 1e-6  # 1.3 within a segment
+    assert plan.time == pytest.approx((result["soft.status"] == 1).sum() * plan.frame)
+    page = result.save(tmp_path / "out") and (tmp_path / "out/report.html").read_text()
+    assert "speed of J4" in page and "acceleration of J4" in page
+
+
+def test_waits_of_a_robot_are_told():
+    names = [f"soft.{v}" for v in ("status", "limited_*", "programmed_feed", "path_feed")]
+    names += ["soft.line", "soft.tool_position"]
+    result = motionfmu.load("scenarios/robot_pick").changed(record=names).run()
+    plan, status = driven(result), result["soft.status"]
+    told = {s.cause: s.time for s in plan.shares()}
+    waits = np.isin(status, (2, 3, 5)).sum() * plan.frame
+    assert told["waiting"] == pytest.approx(waits) and waits > 3.0
+    assert told["corner"] > 1.0 and told["jerk"] > 0.1

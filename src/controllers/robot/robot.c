@@ -8,6 +8,12 @@
 
 static const double TURN = 6.283185307179586;
 
+/* Feeds that differ by less than such a share are the same. */
+static const double SAME = 1e-6;
+
+/* A joint at more than this share of its speed has been asked for no less. */
+static const double WHOLE = 0.99;
+
 /* The trajectory gets places and no joints: pulses come from the joints at the end of the cycle. */
 static const struct mechanism PLACES;
 
@@ -119,7 +125,9 @@ static void show(struct robot *r, const struct robot_config *c, const double joi
     const double way = apart(pose->at, r->pose.at);
 
     for (int i = 0; i < OPW_JOINTS; i++) {
-        r->rate[i] = (joint[i] - r->joint[i]) / c->cycle;
+        const double rate = (joint[i] - r->joint[i]) / c->cycle;
+        r->gain[i] = (rate - r->rate[i]) / c->cycle;
+        r->rate[i] = rate;
         r->joint[i] = joint[i];
     }
     r->pose = *pose;
@@ -175,6 +183,46 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     r->solved += arm_moves_by_joints(&r->moves, point.place) ? 0.0 : r->speed * c->cycle;
     r->line = point.line;
     trajectory_accept(&r->trajectory, &beside, &point);
+}
+
+/* Joint that takes the largest share of its limit, from 0. */
+static int most_taken(const double share[OPW_JOINTS])
+{
+    int most = 0;
+
+    for (int i = 1; i < OPW_JOINTS; i++) {
+        most = share[i] > share[most] ? i : most;
+    }
+    return most;
+}
+
+struct limited robot_limited(struct robot *r, const struct robot_config *c, double feed)
+{
+    const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
+    struct limited told = { .by = LIMITED_STOP };
+    double speed[OPW_JOINTS], turn[OPW_JOINTS];
+
+    if (!robot_idle(r)) {
+        told = trajectory_limited(&r->trajectory, &beside, &PLACES);
+    }
+    /* The joints have lowered the feed of the segment that is held: their speed, or the
+     * acceleration that the bend of their paths takes. */
+    const bool lowered = feed == 0.0 || told.feed < feed * (1.0 - SAME);
+    if (told.by == LIMITED_FEED && lowered && r->trajectory.override[0] >= 1.0) {
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
+            turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
+        }
+        const int fast = most_taken(speed), bent = most_taken(turn);
+        const double whole = feed > 0.0 ? 1.0 / TOOL_PATH_UNEVEN : WHOLE;
+        if (speed[fast] > whole) {
+            told = (struct limited){ .by = LIMITED_SPEED, .axis = fast + 1 };
+        } else if (feed > 0.0) {
+            told = (struct limited){ .by = LIMITED_ACCELERATION, .axis = bent + 1 };
+        }
+    }
+    told.feed = feed;
+    return told;
 }
 
 void robot_hold(struct robot *r, bool on)

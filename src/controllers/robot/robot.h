@@ -117,6 +117,7 @@ struct robot {
 
     double joint[OPW_JOINTS]; /* [rad] ideal, at the end of the latest cycle */
     double rate[OPW_JOINTS];  /* [rad/s] mean of that cycle */
+    double gain[OPW_JOINTS];  /* [rad/s^2] how much that is more than in the cycle before */
     struct pose pose;         /* of the tip there */
     double speed;             /* [mm/s] of the tip along its path */
     double length;            /* [mm] of its path so far, */
@@ -137,6 +138,10 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
 
 /* A cycle passes: joint, rate, pose, speed, length, line are those at its end. */
 void robot_cycle(struct robot *r, const struct robot_config *c);
+
+/* What keeps the motion at the end of a cycle from being faster, whose move asked for a feed [mm/s];
+ * 0: of joints. `axis` is the joint at its limit, from 1. */
+struct limited robot_limited(struct robot *r, const struct robot_config *c, double feed);
 
 /* Nothing moves and nothing is left to do but what hold or override 0 keeps. */
 bool robot_rests(const struct robot *r);

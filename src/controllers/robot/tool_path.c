@@ -13,10 +13,10 @@ enum { STEPS = 8 }; /* into which a segment is divided to sample its joints */
  * path q(s), may take where it limits the speed v; the rest is left for changes of speed. */
 static const double BENT = 0.6;
 
-/* Largest ratio of the limits of speed and of acceleration within a segment. If the path then has
- * more segments than there is room for, the square of these ratios is tried, then the 4th power,
- * and so on until the power is above WIDE. */
-static const double UNEVEN_SPEED = 1.3, UNEVEN_ACC = 1.5;
+/* Largest ratio of the limits of acceleration within a segment, of speed TOOL_PATH_UNEVEN. If the
+ * path then has more segments than there is room for, the square of these ratios is tried, then the
+ * 4th power, and so on until the power is above WIDE. */
+static const double UNEVEN_ACC = 1.5;
 
 static const double WIDE = 64.0;
 
@@ -69,7 +69,7 @@ struct survey {
     const struct arm_geometry *g;
     const struct tool_path_limits *l;
     const struct path *path;
-    double wide; /* power of UNEVEN_SPEED and UNEVEN_ACC that is allowed now */
+    double wide; /* power of TOOL_PATH_UNEVEN and UNEVEN_ACC that is allowed now */
     struct tool_path_fault *fault;
     double origin[OPW_JOINTS]; /* [rad] at the start of the path */
 };
@@ -212,7 +212,7 @@ static void allow(const struct survey *s, double from, double size, struct look 
         most = el_max(most, cap);
         most_acc = el_max(most_acc, acc);
     }
-    k->even = most <= el_pow(UNEVEN_SPEED, s->wide) * k->cap
+    k->even = most <= el_pow(TOOL_PATH_UNEVEN, s->wide) * k->cap
               && most_acc <= el_pow(UNEVEN_ACC, s->wide) * k->acc;
 }
 

@@ -14,6 +14,9 @@
 /* The most segments of a path. */
 enum { TOOL_PATH_SEGMENTS = 512 };
 
+/* Largest ratio of the limits of speed within a segment of a path with room for its segments. */
+#define TOOL_PATH_UNEVEN 1.3
+
 struct tool_path_limits {
     double feed;              /* [mm/s] along the path */
     double acc;               /* [mm/s^2] along it */

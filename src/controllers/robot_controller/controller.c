@@ -267,6 +267,23 @@ enum controller_status controller_status(const struct controller *s,
                                                : program_status(s, panel);
 }
 
+struct limited controller_limited(struct controller *s, const struct controller_config *c,
+                                  const struct controller_panel *panel)
+{
+    const enum controller_status status = controller_status(s, panel);
+    const double feed = s->move_feed[s->robot.line % CONTROLLER_MOVES];
+    struct limited told = { 0 };
+
+    if (status == CONTROLLER_HOLD || status == CONTROLLER_WAITING || status == CONTROLLER_PAUSED) {
+        told.by = LIMITED_WAIT;
+    } else if (status == CONTROLLER_DELAY) {
+        told.by = LIMITED_DWELL;
+    } else if (status == CONTROLLER_RUNNING) {
+        told = robot_limited(&s->robot, &c->robot, feed);
+    }
+    return told;
+}
+
 bool controller_done(const struct controller *s)
 {
     return s->program == PROGRAM_ENDED && robot_idle(&s->robot);

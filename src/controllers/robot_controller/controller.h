@@ -19,7 +19,7 @@ enum {
     CONTROLLER_QUEUE = 64,
     CONTROLLER_OUTPUTS = 32,
     CONTROLLER_TAUGHT = 64,
-    CONTROLLER_MOVES = 1024
+    CONTROLLER_MOVES = 512 /* more than the arm knows (ARM_MOVES_SIZE) */
 };
 
 struct controller_config {
@@ -150,6 +150,7 @@ struct controller {
     int64_t given, reached; /* moves given to the arm; moves that have reached their points */
     int64_t first;          /* number of moves given before the program began */
     int32_t move_line[CONTROLLER_MOVES]; /* line of move n at n mod CONTROLLER_MOVES */
+    float move_feed[CONTROLLER_MOVES];   /* [mm/s] its feed as asked for; 0 of joints */
     int32_t output_count;
     struct controller_output output[CONTROLLER_OUTPUTS];
     uint32_t out; /* digital outputs as programs have set them */
@@ -177,6 +178,10 @@ void controller_post(struct controller *s, const struct controller_config *c,
 
 enum controller_status controller_status(const struct controller *s,
                                          const struct controller_panel *panel);
+
+/* What keeps the program from being faster, and its feed [mm/s]; by 0 while none runs. */
+struct limited controller_limited(struct controller *s, const struct controller_config *c,
+                                  const struct controller_panel *panel);
 
 /* Whether a program has been started and is not over. */
 bool controller_running(const struct controller *s);

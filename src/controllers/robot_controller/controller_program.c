@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "el_extremes.h"
+
 void controller_program_start(struct controller *s, const struct controller_config *c,
                               const struct orders_text *t)
 {
@@ -54,7 +56,10 @@ enum robot_status controller_program_give(struct controller *s, const struct con
     const enum robot_status status = robot_move(&s->robot, &c->robot, move, why);
     if (status == ROBOT_OK) {
         s->given++;
+        const double feed = move->feed > 0.0 ? move->feed : c->robot.feed;
         s->move_line[s->given % CONTROLLER_MOVES] = line;
+        s->move_feed[s->given % CONTROLLER_MOVES] =
+            move->kind == ROBOT_JOINTS ? 0.0F : (float)el_min(feed, c->robot.feed);
     }
     return status;
 }

@@ -52,10 +52,11 @@ def add_cycle_time(page: Page, plan: CommandedMotion, lifted: Sequence[Lifted] =
         for s in plan.shares()
     ]
     rows.append(("all", "", f"{plan.time:.3f}", "100.0"))
-    note = (
-        "What keeps the program from being faster, at each instant of its commanded motion. Waits"
-        " for an operator, an input, a probe or the position of an axis are not in it."
-    )
+    waits = "Waits for an operator, an input, a probe or the position of an axis are "
+    waits += "in it." if plan.driven else "not in it."
+    note = f"What keeps the program from being faster, at each instant of its motion. {waits}"
+    if not plan.driven and not lifted:
+        note += " <code>motionfmu gcode</code> says what a higher limit would save."
     content = table(("limited by", "", "s", "%"), rows, numeric=2)
     content += page.place("limited", path_by_cause(plan))
     page.section("Where the time goes", note, content)

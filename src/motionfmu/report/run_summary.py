@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour import ContourResult
-from motionfmu.analysis.cycle_time import CommandedMotion, planned
+from motionfmu.analysis.cycle_time import CommandedMotion, driven, planned
 from motionfmu.analysis.linear import LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines
 from motionfmu.base.columns import ROWS
@@ -84,8 +84,9 @@ def summary_of(result: ReportInput, contour: ContourResult | None) -> RunSummary
     plan = None
     if isinstance(scenario, Scenario) and scenario.document.body.axis:
         axes = tuple(axis_figures(result, scenario.axis_limits(given)))
+        plan = driven(result)
         with contextlib.suppress(InputError):  # none of its components plans a part program
-            plan = planned(scenario, given)
+            plan = plan or planned(scenario, given)
     return replace(_motion_of(result, contour), axes=axes, plan=plan)
 
 

@@ -13,6 +13,7 @@ from motionfmu.scenarios import (
     agreement,
     contour_signals,
     iso9283_signals,
+    limited_signals,
     machine_limits,
     rates,
     recording,
@@ -92,8 +93,8 @@ class RunPlan:
         """Look up what is recorded, drawn and checked."""
         resolver, body = self.resolver, self.document.body
         listed = faults.of(lambda: recording.chosen(resolver, body.record.signals)) or []
-        more = (contour_signals, iso9283_signals, view_signals, tool_signals, machine_limits)
-        for wanted in more:
+        more = (contour_signals, iso9283_signals, view_signals, tool_signals)
+        for wanted in (*more, machine_limits, limited_signals):
             with faults.each():
                 listed += recording.chosen(resolver, wanted.wanted(resolver))
         if body.iso9283 is not None:

@@ -1,5 +1,6 @@
 """The axes of a machine: which signals show their figures, and what limits these."""
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +16,8 @@ from motionfmu.scenarios.system import End, Resolver, Setting
 from motionfmu.scenarios.values import values_in
 
 BOUNDS = ("limit", "low", "high", "continuous")
-_DEGREES = {"m": 1e3, "mm": 1.0, "um": 1e-3}  # [°] for a row that counts in this
+# [°] for a row that counts in this
+_DEGREES = {"m": 1e3, "mm": 1.0, "um": 1e-3, "rad": math.degrees(1.0)}
 _PER_TIME = re.compile(r"(.*)/s(\d*)")
 
 

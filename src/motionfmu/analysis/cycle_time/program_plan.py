@@ -80,11 +80,14 @@ class CommandedMotion:
         ``line``, ``command``, ``cause`` (a key of `CAUSES`), ``axis`` (from 1; 0 of the path).
     axes : tuple of str
         Names of the six axes.
+    driven : bool
+        Of a run, with its waits; else planned.
     """
 
     frame: float
     rows: NDArray[Any]
     axes: tuple[str, ...]
+    driven: bool = False
 
     @property
     def time(self) -> float:
