@@ -1,0 +1,115 @@
+/* What limits a robot's motion, by closed forms: time at speed, on ramps, on the way to rest. */
+#include "robot_rig.h"
+
+static struct robot_refusal why;
+
+/* Time [s] for which each limit counts until the arm rests, and the axis of the last one told. */
+struct told {
+    double by[LIMITED_WAIT + 1];
+    int32_t axis[LIMITED_WAIT + 1];
+    double all;
+};
+
+static struct told watch(const struct robot_config *c, double feed, double most)
+{
+    struct told t = { 0 };
+
+    while (!robot_idle(&robot) && t.all < most) {
+        robot_cycle(&robot, c);
+        const struct limited l = robot_limited(&robot, c, feed);
+        CHECK(l.by >= LIMITED_FEED && l.by <= LIMITED_WAIT && l.feed == feed);
+        t.by[l.by] += CYCLE;
+        t.axis[l.by] = l.axis;
+        t.all += CYCLE;
+    }
+    return t;
+}
+
+/* A turn of joint 2 by 2.5 rad at a share of its speed; the arm's ramps come up at once. */
+static struct told turn(const struct robot_config *c, double share, double override)
+{
+    static const double from[OPW_JOINTS] = { 0, -1.25, 0, 0, 1.5, 0 };
+    struct robot_move m = { .kind = ROBOT_JOINTS, .share = share };
+
+    memcpy(m.target.joint, from, sizeof from);
+    m.target.joint[1] = 1.25;
+    m.target.by_joints = true;
+    robot_start(&robot, c, from);
+    robot_override(&robot, override);
+    CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OK);
+    return watch(c, 0.0, INFINITY);
+}
+
+static void joints(void)
+{
+    struct robot_config c = rig_config();
+    c.smooth = 0.0;
+    const double v = 48.0 / (c.scale[1] * c.slot), most = fmin(c.arm.joint[1].speed, v);
+    const double acc = c.arm.joint[1].acc;
+
+    struct told t = turn(&c, 1.0, 1.0);
+    CHECK_NEAR(t.by[LIMITED_SPEED], 2.5 / most - most / acc, 3 * CYCLE);
+    CHECK_NEAR(t.by[LIMITED_ACCELERATION], most / acc, 3 * CYCLE);
+    CHECK_NEAR(t.by[LIMITED_STOP], most / acc, 3 * CYCLE);
+    CHECK_EQ(t.axis[LIMITED_SPEED], 2);
+    t = turn(&c, 0.5, 1.0); /* as asked */
+    CHECK_NEAR(t.by[LIMITED_FEED], 5.0 / most - 0.5 * most / acc, 3 * CYCLE);
+    CHECK(t.by[LIMITED_SPEED] == 0.0);
+    t = turn(&c, 1.0, 0.5); /* as the override asks */
+    CHECK_NEAR(t.by[LIMITED_FEED], 5.0 / most - 0.5 * most / acc, 3 * CYCLE);
+    CHECK(t.by[LIMITED_SPEED] == 0.0);
+}
+
+/* A line of 200 mm with a feed that the joints bear, and with one that they do not. */
+static void lines(void)
+{
+    struct robot_config c = rig_config();
+    struct robot_move m = { .kind = ROBOT_LINE, .feed = 100.0, .share = 1.0 };
+    const double from[OPW_JOINTS] = { 0, 0, 0, 0, 1.5, 0 };
+
+    c.smooth = 0.0;
+    for (int n = 0; n < 2; n++) {
+        robot_start(&robot, &c, from);
+        m.target.pose = robot.pose;
+        m.target.branch = ROBOT_ANY_BRANCH;
+        m.target.pose.at[1] += 200.0;
+        m.feed = n == 0 ? 100.0 : 2500.0;
+        CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+        const struct told t = watch(&c, m.feed, INFINITY);
+        if (n == 0) {
+            CHECK_NEAR(t.by[LIMITED_FEED], 200.0 / 100.0 - 100.0 / c.acc, 5 * CYCLE);
+            CHECK_NEAR(t.by[LIMITED_ACCELERATION], 100.0 / c.acc, 5 * CYCLE);
+        } else { /* its ramps would take 1.5 m */
+            CHECK(t.by[LIMITED_FEED] == 0.0);
+        }
+        CHECK_NEAR(t.by[LIMITED_FEED] + t.by[LIMITED_SPEED] + t.by[LIMITED_ACCELERATION]
+                       + t.by[LIMITED_STOP] + t.by[LIMITED_CORNER],
+                   t.all, 1e-9);
+    }
+}
+
+static void held(void)
+{
+    struct robot_config c = rig_config();
+    struct robot_move m = { .kind = ROBOT_LINE, .feed = 100.0, .share = 1.0 };
+    const double from[OPW_JOINTS] = { 0, 0, 0, 0, 1.5, 0 };
+
+    robot_start(&robot, &c, from);
+    CHECK_EQ(robot_limited(&robot, &c, 0.0).by, LIMITED_STOP);
+    m.target.pose = robot.pose;
+    m.target.branch = ROBOT_ANY_BRANCH;
+    m.target.pose.at[1] += 200.0;
+    CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+    watch(&c, 100.0, 1.0);
+    robot_hold(&robot, true);
+    const struct told t = watch(&c, 100.0, 1.0);
+    CHECK_NEAR(t.by[LIMITED_WAIT], 1.0, 5 * CYCLE);
+}
+
+int main(void)
+{
+    joints();
+    lines();
+    held();
+    return check_result();
+}
