@@ -71,6 +71,22 @@ def test_a_machine_that_takes_no_program_says_so(name: str, tmp_path: Path) -> N
     assert told == [f"{where}: [signals] program and done are missing: it takes no program"]
 
 
+def test_a_file_of_the_program_s_name_beside_it_is_taken(tmp_path: Path) -> None:
+    for name in ("line.job", "line.points"):
+        (tmp_path / name).write_bytes((ROOT / "scenarios/robot_line" / name).read_bytes())
+    scenario = motionfmu.machine("robot6").scenario(tmp_path / "line.job")
+    assert scenario.document.body.set["soft.points"] == str(tmp_path / "line.points")
+    other = {"soft.points": str(ROOT / "scenarios/robot_pick/points.txt")}
+    scenario = motionfmu.machine("robot6").scenario(tmp_path / "line.job", set=other)
+    assert scenario.document.body.set["soft.points"] == other["soft.points"]
+    (tmp_path / "line.points").unlink()
+    scenario = motionfmu.machine("robot6").scenario(tmp_path / "line.job")
+    assert "soft.points" not in scenario.document.body.set
+    machine_at(tmp_path / "m", 'extends = "robot6"\n[signals]\nbeside = { "soft.points" = "p" }\n')
+    (told,) = refusal(motionfmu.machine(tmp_path / "m").plan)
+    assert told.startswith(f"{tmp_path}/m/machine.toml:4: signals.beside.soft.points = 'p'")
+
+
 def test_what_is_inherited_can_be_taken_away(tmp_path: Path) -> None:
     text = (
         'machine = "xy_table"\nstop = 1.0\nwithout = ["check.mcc.starved", "contour", '

@@ -139,8 +139,8 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
 /* A cycle passes: joint, rate, pose, speed, length, line are those at its end. */
 void robot_cycle(struct robot *r, const struct robot_config *c);
 
-/* What keeps the motion at the end of a cycle from being faster, whose move asked for a feed [mm/s];
- * 0: of joints. `axis` is the joint at its limit, from 1. */
+/* What keeps the motion at the end of a cycle from being faster, whose move asked for a feed
+ * [mm/s]; 0: of joints. `axis` is the joint at its limit, from 1. */
 struct limited robot_limited(struct robot *r, const struct robot_config *c, double feed);
 
 /* Nothing moves and nothing is left to do but what hold or override 0 keeps. */

@@ -100,7 +100,8 @@ class Machine:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
         ready = program_for(self._made({"stop": 1.0}, self.name, ""), file.resolve())
-        values = ready.values | {str(self._signals.program): str(ready.file)} | dict(set or {})
+        values = {str(self._signals.program): str(ready.file), **self._beside(file.resolve())}
+        values = ready.values | values | dict(set or {})
         given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
         if ready.seconds is not None:
             given = {"stop": time_of(ready.seconds, START, APPROACH + settle)}
@@ -139,6 +140,12 @@ class Machine:
             As of `Scenario.run`.
         """
         return self.scenario(program, set=set).run(**options)
+
+    def _beside(self, program: Path) -> dict[str, str]:
+        """Parameters that name files beside the program which have its name."""
+        pairs = self._signals.beside.items()
+        found = {key: program.with_suffix(ending) for key, ending in pairs}
+        return {key: str(file) for key, file in found.items() if is_file(file)}
 
     def _made(self, tables: Mapping[str, Any], name: str, about: str) -> Document:
         return made({"machine": str(self.file), **tables}, name, Path.cwd(), about)

@@ -31,6 +31,7 @@ PLANNED_LEAST = 600.0
 # Tables of bounds: what must hold whatever is set, and what the scenario as written must give.
 CHECK, EXPECT = JUDGED = ("check", "expect")
 Name = Annotated[str, Field(max_length=KEY_MAX)]
+Ending = Annotated[str, Field(pattern=r"^\.[A-Za-z0-9]{1,32}$")]
 Names = Annotated[list[Name], Field(max_length=LISTED_MAX)]
 
 
@@ -116,6 +117,8 @@ class MachineSignals(BaseModel):
     done: Name | None = None
     start: Name | None = None  # input that starts it when it becomes 1
     config: Name | None = None  # configuration of a network card, for which drawings are planned
+    # Parameters that name a file beside the program with its name and this ending, if there is one.
+    beside: dict[str, Ending] = Field(default_factory=dict, max_length=LISTED_MAX)
 
 
 class MachineAxis(BaseModel):
