@@ -2,8 +2,7 @@
 
 import contextlib
 import tempfile
-from collections.abc import Mapping
-from contextlib import closing
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,15 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
-from motionfmu.run import engines
-from motionfmu.run.execution import Execution
+from motionfmu.run.engines import lean
+from motionfmu.run.engines.slave import Slave
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.body import PLANNED
-from motionfmu.scenarios.document import made
+from motionfmu.scenarios.system import End, Setting
 from motionfmu.scenarios.values import Values, values_in
 
 PROGRAM, FILE = "program", "plan_file"
+FMI = 3
 # How many times its planned time a program may take on a machine.
 LONGER = 2.0
 
@@ -40,7 +40,12 @@ class Controller:
 
 def controller_of(scenario: RunPlan, set: Mapping[str, Any]) -> Controller:
     """The first component that can plan a program and has one; an InputError if none does."""
-    given = {s.end.name: s.values for s in scenario.resolved(Options(set=set)).settings}
+    return controller_in(scenario, scenario.resolved(Options(set=set)).settings)
+
+
+def controller_in(scenario: RunPlan, settings: Iterable[Setting]) -> Controller:
+    """The same with the settings of a run."""
+    given = {s.end.name: s.values for s in settings}
     for name, fmu in scenario.document.body.component.items():
         plans = fmus.is_ours(fmu) and FILE in fmus.ports(fmu)
         if plans and given.get(f"{name}.{PROGRAM}", ("",)) != ("",):
@@ -50,26 +55,23 @@ def controller_of(scenario: RunPlan, set: Mapping[str, Any]) -> Controller:
 
 def plan_rows(scenario: RunPlan, set: Mapping[str, Any]) -> NDArray[Any]:
     """Rows of the commanded motion, as the FMU writes them; it refuses a program by InputError."""
-    found = controller_of(scenario, set)
-    ports = fmus.ports(found.fmu)
-    own = {n: v for n, v in found.given.items() if n.partition(".")[0] == found.name}
-    values = {n: list(v) if ports[n.partition(".")[2]].shape else v[0] for n, v in own.items()}
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        file = folder / "plan.npy"
-        tables = {
-            "component": {found.name: found.fmu},
-            "step": 1e-3,
-            "stop": 1e-3,
-            "record": {"signals": [f"{found.name}.done"]},
-            "leave": [f"{found.name}.*"],
-            "set": values | {f"{found.name}.{FILE}": str(file)},
-        }
-        alone = RunPlan(made(tables, scenario.name, Path.cwd(), ""))
-        options = Options(engine="python")  # the quickest to open
-        execution = Execution.plan(alone, options, alone.ends, folder)
-        with closing(engines.opened("python", execution.job(options.fmi))) as ready:
-            execution.run(lambda system: ready.run(system, options.progress), options)
+    system = scenario.resolved(Options(set=set))
+    controller = controller_in(scenario, system.settings)
+    name, fmu = controller.name, controller.fmu
+    ports = fmus.ports(fmu)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "plan.npy"
+        slave = Slave(name, lean.unpacked(fmu, FMI), FMI, [])
+        try:
+            own = [s for s in system.settings if s.end.component == name]
+            for s in (*own, Setting(End(name, ports[FILE]), (str(file),))):
+                slave.assign(s.end.port.type, s.end.port.reference, s.values)
+            slave.initialize()
+            slave.start()
+        except InputError as error:
+            raise scenario.located(error, system, set) from None
+        finally:
+            slave.free()
         return np.load(file)
 
 

@@ -26,6 +26,9 @@ from motionfmu.scenarios import document as files
 from motionfmu.scenarios.body import JUDGED, Bounds
 from motionfmu.scenarios.table_sources import of_file
 
+# The options of which a system is made, and how many systems are kept.
+_MADE_OF, _KEPT = ("set", "stop", "step", "limit", "every", "undriven"), 4
+
 
 @dataclass(frozen=True)
 class Options:
@@ -82,6 +85,7 @@ class RunPlan:
         )
         self.ends: list[system.End] = []
         self.only_drawn: set[str] = set()
+        self._kept: list[tuple[dict[str, Any], system.System]] = []
         faults = Faults(self.document.wrong)
         self.resolver = system.Resolver(self.document, faults)
         self._check_names(faults)
@@ -152,7 +156,16 @@ class RunPlan:
         return self.document.body.stop_limit
 
     def resolved(self, options: Options) -> system.System:
-        """The system that an engine runs, with the options' values."""
+        """The system that an engine runs, with the options' values; the latest ones are kept."""
+        asked = {name: getattr(options, name) for name in _MADE_OF}
+        asked = files.plain(asked | {"undriven": sorted(options.undriven)})
+        kept = next((made for known, made in self._kept if known == asked), None)
+        if kept is None:
+            kept = self._resolved(options)
+            self._kept = [(asked, kept), *self._kept[: _KEPT - 1]]
+        return kept
+
+    def _resolved(self, options: Options) -> system.System:
         faults = Faults()
         made = self._made(options, faults)
         faults.tell()
