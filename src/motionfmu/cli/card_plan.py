@@ -14,7 +14,7 @@ from motionfmu.cli.common import FAILED, bare_table, out, results
 if TYPE_CHECKING:
     from motionfmu.cards.job import Job
     from motionfmu.cards.plan_figures import Figures
-    from motionfmu.cards.plt import PltDrawing
+    from motionfmu.drawings.plt import PltDrawing
 
 Config = Annotated[Path, typer.Option("-c", "--config", help="Configuration of the card.")]
 Corner = Annotated[tuple[float, float], typer.Option(metavar="X Y", help="Place of its 0 [mm].")]
@@ -44,10 +44,10 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     """Plan a drawing: a job for the card, and what it comes to."""
     needed("card")
     from motionfmu.cards import load, plt
-    from motionfmu.cards.contours import clean, way_between
     from motionfmu.cards.plan import PlanOptions, write
     from motionfmu.cards.plan import plan as planned
     from motionfmu.cards.plan_figures import figures
+    from motionfmu.drawings.contours import clean, way_between
 
     for name, value, known in (
         ("--order", order, ("file", "nearest")),

@@ -71,8 +71,8 @@ class Machine:
         ----------
         program : str or Path
             File of the program, in the language of the machine's controller; or a drawing
-            (.plt), which a mill gets as G-code, and a network card as a job, as it gets a part
-            program.
+            (.plt, .svg, .dxf), which a mill gets as G-code, and a network card as a job, as it
+            gets a part program.
         limit : float
             The longest run [s]; one that is not done by then has a warning.
         settle : float
@@ -80,7 +80,8 @@ class Machine:
         set : mapping, optional
             Values by ``component.variable``, stronger than the machine's.
         **tables
-            Any other key or table of a scenario.toml.
+            Any other key or table of a scenario.toml; ``drawing={"scale": 2.0}`` is stronger than
+            the machine's [drawing].
 
         Returns
         -------
@@ -99,7 +100,10 @@ class Machine:
         if not self.takes_programs:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
-        ready = program_for(self._made({"stop": 1.0}, self.name, ""), file.resolve())
+        asked = {"stop": 1.0} | {k: v for k, v in tables.items() if k == "drawing"}
+        plan = self._made(asked, self.name, "")
+        plan.refuse(list(plan.wrong))
+        ready = program_for(plan, file.resolve())
         values = ready.values | {str(self._signals.program): str(ready.file)} | dict(set or {})
         given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
         if ready.seconds is not None:
@@ -107,7 +111,9 @@ class Machine:
         if self._signals.start is not None:
             given["drive"] = [{"input": self._signals.start, "at": [START], "value": [1]}]
         about = f"{file.name} on {self.name}"
-        return Scenario(self._made(given | tables | {"set": values}, file.stem, about))
+        found = Scenario(self._made(given | tables | {"set": values}, file.stem, about))
+        found.notes = ready.notes
+        return found
 
     def plan(self) -> Scenario:
         """The machine without a program, checked against its FMUs.
