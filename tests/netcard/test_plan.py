@@ -283,7 +283,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("motionfmu.cards.plan_figures.SLOT", 3)
     long = run(app, words, catch_exceptions=False)
     assert long.exit_code == 1 and "too long for a slot of the card's flash" in long.stdout
-    with pytest.raises(InputError, match="--order far: file or nearest wanted"):
+    with pytest.raises(InputError, match="--order far: file, nearest or inside wanted"):
         run(app, [*words, "--order", "far"], catch_exceptions=False)
     with pytest.raises(InputError, match=r"cannot read b\.plt"):
         run(app, ["card", "show", "b.plt"], catch_exceptions=False)

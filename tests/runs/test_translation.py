@@ -74,7 +74,8 @@ def test_a_drawing_and_a_machine_are_kept_as_a_scenario(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "told"),
     [
-        ("a.svg", "<svg/>", "a.svg: a drawing (.plt), a job (.mcj) or a part program wanted"),
+        ("a.txt", "", "a.txt: a drawing (.plt, .hpgl, .hgl, .plo, .svg, .dxf), a job (.mcj) or a"),
+        ("a.svg", "<svg/>", "a.svg: nothing is drawn"),
         ("a.ngc", "G1 X\n", "a.ngc: line 1: "),
         ("a.ngc", "G1 X5 F600\nG1 Z-1\n", "a.ngc: line 2: Z moves with feed; the card draws in"),
         ("a.ngc", "G0 X5\n", "a.ngc: nothing is drawn"),

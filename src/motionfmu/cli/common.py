@@ -201,21 +201,31 @@ OnMachine = Annotated[
 ]
 
 
-def loaded(path: Path, machine: str | None) -> "Scenario":
-    """The scenario that a path means; with a machine, the program there on that machine."""
+def loaded(path: Path, machine: str | None, drawing: dict[str, Any] | None = None) -> "Scenario":
+    """The scenario that a path means; with a machine, the program there on that machine.
+
+    drawing: what is asked of a program that is a drawing, as the table of that name.
+    """
     from motionfmu import run
 
+    tables: dict[str, Any] = {"drawing": drawing} if drawing else {}
     if machine is None:
+        if drawing:
+            raise InputError(f"--{next(iter(drawing))}: it goes with --machine and a drawing")
         return run.load(path)
     from motionfmu.analysis.cycle_time import planned
     from motionfmu.run.machine_program import LIMIT
 
     on = run.machine(machine)
-    scenario = on.scenario(path)
+    scenario = on.scenario(path, **tables)
     longest = 0.0
     with contextlib.suppress(InputError):  # the run tells what is wrong
         longest = LONGER * planned(scenario).time
-    return scenario if longest <= LIMIT else on.scenario(path, limit=float(math.ceil(longest)))
+    return (
+        scenario
+        if longest <= LIMIT
+        else on.scenario(path, limit=float(math.ceil(longest)), **tables)
+    )
 
 
 def setting(text: str) -> tuple[str, Any]:

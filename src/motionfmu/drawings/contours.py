@@ -129,7 +129,7 @@ def _around(contours: Sequence[PenContour]) -> list[list[int]]:
             continue
         within = (low >= low[k]).all(axis=1) & (high <= high[k]).all(axis=1)
         within[k] = False
-        for j in np.flatnonzero(within):
+        for j in np.flatnonzero(within).tolist():
             equal = bool((low[j] == low[k]).all() and (high[j] == high[k]).all())
             if not equal and _holds(c.points, contours[j].points[0]):
                 found[j].append(k)

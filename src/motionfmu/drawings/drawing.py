@@ -64,7 +64,18 @@ class Drawing:
     pens: dict[int, str] = field(default_factory=dict)  # What a pen is in the file: layer, colour
 
     def where(self, first: int) -> str:
-        """Say where a line of the drawing stands, in words."""
+        """Say where a line of the drawing stands.
+
+        Parameters
+        ----------
+        first : int
+            As a `Polyline` has it.
+
+        Returns
+        -------
+        str
+            File and place, in words.
+        """
         return f"{self.name}: {self.place(first)}"
 
     @property
@@ -80,7 +91,7 @@ class Drawing:
     @property
     def nothing(self) -> str:
         """The message of a drawing that draws nothing."""
-        why = "; ".join(n.words for n in self.notes)
+        why = "; ".join(n.words for n in self.notes if n.told)
         return f"{self.name}: nothing is drawn" + (f" ({why})" if why else "")
 
     @cached_property

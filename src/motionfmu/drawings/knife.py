@@ -21,7 +21,7 @@ def knife_path(path: PenPath, closed: bool, offset: float, heading: Array) -> tu
     A closed path is cut on over its begin by the offset, so that the cut closes.
     """
     whole = joined([path, *_begin(path, offset)]) if closed else path
-    maker = _Axis(whole.nodes[0], offset, heading)
+    maker = _AxisWay(whole.nodes[0], offset, heading)
     ways = whole.headings()
     soft = _soft(whole, ways, offset)
     centres = whole.centres()
@@ -73,7 +73,7 @@ def _begin(path: PenPath, length: float) -> list[PenPath]:
     return [tidy(PenPath.lines(np.vstack([points[:n], end]), int(path.source[0])))]
 
 
-class _Axis:
+class _AxisWay:
     """The axis' way, piece by piece."""
 
     def __init__(self, start: Array, offset: float, heading: Array) -> None:

@@ -100,7 +100,7 @@ class PenPath:
         way = np.diff(self.nodes, axis=0)
         angle = 2.0 * np.arctan(self.bulges)  # half that of the arc
         found = np.stack([_turned(way, -angle), _turned(way, angle)], axis=1)
-        for k in np.flatnonzero(self.curved):
+        for k in np.flatnonzero(self.curved).tolist():
             p = self.piece(k)
             found[k] = _first(p[1:] - p[0]), _first(p[-1] - p[-2::-1])
         size = np.linalg.norm(found, axis=2, keepdims=True)
@@ -292,7 +292,8 @@ def cubics_of(
 
 def joined(parts: Sequence[PenPath]) -> PenPath:
     """Paths one after the other, with a line between two that do not meet."""
-    nodes, bulges, handles, source = [parts[0].nodes], [], [], []
+    nodes, source = [parts[0].nodes], list[NDArray[np.int64]]()
+    bulges, handles = list[Array](), list[Array]()
     at = parts[0].nodes[-1]
     for k, part in enumerate(parts):
         if k:

@@ -59,7 +59,7 @@ def transform(text: str) -> Array:
             if text[at:] in ("none", ""):
                 return found
             raise WrongValue("a list of transforms wanted")
-        values = numbers(re.sub(r"(?<=\d)(?:deg|px)\b", "", m[2]))
+        values = numbers(re.sub(r"(?<=\d)(?:px|[d]eg)\b", "", m[2]))
         found, at = found @ _one(m[1], values), m.end()
     return found
 

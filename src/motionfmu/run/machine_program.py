@@ -6,7 +6,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file, shown
-from motionfmu.run.program_translation import program_for, time_of
+from motionfmu.run.program_translation import MachineProgram, program_for, time_of
 from motionfmu.run.result import Result
 from motionfmu.run.runner import Scenario
 from motionfmu.scenarios.document import Document, made
@@ -100,10 +100,7 @@ class Machine:
         if not self.takes_programs:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
-        asked = {"stop": 1.0} | {k: v for k, v in tables.items() if k == "drawing"}
-        plan = self._made(asked, self.name, "")
-        plan.refuse(list(plan.wrong))
-        ready = program_for(plan, file.resolve())
+        ready = self.translated(file, tables.get("drawing", {}))
         values = ready.values | {str(self._signals.program): str(ready.file)} | dict(set or {})
         given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
         if ready.seconds is not None:
@@ -114,6 +111,26 @@ class Machine:
         found = Scenario(self._made(given | tables | {"set": values}, file.stem, about))
         found.notes = ready.notes
         return found
+
+    def translated(self, file: Path, drawing: Mapping[str, Any]) -> MachineProgram:
+        """Make what the machine's controller reads of a program.
+
+        Parameters
+        ----------
+        file : Path
+            The program.
+        drawing : mapping
+            A table [drawing], stronger than the machine's.
+
+        Returns
+        -------
+        MachineProgram
+            The file that the controller gets.
+        """
+        asked = {"stop": 1.0} | ({"drawing": drawing} if drawing else {})
+        document = self._made(asked, self.name, "")
+        document.refuse(list(document.wrong))
+        return program_for(document, file.resolve())
 
     def plan(self) -> Scenario:
         """The machine without a program, checked against its FMUs.
