@@ -60,6 +60,8 @@ class _DxfReader:
         from ezdxf.lldxf.tagger import binary_tags_loader
 
         logging.getLogger("ezdxf").addHandler(logging.NullHandler())
+        if not self.text.strip():
+            raise InputError(f"{self.name}: no DXF: it is empty")
         if self.text[:4] == b"AC10":
             raise InputError(f"{self.name}: a DWG; save it as DXF")
         try:

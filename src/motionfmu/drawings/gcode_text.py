@@ -7,11 +7,13 @@ import numpy as np
 
 from motionfmu.drawings.contours import PenContour, corners
 from motionfmu.drawings.drawing_options import DrawingOptions
-from motionfmu.drawings.pen_path import SAME, Array, PenPath, at_share, shares
+from motionfmu.drawings.pen_path import SAME, Array, PenPath, at_share, bend_of, shares
 
 CORNER = 20.0  # [deg] what turns more is a corner, as on a network card
 # [mm] The path between corners is one curve within this of the contour, as on a network card.
 ROUND = 0.02
+# [mm] A curve of a smaller radius, which a controller may take for a cusp, is drawn in chords.
+SHARP = 0.002
 _NONE = -1
 
 
@@ -85,9 +87,9 @@ def _pieces(path: PenPath, stop: bool) -> Iterator[tuple[bool, list[str], int]]:
 
 
 def _curve(cubic: Array) -> list[str]:
-    """A cubic curve as G5, or in chords if it has no direction at an end."""
+    """A cubic curve as G5, or in chords if it has no direction at an end or nearly a cusp."""
     (i, j), (p, q) = cubic[1] - cubic[0], cubic[2] - cubic[3]
-    if min(np.hypot(i, j), np.hypot(p, q)) > 10.0 * SAME:
+    if min(np.hypot(i, j), np.hypot(p, q)) > 10.0 * SAME and bend_of(cubic) < 1.0 / SHARP:
         return [f"G5 {_place(cubic[3])} I{i:.6f} J{j:.6f} P{p:.6f} Q{q:.6f}"]
     return [f"G1 {_place(point)}" for point in at_share(cubic, shares(cubic, 0.1 * ROUND))]
 

@@ -20,6 +20,8 @@ def is_drawing(file: Path) -> bool:
 
 def read(file: Path, frame: Frame | None = None, page: int = 1) -> Drawing:
     """Read a drawing; P1 and P2 of the machine and a page are for HP-GL."""
+    if Path(file).suffix.lower() in (SVG, DXF):
+        needed("drawing")
     try:
         text = Path(file).read_bytes()
     except OSError as error:
