@@ -23,7 +23,7 @@ from motionfmu.base import extras
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 WHEEL = f"motionfmu-{PROJECT['version']}-....whl"
 TEXTS = {".md", ".py", ".toml", ".cmake", ".txt", ".c", ".h", ".html", ".js"}
-LARGE = "ezdxf|lxml|svgelements|distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|ziglang"
+LARGE = "distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|ziglang|ezdxf"
 
 
 def names(requirements: list[str]) -> set[str]:
