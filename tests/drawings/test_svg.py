@@ -165,6 +165,22 @@ def test_everything_left_out_is_told_once_with_its_first_line() -> None:
 @pytest.mark.parametrize(
     ("inside", "told"),
     [
+        ('<path d="M5 5L95 45"/>', []),
+        ('<path d="M5 5L95 55"/>', ["edge of <svg>: what is beyond it is drawn, too (line 1)"]),
+        (
+            '<svg width="9" height="9"><path d="M5 5L9.5 4"/></svg>',
+            ["edge of <svg>: what is beyond it is drawn, too (line 2)"],
+        ),
+        ('<svg width="9" height="9" overflow="visible"><path d="M5 5L9.5 4"/></svg>', []),
+    ],
+)
+def test_an_edge_cuts_nothing_off_but_is_told(inside: str, told: list[str]) -> None:
+    assert words(page(inside)) == told
+
+
+@pytest.mark.parametrize(
+    ("inside", "told"),
+    [
         ("<path", "line 3: no XML: "),
         ('\n<path d="M0 0 L 5 X"/>', "line 3: <path> d = 'M0 0 L 5 X': 'X' is no path data"),
         ('<path d="M0 0 L 5"/>', "line 2: <path> d = 'M0 0 L 5': path data ends within a command"),

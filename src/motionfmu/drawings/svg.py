@@ -152,14 +152,28 @@ class _SvgReader:
         style = self._style(element, around)
         if style is None:
             return
-        matrix = around.matrix @ self._own_matrix(element, style)
+        whole = size
+        edge = matrix = around.matrix @ self._own_matrix(element, style)
         if box := self._box(element):
             aspect = element.get("preserveAspectRatio") or ""
             fit = self._value(
                 element, "preserveAspectRatio", lambda text: fitted(box, size, text), aspect
             )
             matrix, size = matrix @ fit, (box[2], box[3])
+        first = len(self.lines)
         self._inside(element, replace(around, matrix=matrix, size=size, style=style))
+        if style.get("overflow") != "visible" and self._beyond(first, edge, whole):
+            what = f"edge of <{_tag(element)}>: what is beyond it is drawn, too"
+            self.left.add(what, element.sourceline, "")
+
+    def _beyond(self, first: int, edge: Array, size: tuple[float, float]) -> bool:
+        """Whether lines from the first on leave a viewport, which would cut them off."""
+        if abs(np.linalg.det(edge)) < 1e-12:
+            return False
+        back = np.linalg.inv(edge)
+        nodes = [p.points @ back[:2, :2].T + back[:2, 2] for p in self.lines[first:]]
+        slack = 1e-6 * max(size)
+        return any((p < -slack).any() or (p > np.array(size) + slack).any() for p in nodes)
 
     def _inside(self, element: Any, around: _Around) -> None:
         if around.depth > DEPTH_MAX:
@@ -285,7 +299,7 @@ class _SvgReader:
             self.left.add("markers of a line", line)
 
 
-_STYLED = ("display", "transform", *_UNSEEN, *_INHERITED)
+_STYLED = ("display", "transform", "overflow", *_UNSEEN, *_INHERITED)
 
 
 def _tag(element: Any) -> Any:
