@@ -139,6 +139,14 @@ def test_lines_are_joined_where_their_ends_meet() -> None:
     assert [c.closed for c in clean(drawing(*loose, ordered=True))] == [False] * 7
 
 
+def test_a_gap_where_a_chain_ends_is_closed_too() -> None:
+    near, far = 0.6 * MEET, 1.6 * MEET
+    for gap, closed in ((near, True), (far, False)):
+        ring = [line((0, 0), (5, 0)), line((5, 0), (5, 5)), line((5, 5), (gap, 0))]
+        (found,) = clean(drawing(*ring))
+        assert found.closed == closed and len(found.path.nodes) == (5 if closed else 4)
+
+
 def test_where_several_lines_meet_the_straightest_goes_on() -> None:
     cross = [
         line((0, 0), (5, 5)),
