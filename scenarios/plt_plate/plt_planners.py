@@ -16,10 +16,11 @@ sys.path.append(str(HERE.parent / "short_lines"))
 import shapes  # noqa: E402
 import study as least  # noqa: E402
 
-from motionfmu.cards import load, plt  # noqa: E402
-from motionfmu.cards.contours import clean  # noqa: E402
+from motionfmu.cards import load  # noqa: E402
 from motionfmu.cards.plan import plan  # noqa: E402
 from motionfmu.cards.plan_figures import figures  # noqa: E402
+from motionfmu.drawings import plt  # noqa: E402
+from motionfmu.drawings.contours import clean  # noqa: E402
 
 UNITS = 40  # of the plotter in a mm
 RANGE = 1e4  # [mm] of the axes, as the shapes lie anywhere

@@ -5,10 +5,10 @@ import time
 import numpy as np
 from card_links import flash_with
 
-from motionfmu.cards import plt
 from motionfmu.cards.config import read
 from motionfmu.cards.plan import plan
 from motionfmu.cards.sim import VirtualNetCard
+from motionfmu.drawings import plt
 
 SEGMENTS = 100_000
 CARDS = 100

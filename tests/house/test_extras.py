@@ -23,7 +23,7 @@ from motionfmu.base import extras
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 WHEEL = f"motionfmu-{PROJECT['version']}-....whl"
 TEXTS = {".md", ".py", ".toml", ".cmake", ".txt", ".c", ".h", ".html", ".js"}
-LARGE = "distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|ziglang"
+LARGE = "distributed|pandas|scipy|matplotlib|casadi|control|pyarrow|starlette|ziglang|ezdxf"
 
 
 def names(requirements: list[str]) -> set[str]:
@@ -57,6 +57,8 @@ def base(monkeypatch: pytest.MonkeyPatch) -> None:
         ("run circle --pictures", "report"),
         ("card plan none.plt -c none.toml", "card"),
         ("card show none.plt --picture a.png", "report"),
+        ("card show none.svg", "drawing"),
+        ("gcode none.dxf", "drawing"),
     ],
 )
 def test_a_missing_extra_is_one_message(base, tmp_path: Path, line: str, extra: str) -> None:

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from card_links import flash_with
 
-from motionfmu.cards import plt
 from motionfmu.cards.config import read as config_of
 from motionfmu.cards.messages import State
 from motionfmu.cards.plan import Plan, plan
 from motionfmu.cards.sim import VirtualNetCard
+from motionfmu.drawings import plt
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 3000.0  # [mm/s^2] [mm/s^3] [pulses/mm]
 MS = 1_000_000  # [ns]

@@ -12,12 +12,13 @@ from lines_apart import apart
 from typer.testing import CliRunner
 
 from motionfmu.base.errors import InputError
-from motionfmu.cards import CardConfig, job, load, plt
+from motionfmu.cards import CardConfig, job, load
 from motionfmu.cards.config import read as config_of
-from motionfmu.cards.contours import clean, corners, way_between
-from motionfmu.cards.plan import DRAWS, Plan, PlanOptions, origin, plan
+from motionfmu.cards.plan import DRAWS, Plan, origin, plan
 from motionfmu.cards.plan_figures import figures, paths
 from motionfmu.cli import app
+from motionfmu.drawings import DrawingOptions, plt
+from motionfmu.drawings.contours import clean, corners, way_between
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 800.0
 AXIS = f"""
@@ -191,7 +192,7 @@ def test_nearest_neighbours_save_way(config: CardConfig) -> None:
     (line,) = (c for c in nearest if not c.closed)
     assert line.points[0].tolist() == [100.0, 2.5]  # turned round
     assert [c.closed for c in by_file] == [True] * 20 + [False]
-    quick, slow = (plan(drawing, config, PlanOptions(order=o)) for o in ("nearest", "file"))
+    quick, slow = (plan(drawing, config, DrawingOptions(order=o)) for o in ("nearest", "file"))
     assert len(quick.steps) < 0.9 * len(slow.steps)
     assert int((quick.steps == DRAWS).sum()) == pytest.approx(int((slow.steps == DRAWS).sum()))
 
@@ -214,7 +215,7 @@ def test_corners_to_stop_at(config: CardConfig) -> None:
     circle = circle[np.concatenate([[True], np.diff(circle, axis=0).any(axis=1)])]
     assert not corners(circle * 0.025, 30.0).any()
     drawing = plt.parse(written([squares()[0], np.add(circle, (2000, 0))]))
-    stopped, rounded = (plan(drawing, config, PlanOptions(corners=c)) for c in ("stop", "round"))
+    stopped, rounded = (plan(drawing, config, DrawingOptions(corners=c)) for c in ("stop", "round"))
     assert (stopped.stops, rounded.stops) == (3, 0)
     (driven, _), (free, _) = paths(stopped), paths(rounded)
     vertex = squares()[0][1:4] * 0.025
@@ -224,13 +225,13 @@ def test_corners_to_stop_at(config: CardConfig) -> None:
 
 def test_settings_make_the_motion(config: CardConfig) -> None:
     drawing = plt.parse(b"SP1;VS2;PU400,400;PD2400,400;PU;")
-    slow, quick = plan(drawing, config, PlanOptions(speeds=True)), plan(drawing, config)
+    slow, quick = plan(drawing, config, DrawingOptions(speeds=True)), plan(drawing, config)
     assert figures(slow, config).speed[0] <= 200.0
     tops = [np.diff(p.places[p.steps == DRAWS, 0]).max() * 1e3 for p in (slow, quick)]
     # With limited jerk the end of a ramp is eased towards the feed.
     assert np.all(np.array(tops) <= [20.0 + 1e-9, 100.0 + 1e-9])
     assert tops == pytest.approx([20.0, 100.0], rel=2e-3)
-    moved = plan(drawing, config, PlanOptions(offset=(5.0, -3.0)))
+    moved = plan(drawing, config, DrawingOptions(offset=(5.0, -3.0)))
     assert (moved.places[-1] - quick.places[-1])[:2].tolist() == pytest.approx([5.0, -3.0])
     assert moved.job[128:160] != quick.job[128:160] == plan(drawing, config).job[128:160]
     dwell = int((quick.steps == 1).sum())
@@ -282,7 +283,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("motionfmu.cards.plan_figures.SLOT", 3)
     long = run(app, words, catch_exceptions=False)
     assert long.exit_code == 1 and "too long for a slot of the card's flash" in long.stdout
-    with pytest.raises(InputError, match="--order far: file or nearest wanted"):
+    with pytest.raises(InputError, match="--order far: file, nearest or inside wanted"):
         run(app, [*words, "--order", "far"], catch_exceptions=False)
     with pytest.raises(InputError, match=r"cannot read b\.plt"):
         run(app, ["card", "show", "b.plt"], catch_exceptions=False)
@@ -295,7 +296,7 @@ def test_the_job_of_the_scenario_is_of_its_drawing() -> None:
     folder = ROOT / "scenarios/plt_plate"
     drawing, settings = plt.read(folder / "plate.plt"), load(folder / "card.toml")
     kept = job.read(folder / "plate.mcj")
-    assert kept.origin == origin(drawing, settings, PlanOptions())
+    assert kept.origin == origin(drawing, settings, DrawingOptions())
     (line,) = clean(drawing)
     vertices = np.loadtxt(folder / "plate.txt")[:, :2]
     np.testing.assert_allclose(line.points, vertices, atol=1e-9)

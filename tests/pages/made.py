@@ -132,9 +132,10 @@ def on_a_machine(stop: float) -> str:
 
 
 def plan() -> str:
-    from motionfmu.cards import load, plt
+    from motionfmu.cards import load
     from motionfmu.cards.plan import plan as planned
     from motionfmu.cards.plan_figures import figures
+    from motionfmu.drawings import plt
     from motionfmu.report.jobs import card_page
 
     folder = ROOT / "scenarios/plt_plate"

@@ -54,6 +54,16 @@ def test_a_program_runs_on_a_machine_without_a_scenario(name: str) -> None:
     assert -1e-9 <= result.done_at + 0.1 - result.time[-1] < row
 
 
+def test_a_drawing_in_svg_runs_on_a_card_and_on_a_mill() -> None:
+    badge = MACHINES / "engraver/badge.svg"
+    for name, most in (("engraver", 3e-5), ("mill3", 3e-5)):
+        feed = {"mcc.feed": 3000} if name == "mill3" else {}
+        result = motionfmu.machine(name).run(badge, set=feed)
+        assert result.ok and result.warnings == ()
+        place = result["machine.table_position"][:, :2].max(axis=0)
+        assert place == pytest.approx([0.058, 0.038], abs=most)
+
+
 def test_a_program_on_a_machine_is_the_scenario_of_both() -> None:
     scenario = motionfmu.load(ROOT / "scenarios/square")
     program = ROOT / "scenarios/square/square.ngc"

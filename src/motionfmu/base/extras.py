@@ -23,6 +23,7 @@ EXTRAS = {
     "dask": Extra(("distributed",), "a study on a cluster"),
     "pandas": Extra(("pandas",), "a table of pandas"),
     "card": Extra(CARD, "planning a drawing"),
+    "drawing": Extra(("ezdxf", "lxml", "svgelements"), "a drawing in SVG or DXF"),
     "export": Extra(("ziglang",), "compiling for other platforms"),
 }
 

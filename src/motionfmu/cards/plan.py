@@ -5,16 +5,17 @@ import hashlib
 import json
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from motionfmu.base.binding import Struct, dtype, library
 from motionfmu.base.errors import InputError
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.contours import PenContour, clean, corners
-from motionfmu.cards.plt import PltDrawing
+from motionfmu.drawings import Drawing, DrawingOptions
+from motionfmu.drawings.contours import PenContour, contours_of, corners
 
 AXES = 4
 PAGE = 256
@@ -44,28 +45,14 @@ class Plan:
     seconds: float  # [s] that planning took
 
 
-@dataclass(frozen=True)
-class PlanOptions:
-    """Options of the planning of a drawing."""
-
-    order: str = "file"  # "file" or "nearest": of the contours
-    # "round" within the tolerance, or "stop": to rest exactly at vertices where the path
-    # turns by more than the configuration's corner angle
-    corners: str = "round"
-    pens: list[int] | None = None  # Only lines of these pens; None: of all
-    speeds: bool = False  # Keep the speeds that the drawing asks for where they are below the feed
-    # [mm] from the drawing's origin to the machine's position 0
-    offset: tuple[float, float] = (0.0, 0.0)
-
-
-def plan(drawing: PltDrawing, config: CardConfig, options: PlanOptions | None = None) -> Plan:
+def plan(drawing: Drawing, config: CardConfig, options: DrawingOptions | None = None) -> Plan:
     """Plan a drawing for a card."""
-    options = options or PlanOptions()
+    options = options or DrawingOptions()
     if len(config.axes) < 2:
         raise InputError(f"{len(config.axes)} axes in the configuration, X and Y wanted")
-    contours = clean(drawing, options.pens, options.order)
+    contours = contours_of(drawing, options)
     if not contours:
-        raise InputError(f"{drawing.name}: nothing is drawn")
+        raise InputError(drawing.nothing)
     _within(drawing, contours, config, options.offset)
     began = time.perf_counter()
     planner = _planner(config)
@@ -87,7 +74,7 @@ def plan(drawing: PltDrawing, config: CardConfig, options: PlanOptions | None = 
     )
 
 
-def origin(drawing: PltDrawing, config: CardConfig, options: PlanOptions) -> bytes:
+def origin(drawing: Drawing, config: CardConfig, options: DrawingOptions) -> bytes:
     """SHA-256 of a drawing and all that its plan depends on: what a job's header has."""
     planner, motion = _planner(config), config.motion
     settings = {name: planner[name] for name in _SETTINGS}
@@ -96,13 +83,26 @@ def origin(drawing: PltDrawing, config: CardConfig, options: PlanOptions) -> byt
         "corner": motion.corner_angle,
         "pen_output": motion.pen.output,
     }
-    chosen = ", ".join(f"{f.name}={getattr(options, f.name)!r}" for f in fields(options))
+    chosen = ", ".join(f"{name}={value!r}" for name, value in _named(drawing, options).items())
     settings |= {
         "pen": [motion.pen.output, motion.pen.up_level],
         "options": f"Options({chosen})",  # this text must not change, or hashes of old jobs would
     }
     told = json.dumps(settings, sort_keys=True, default=lambda row: row.tolist())
     return hashlib.sha256(drawing.text + b"\0" + told.encode()).digest()
+
+
+def _named(drawing: Drawing, options: DrawingOptions) -> dict[str, Any]:
+    """Options by name: those that hashes have always had, and what others say."""
+    always = {
+        "order": options.order or drawing.order,
+        "corners": options.corners or "round",
+        "pens": options.pens,
+        "speeds": options.speeds,
+        "offset": options.offset,
+    }
+    unused = ("up", "down")
+    return always | {k: v for k, v in options.changes.items() if k not in {*always, *unused}}
 
 
 def write(job: bytes, file: Path) -> None:
@@ -118,7 +118,7 @@ def write(job: bytes, file: Path) -> None:
 
 
 def _within(
-    drawing: PltDrawing, contours: list[PenContour], config: CardConfig, offset: tuple[float, float]
+    drawing: Drawing, contours: list[PenContour], config: CardConfig, offset: tuple[float, float]
 ) -> None:
     """Refuse a vertex beyond a limit of its axis."""
     for c in contours:
@@ -173,7 +173,9 @@ def _pointer(array: np.ndarray) -> ctypes.c_void_p:
     return array.ctypes.data_as(ctypes.c_void_p)
 
 
-def _vertices(contours: list[PenContour], config: CardConfig, options: PlanOptions) -> np.ndarray:
+def _vertices(
+    contours: list[PenContour], config: CardConfig, options: DrawingOptions
+) -> np.ndarray:
     """Moves and lines of all contours."""
     motion, kind = config.motion, dtype("plan_vertex")
     counts = [max(len(c.points), 2) for c in contours]

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import typer
 
 # Modules with commands that other modules add to, and modules without a command.
-SEVERAL = {"card", "common", "console_text"}
+SEVERAL = {"card", "common", "console_text", "drawing_choices"}
 
 
 def __getattr__(name: str) -> Any:

@@ -1,6 +1,7 @@
 """The commands that make jobs of drawings, and show both."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,14 +11,25 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.cli.card import card
 from motionfmu.cli.common import FAILED, bare_table, out, results
+from motionfmu.cli.drawing_choices import (
+    At,
+    Copies,
+    Corners,
+    Knife,
+    Larger,
+    Order,
+    Pens,
+    Pitch,
+    drawing_options,
+    drawing_table,
+)
 
 if TYPE_CHECKING:
     from motionfmu.cards.job import Job
     from motionfmu.cards.plan_figures import Figures
-    from motionfmu.cards.plt import PltDrawing
+    from motionfmu.drawings import Drawing
 
 Config = Annotated[Path, typer.Option("-c", "--config", help="Configuration of the card.")]
-Corner = Annotated[tuple[float, float], typer.Option(metavar="X Y", help="Place of its 0 [mm].")]
 FrameOption = Annotated[
     tuple[float, float, float, float] | None,
     typer.Option("--frame", metavar="X1 Y1 X2 Y2", help="P1 and P2 of the machine, for SC."),
@@ -28,14 +40,18 @@ PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with sever
 
 @card.command()
 def plan(  # noqa: PLR0913  (each is an option of the command)
-    file: Annotated[Path, typer.Argument(help="PltDrawing, a PLT file.")],
+    file: Annotated[Path, typer.Argument(help="Drawing: .plt, .svg or .dxf.")],
     config: Config,
     output: Output = None,
-    order: Annotated[str, typer.Option(help="Of the contours: file or nearest.")] = "file",
-    corners: Annotated[str, typer.Option(help="At corners: round or stop.")] = "round",
-    pen: Annotated[list[int] | None, typer.Option(help="Only what this pen draws.")] = None,
+    order: Order = None,
+    corners: Corners = None,
+    pen: Pens = None,
+    at: At = None,
+    scale: Larger = None,
+    copies: Copies = None,
+    pitch: Pitch = None,
+    knife: Knife = None,
     speeds: Annotated[bool, typer.Option("--speeds", help="Keep speeds of VS.")] = False,
-    at: Corner = (0.0, 0.0),
     frame: FrameOption = None,
     page: PageOption = 1,
     report: Annotated[bool, typer.Option("--report", help="Write a page and a picture.")] = False,
@@ -43,34 +59,35 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Plan a drawing: a job for the card, and what it comes to."""
     needed("card")
-    from motionfmu.cards import load, plt
-    from motionfmu.cards.contours import clean, way_between
-    from motionfmu.cards.plan import PlanOptions, write
+    from motionfmu.cards import load
     from motionfmu.cards.plan import plan as planned
+    from motionfmu.cards.plan import write
     from motionfmu.cards.plan_figures import figures
+    from motionfmu.drawings import reading
+    from motionfmu.drawings.contours import contours_of, way_between
 
-    for name, value, known in (
-        ("--order", order, ("file", "nearest")),
-        ("--corners", corners, ("round", "stop")),
-    ):
-        if value not in known:
-            raise InputError(f"{name} {value}: {' or '.join(known)} wanted")
+    asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
+    table = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
+    options = replace(drawing_options(table), speeds=speeds)
     settings = load(config)
-    drawing = plt.read(file, frame, page=page)
-    found = planned(drawing, settings, PlanOptions(order, corners, pen or None, speeds, at))
-    numbers = figures(found, settings, at)
+    drawing = reading.read(file, frame, page)
+    found = planned(drawing, settings, options)
+    numbers = figures(found, settings, options.offset)
     target = output or file.with_suffix(".mcj")
     write(found.job, target)
     told: dict[str, Any] = {"drawing": str(file), "job": str(target)} | numbers.numbers()
     told |= {"page": drawing.page, "pages": drawing.pages}
-    if order == "nearest":
-        told["way_up_file"] = way_between(clean(drawing, pen or None))
+    if options.order == "nearest":
+        told["way_up_file"] = way_between(contours_of(drawing, replace(options, order="file")))
+    told["notes"] = [n.words for n in drawing.notes]
     if as_json:
         print(json.dumps(told, indent=1, allow_nan=False))
     else:
         if drawing.pages > 1:
             out.print(f"page {page} of {drawing.pages}; --page chooses another")
         _tell(file, target, numbers, told.get("way_up_file"))
+        if drawing.notes:
+            out.print(f"note: {drawing.told}", markup=False, soft_wrap=True)
     if report:
         folder = results(file.stem, "plan")
         _report(file.stem, found, drawing, told, folder)
@@ -105,7 +122,7 @@ def _tell(file: Path, target: Path, n: "Figures", by_file: float | None) -> None
 
 
 def _report(
-    name: str, found: Any, drawing: "PltDrawing", numbers: dict[str, Any], folder: Path
+    name: str, found: Any, drawing: "Drawing", numbers: dict[str, Any], folder: Path
 ) -> None:
     from motionfmu.report import result_folder
     from motionfmu.report.jobs.card_charts import draw_plan
@@ -122,13 +139,14 @@ def _report(
 
 @card.command()
 def show(
-    file: Annotated[Path, typer.Argument(help="PltDrawing (.plt) or job (.mcj).")],
+    file: Annotated[Path, typer.Argument(help="Drawing (.plt, .svg, .dxf) or job (.mcj).")],
     picture: Annotated[Path | None, typer.Option(help="Write a picture, .png or .svg.")] = None,
     frame: FrameOption = None,
     page: PageOption = 1,
 ) -> None:
     """Show what a drawing or a job holds."""
-    from motionfmu.cards import job, plt
+    from motionfmu.cards import job
+    from motionfmu.drawings import reading
 
     if picture and picture.suffix not in (".png", ".svg"):
         raise InputError(f"--picture {picture}: .png or .svg wanted")
@@ -139,30 +157,32 @@ def show(
             raise InputError(f"{file}: --frame and --page are for drawings, this is a job")
         _show_job(file, job.read(file), picture)
     else:
-        _show_drawing(file, plt.read(file, frame, page=page), picture)
+        _show_drawing(file, reading.read(file, frame, page), picture)
     if picture:
         out.print(f"picture: {picture}", soft_wrap=True)
 
 
-def _show_drawing(file: Path, drawing: "PltDrawing", picture: Path | None) -> None:
+def _show_drawing(file: Path, drawing: "Drawing", picture: Path | None) -> None:
     import numpy as np
 
     low, high = drawing.extent
     size = f"X {low[0]:.3f} .. {high[0]:.3f}, Y {low[1]:.3f} .. {high[1]:.3f} mm"
     several = f", page {drawing.page} of {drawing.pages}" if drawing.pages > 1 else ""
     out.print(f"[bold]{file}[/]  {size}{several}", soft_wrap=True)
-    table = bare_table("pen", "lines", "vertices", "way [mm]", "X [mm]", "Y [mm]")
+    names = ["of"] if drawing.pens else []
+    table = bare_table("pen", *names, "lines", "vertices", "way [mm]", "X [mm]", "Y [mm]")
     for pen, lines in drawing.layers.items():
         points = [p.points for p in lines]
         way = sum(float(np.linalg.norm(np.diff(p, axis=0), axis=1).sum()) for p in points)
         low, high = (f(np.vstack(points), axis=0) for f in (np.min, np.max))
         spans = [f"{a:.3f} .. {b:.3f}" for a, b in zip(low, high, strict=True)]
-        table.add_row(f"{pen}", f"{len(lines)}", f"{sum(map(len, points))}", f"{way:.1f}", *spans)
+        of = [drawing.pens.get(pen, "")] if drawing.pens else []
+        table.add_row(
+            f"{pen}", *of, f"{len(lines)}", f"{sum(map(len, points))}", f"{way:.1f}", *spans
+        )
     out.print(table)
     for n in drawing.notes:
-        times = f", {n.count} times" if n.count > 1 else ""
-        place = f"line {n.line}, column {n.column}, byte {n.byte}"
-        out.print(f"passed over {n.text}{times} ({place})", markup=False, soft_wrap=True)
+        out.print(n.words, markup=False, soft_wrap=True)
     if picture:
         from motionfmu.report.jobs.card_charts import draw_drawing
 

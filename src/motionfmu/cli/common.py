@@ -197,13 +197,19 @@ OnMachine = Annotated[
 ]
 
 
-def loaded(path: Path, machine: str | None) -> "Scenario":
-    """The scenario that a path means; with a machine, the program there on that machine."""
+def loaded(path: Path, machine: str | None, drawing: dict[str, Any] | None = None) -> "Scenario":
+    """The scenario that a path means; with a machine, the program there on that machine.
+
+    drawing: what is asked of a program that is a drawing, as the table of that name.
+    """
     from motionfmu import run
 
+    tables: dict[str, Any] = {"drawing": drawing} if drawing else {}
     if machine is None:
+        if drawing:
+            raise InputError(f"--{next(iter(drawing))}: it goes with --machine and a drawing")
         return run.load(path)
-    return run.machine(machine).scenario(path)
+    return run.machine(machine).scenario(path, **tables)
 
 
 def setting(text: str) -> tuple[str, Any]:

@@ -22,10 +22,23 @@ from motionfmu.cli.common import (
     results,
     settings,
 )
+from motionfmu.cli.drawing_choices import (
+    At,
+    Copies,
+    Corners,
+    Knife,
+    Larger,
+    Order,
+    Pens,
+    Pitch,
+    drawing_options,
+    drawing_table,
+)
 
 if TYPE_CHECKING:
     from motionfmu.analysis.cycle_time import CommandedMotion, Lifted
     from motionfmu.analysis.gcode import Fault, Program
+    from motionfmu.run.program_translation import MachineProgram
 
 Planned = tuple["CommandedMotion", list["Lifted"]]
 
@@ -57,8 +70,18 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     delete: Annotated[bool, typer.Option("--block-delete", help="Pass over lines with /.")] = False,
     folder: Folder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
+    order: Order = None,
+    corners: Corners = None,
+    pen: Pens = None,
+    at: At = None,
+    scale: Larger = None,
+    copies: Copies = None,
+    pitch: Pitch = None,
+    knife: Knife = None,
 ) -> None:
     """Check part programs: faults, cycle time, extents, tools; draw their paths.
+
+    A drawing is checked as the part program that a mill gets.
 
     With --machine its speeds, ramps, travel, tools and words count, where no option says other, and
     the time is that of its controller's planner, which tells where it goes.
@@ -75,15 +98,20 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         read_as["block_delete"] = delete
     read_as |= _limits(limit, read_as.get("angles", False))
     table = text_in(tools) if tools else table
+    asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
+    drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
     told, good = {}, True
     for file in files:
-        program = read(file, table, **read_as)
+        made = _translated(file, machine, drawing)
+        program = read(made.file, table, **read_as)
         good = good and not program.faults
-        planned = None if program.faults else _planned(file, machine, given)
+        tables = {"set": given} | ({"drawing": drawing} if drawing else {})
+        planned = None if program.faults else _planned(file, machine, tables)
         told[str(file)] = found = _numbers(program, planned)
+        found |= {"left_out": list(made.notes)} if made.notes else {}
         if not as_json:
             target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
-            _show(file, program, planned, found, target)
+            _show(file, made, (program, planned), found, target)
     if as_json:
         give(json.dumps(told, indent=1, allow_nan=False))
     if not good:
@@ -139,14 +167,31 @@ def _limits(texts: list[str], angles: bool) -> dict[str, Any]:
     return {"bounded": bounded, "low": low, "high": high}
 
 
-def _planned(file: Path, machine: str | None, given: dict[str, Any]) -> Planned | None:
+def _translated(file: Path, machine: str | None, drawing: dict[str, Any]) -> "MachineProgram":
+    """The part program of a file, which a drawing becomes."""
+    from motionfmu.drawings.reading import ENDINGS, is_drawing
+    from motionfmu.run.machine_program import Machine
+    from motionfmu.run.program_translation import MachineProgram, drawing_as_gcode
+
+    if is_drawing(file):
+        if machine is not None:
+            return Machine(machine).translated(file, drawing)
+        return drawing_as_gcode(file.resolve(), drawing_options(drawing), True)
+    if drawing:
+        told = f"it is for drawings ({', '.join(ENDINGS)})"
+        raise InputError(f"--{next(iter(drawing))}: {file}: {told}")
+    return MachineProgram(file)
+
+
+def _planned(file: Path, machine: str | None, tables: dict[str, Any]) -> Planned | None:
     """The program as a machine's controller commands it, and with each limit lifted."""
+    given = tables["set"]
     if machine is None:
         return None
     from motionfmu.analysis.cycle_time import planned, what_if
     from motionfmu.run import Machine
 
-    scenario = Machine(machine).scenario(file, set=given)
+    scenario = Machine(machine).scenario(file, **tables)
     plan = planned(scenario)
     return plan, what_if(scenario, plan, set=given)
 
@@ -183,10 +228,18 @@ def _numbers(program: "Program", planned: Planned | None) -> dict[str, Any]:
     return found
 
 
+def _fault_places(made: Path, program: "Program") -> list[str]:
+    """Faults of a program that was made of a drawing, by their places there."""
+    from motionfmu.run.translated_places import in_source
+
+    found = [f"{made}: line {f.line}: {f.why} {f.text}{_more(f)}" for f in program.faults]
+    return list(dict.fromkeys(in_source(text) for text in found))
+
+
 def _show(
     file: Path,
-    program: "Program",
-    planned: Planned | None,
+    made: "MachineProgram",
+    read: tuple["Program", Planned | None],
     found: dict[str, Any],
     target: Path,
 ) -> None:
@@ -201,15 +254,17 @@ def _show(
         place,
         write_path,
     )
+    from motionfmu.run.translated_places import in_source
 
-    for text in fault_lines(str(file), program):
-        out.print(text, markup=False, soft_wrap=True)
+    program, planned = read
+    drawn = made.file != file
+    told = [f"note: {note}" for note in made.notes]
+    told += _fault_places(made.file, program) if drawn else fault_lines(str(file), program)
     for note in program.notes:
-        out.print(
-            f"{place(str(file), note)}: note: {note.why} {note.text}{_more(note)}",
-            markup=False,
-            soft_wrap=True,
-        )
+        where = f"{made.file}: line {note.line}" if drawn else place(str(file), note)
+        told.append(in_source(f"{where}: note: {note.why} {note.text}{_more(note)}"))
+    for text in told:
+        out.print(text, markup=False, soft_wrap=True)
     if program.faults:
         return
     s = summarise(program)
@@ -228,12 +283,12 @@ def _show(
     out.print(table)
     if planned is not None:
         _tell_plan(planned)
-    drawn = list(strokes(program))
+    path = list(strokes(program))
     result_folder.usable(target)
     with result_folder.whole(target) as part:
         if not (without := missing("report")):
-            write_path(file.stem, drawn, part)
-        page = page_text(file.stem, program, s, drawn, planned)
+            write_path(file.stem, path, part)
+        page = page_text(file.stem, program, s, path, planned)
         (part / "report.html").write_text(page, encoding="utf-8")
         numbers = json.dumps(found, indent=1, allow_nan=False)
         (part / result_folder.NUMBERS).write_text(numbers + "\n", encoding="utf-8")

@@ -27,6 +27,17 @@ from motionfmu.cli.common import (
     settings,
     under_way,
 )
+from motionfmu.cli.drawing_choices import (
+    At,
+    Copies,
+    Corners,
+    Knife,
+    Larger,
+    Order,
+    Pens,
+    Pitch,
+    drawing_table,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -133,6 +144,14 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     as_json: Annotated[
         bool, typer.Option("--json", help="Print result.json; without --out nothing is written.")
     ] = False,
+    order: Order = None,
+    corners: Corners = None,
+    pen: Pens = None,
+    at: At = None,
+    scale: Larger = None,
+    copies: Copies = None,
+    pitch: Pitch = None,
+    knife: Knife = None,
 ) -> None:
     """Run a scenario, or a program on a machine, judge it and write its report."""
     from motionfmu.report import result_folder
@@ -143,7 +162,9 @@ def run(  # noqa: PLR0913  (each is an option of the command)
         needed("report")
     if save_as and machine is None:
         raise InputError(f"--save-as {save_as}: it goes with --machine")
-    scenario = loaded(path, machine)
+    asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
+    drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
+    scenario = loaded(path, machine, drawing)
     target = result_folder.usable(folder or results(scenario.name))
     if save_as and machine:
         from motionfmu.run.saved_scenario import save_scenario

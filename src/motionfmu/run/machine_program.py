@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file, shown
-from motionfmu.run.program_translation import program_for, time_of
+from motionfmu.run.program_translation import MachineProgram, program_for, time_of
 from motionfmu.run.result import Result
 from motionfmu.run.runner import Scenario
 from motionfmu.scenarios.body import PLANNED
@@ -70,8 +70,8 @@ class Machine:
         ----------
         program : str or Path
             File of the program, in the language of the machine's controller; or a drawing
-            (.plt), which a mill gets as G-code, and a network card as a job, as it gets a part
-            program.
+            (.plt, .svg, .dxf), which a mill gets as G-code, and a network card as a job, as it
+            gets a part program.
         limit : float or "planned"
             The longest run [s]; one that is not done by then has a warning. Planned: twice the
             time that its controller plans, and 600 s at least.
@@ -80,7 +80,8 @@ class Machine:
         set : mapping, optional
             Values by ``component.variable``, stronger than the machine's.
         **tables
-            Any other key or table of a scenario.toml.
+            Any other key or table of a scenario.toml; ``drawing={"scale": 2.0}`` is stronger than
+            the machine's [drawing].
 
         Returns
         -------
@@ -99,7 +100,7 @@ class Machine:
         if not self.takes_programs:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
-        ready = program_for(self._made({"stop": 1.0}, self.name, ""), file.resolve())
+        ready = self.translated(file, tables.get("drawing", {}))
         values = {str(self._signals.program): str(ready.file), **self._beside(file.resolve())}
         values = ready.values | values | dict(set or {})
         given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
@@ -108,7 +109,29 @@ class Machine:
         if self._signals.start is not None:
             given["drive"] = [{"input": self._signals.start, "at": [START], "value": [1]}]
         about = f"{file.name} on {self.name}"
-        return Scenario(self._made(given | tables | {"set": values}, file.stem, about))
+        found = Scenario(self._made(given | tables | {"set": values}, file.stem, about))
+        found.notes = ready.notes
+        return found
+
+    def translated(self, file: Path, drawing: Mapping[str, Any]) -> MachineProgram:
+        """Make what the machine's controller reads of a program.
+
+        Parameters
+        ----------
+        file : Path
+            The program.
+        drawing : mapping
+            A table [drawing], stronger than the machine's.
+
+        Returns
+        -------
+        MachineProgram
+            The file that the controller gets.
+        """
+        asked = {"stop": 1.0} | ({"drawing": drawing} if drawing else {})
+        document = self._made(asked, self.name, "")
+        document.refuse(list(document.wrong))
+        return program_for(document, file.resolve())
 
     def plan(self) -> Scenario:
         """The machine without a program, checked against its FMUs.

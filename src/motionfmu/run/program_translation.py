@@ -1,26 +1,27 @@
 """Programs in a language that a machine's controller does not read, translated into its own."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from motionfmu.base.disk_cache import kept, key
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
+from motionfmu.drawings import Drawing, DrawingOptions, Polyline, reading
+from motionfmu.drawings.contours import contours_of
+from motionfmu.drawings.gcode_text import gcode_of
+from motionfmu.drawings.pen_path import PenPath
+from motionfmu.drawings.reading import ENDINGS, is_drawing
+from motionfmu.run.translated_places import write_places
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import Document
 
-if TYPE_CHECKING:
-    from motionfmu.cards.plt import PltDrawing
-
 GCODE = (".ngc", ".nc", ".tap", ".gcode")  # endings of part programs
-DRAWING, JOB = ".plt", ".mcj"
-# [mm] Z of the tool above a drawing and in it, where a machine with a Z axis draws.
-UP, DOWN = 0.0, -1.0
+JOB = ".mcj"
 CHORD = 1e-3  # [mm] a chord is off an arc of a part program by no more, where a card draws it
 
 
@@ -31,19 +32,58 @@ class MachineProgram:
     file: Path
     values: dict[str, Any] = field(default_factory=dict)
     seconds: float | None = None
+    notes: tuple[str, ...] = ()  # what of a drawing is left out
 
 
 def program_for(document: Document, file: Path) -> MachineProgram:
     """The program as the machine's controller reads it; as it is, if it reads it or refuses it."""
     component = str(document.body.signals.program).partition(".")[0]
+    drawn = is_drawing(file)
+    if not drawn and (given := options_of(document).changes):
+        if any(document.sources[0].has("drawing", _KEYS.get(key, key), None) for key in given):
+            raise InputError(f"{file}: {', '.join(given)} is for drawings ({', '.join(ENDINGS)})")
     if document.body.signals.config is not None:
         return _job(document, component, file)
-    reads_gcode = "tool_table" in fmus.ports(document.body.component[component])
-    if file.suffix.lower() == DRAWING and reads_gcode:
-        lines = _gcode_of(file, any(axis.name == "Z" for axis in document.axes))
-        text = "\n".join(lines) + "\n"
-        return MachineProgram(_made(f"{file.stem}.ngc", lambda made: made.write_text(text), text))
+    if drawn and "tool_table" in fmus.ports(document.body.component[component]):
+        return drawing_as_gcode(
+            file, options_of(document), any(a.name == "Z" for a in document.axes)
+        )
     return MachineProgram(file)
+
+
+_KEYS = {"offset": "at"}
+
+
+def options_of(document: Document) -> DrawingOptions:
+    """What a machine and whoever runs it ask of a drawing."""
+    table = document.body.drawing
+    i, j = table.copies
+    if (i > 1 and table.pitch[0] == 0.0) or (j > 1 and table.pitch[1] == 0.0):
+        raise document.error(f"copies = {table.copies}: a pitch is missing", "drawing", "copies")
+    plain = table.model_dump(exclude={"at", "copies", "pitch"})
+    x, y = table.at
+    return DrawingOptions(
+        **plain, offset=(x, y), copies=(i, j), pitch=(table.pitch[0], table.pitch[1])
+    )
+
+
+def drawing_as_gcode(file: Path, options: DrawingOptions, has_z: bool) -> MachineProgram:
+    """A drawing as a part program, with the pen as Z if there is one."""
+    drawing = reading.read(file)
+    contours = contours_of(drawing, options)
+    if not contours:
+        raise InputError(drawing.nothing)
+    made = gcode_of(contours, file.name, options, has_z)
+    told = {first: drawing.place(first) for first in set(made.source) if first >= 0}
+    places = [told.get(first, "") for first in made.source]
+    name = f"{file.stem}.ngc"
+
+    def make(target: Path) -> None:
+        target.write_text(made.text, encoding="utf-8")
+        write_places(target, file, places)
+
+    notes = (drawing.told,) if drawing.notes else ()
+    return MachineProgram(_made(name, make, made.text, str(file), "\n".join(places)), notes=notes)
 
 
 def _made(name: str, make: Callable[[Path], Any], *parts: str | bytes) -> Path:
@@ -54,7 +94,7 @@ def _made(name: str, make: Callable[[Path], Any], *parts: str | bytes) -> Path:
 def _job(document: Document, component: str, file: Path) -> MachineProgram:
     """A job for a network card, with the parameters that its configuration gives the card."""
     needed("card")
-    from motionfmu.cards import job, load, plt
+    from motionfmu.cards import job, load
     from motionfmu.cards.plan import plan, write
 
     name = str(document.body.signals.config)
@@ -63,26 +103,27 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
         raise document.error(f"config = {name!r}: no such file", "signals", "config")
     config = load(place)
     values = {f"{component}.{k}": v for k, v in config.as_parameters().items()}
+    notes: tuple[str, ...] = ()
     if file.suffix.lower() != JOB:
-        if file.suffix.lower() == DRAWING:
-            drawing = plt.read(file)
+        options = options_of(document)
+        if is_drawing(file):
+            drawing = reading.read(file)
         elif file.suffix.lower() in GCODE:
-            drawing = _drawing_of(file)
+            drawing, options = _drawing_of(file), DrawingOptions()
         else:
-            told = f"a drawing ({DRAWING}), a job ({JOB}) or a part program wanted"
+            told = f"a drawing ({', '.join(ENDINGS)}), a job ({JOB}) or a part program wanted"
             raise InputError(f"{file}: {told}")
-        planned = plan(drawing, config)
+        planned = plan(drawing, config, options)
+        notes = (drawing.told,) if drawing.notes else ()
         file = _made(f"{file.stem}{JOB}", lambda made: write(planned.job, made), planned.job)
-    return MachineProgram(file, values, job.read(file).time)
+    return MachineProgram(file, values, job.read(file).time, notes)
 
 
-def _drawing_of(file: Path) -> "PltDrawing":
+def _drawing_of(file: Path) -> Drawing:
     """The path of a part program in X and Y: what it moves with feed is drawn."""
     from motionfmu.analysis.gcode import read, strokes
     from motionfmu.analysis.gcode.program import TYPES
     from motionfmu.analysis.gcode.summary import MOTIONS
-    from motionfmu.cards.plt import PltDrawing
-    from motionfmu.cards.plt_plotter import Polyline
 
     program = read(file)
     if program.faults:
@@ -92,42 +133,12 @@ def _drawing_of(file: Path) -> "PltDrawing":
     if len(lines_in_z):
         told = "Z moves with feed; the card draws in X and Y"
         raise InputError(f"{file}: line {lines_in_z[0]}: {told}")
-    text = program.text.encode()
-    starts = np.cumsum([0, *(len(line) + 1 for line in text.split(b"\n"))])
     lines = []
     for stroke in strokes(program, CHORD):
-        first = int(starts[int(stroke.line[0]) - 1])
-        last = int(starts[int(stroke.line[-1])])
-        lines.append(Polyline(1, not stroke.rapid, stroke.points[:, :2], first, last))
-    return PltDrawing(lines, [], file.name, text)
-
-
-def _gcode_of(file: Path, has_z: bool) -> Iterator[str]:
-    """A drawing as lines of a part program, with the pen as Z if there is one."""
-    needed("card")
-    from motionfmu.cards import plt
-    from motionfmu.cards.contours import clean
-
-    contours = clean(plt.read(file))
-    if not contours:
-        raise InputError(f"{file}: nothing is drawn")
-    up, down = (f"G0 Z{UP:g}", f"G1 Z{DOWN:g}") if has_z else ("", "")
-    yield from (f"({_plain(file.name)})", "G90 G21 G17 G94 G61")
-    for contour in contours:
-        yield from (line for line in (up, f"G0 {_place(contour.points[0])}", down) if line)
-        if contour.speed:
-            yield f"F{contour.speed * 60:.6g}"
-        yield from (f"G1 {_place(point)}" for point in contour.points[1:])
-    yield from (line for line in (up, "M2") if line)
-
-
-def _place(point: np.ndarray) -> str:
-    return f"X{point[0]:.6f} Y{point[1]:.6f}"
-
-
-def _plain(name: str) -> str:
-    """A name that a comment can hold."""
-    return "".join(c for c in name if c.isalnum() or c in " ._-")
+        first = int(stroke.line[0])
+        path = PenPath.lines(stroke.points[:, :2], first)
+        lines.append(Polyline(1, not stroke.rapid, path, first))
+    return Drawing(lines, [], str(file), program.text.encode(), place="line {}".format)
 
 
 def time_of(seconds: float, start: float, settle: float) -> float:

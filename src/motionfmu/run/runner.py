@@ -39,12 +39,16 @@ class Scenario(RunPlan):
         What is recorded.
     only_drawn : set of str
         Names among them that nothing but a figure asks for.
+    notes : tuple of str
+        What of a drawing that is its program is not drawn; a warning of each run.
 
     Raises
     ------
     InputError
         Anything wrong in the file; a line for each thing, with file, line and value.
     """
+
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         body = self.document.body
@@ -139,7 +143,7 @@ class Scenario(RunPlan):
                 return replace(ran, warnings=[*early, *ran.warnings])
 
             result = execution.run(master, asked)
-        result.warnings += _sparse(result, execution.system)
+        result.warnings += self.notes + _sparse(result, execution.system)
         if fmi == 3 and execution.system.elementwise:  # asked for
             told = "fmi = 3: wires join elements of arrays, so FMUs that have both run as FMI 2"
             result.warnings += (told,)
@@ -205,7 +209,9 @@ class Scenario(RunPlan):
         if record is not None and not isinstance(record, Mapping):
             given["record"] = {"signals": _names(record)}
         given = {k: v for k, v in given.items() if v is not None} | tables
-        return type(self)(changed(self.document, given, name or self.name))
+        found = type(self)(changed(self.document, given, name or self.name))
+        found.notes = self.notes
+        return found
 
 
 def load(path: str | Path) -> Scenario:

@@ -22,6 +22,7 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
     document = plan.document
     tables = _tables(document.sources[0].tables, options)
     machine = Path(tables.pop("machine"))
+    tables.pop("drawing", None)  # it is in the program that was made
     files = read_files(plan.resolver, tables["set"])
     tables["set"] |= {name: file.name for name, file in files.items()}
     with new_folder(folder) as part:

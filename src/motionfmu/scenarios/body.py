@@ -130,6 +130,25 @@ class MachineAxis(BaseModel):
     row: int | None = Field(default=None, ge=1)  # its element of arrays, from 1
 
 
+class DrawingTable(BaseModel):
+    """What is done with a drawing that a machine gets as its program."""
+
+    model_config = _STRICT
+    order: Literal["file", "nearest", "inside"] | None = None
+    corners: Literal["round", "stop"] | None = None
+    pens: list[int] | None = Field(default=None, max_length=LISTED_MAX)
+    speeds: bool = False
+    at: Annotated[list[float], Field(min_length=2, max_length=2)] = [0.0, 0.0]  # [mm]
+    scale: float = Field(default=1.0, gt=0, le=1e6)
+    copies: Annotated[
+        list[Annotated[int, Field(ge=1, le=1000)]], Field(min_length=2, max_length=2)
+    ] = [1, 1]  # along X and Y
+    pitch: Annotated[list[float], Field(min_length=2, max_length=2)] = [0.0, 0.0]  # [mm]
+    knife: float = Field(default=0.0, ge=0, le=100)  # [mm]
+    up: float = 0.0  # [mm] Z of a mill above a drawing
+    down: float = -1.0  # [mm] and in it
+
+
 def _bound(x: Any) -> Any:
     """A number, one for each axis, or a name, as they come from TOML."""
     listed = x if isinstance(x, list | tuple) else [x]
@@ -174,6 +193,7 @@ class Body(BaseModel):
     model_config = _STRICT
     machine: Name | None = None
     signals: MachineSignals = MachineSignals()
+    drawing: DrawingTable = DrawingTable()
     axis: list[MachineAxis] = Field(default_factory=list, max_length=LISTED_MAX)
     limits: dict[FigureName, FigureLimit] = Field(default_factory=dict, max_length=FIGURES_MAX)
     stop: Annotated[float, Field(gt=0)] | Name
@@ -219,6 +239,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "contour": Contour,
     "record": Record,
     "signals": MachineSignals,
+    "drawing": DrawingTable,
     "axis": MachineAxis,
     "limits": FigureLimit,
     "figure": Figure,

@@ -21,6 +21,7 @@ KEYED = {"drive": "input", "contrary": "off"}
 # Keys that say where tables come from, and are none of theirs.
 ORIGINS = ("extends", "without")
 # What a machine does not say, for it has no job.
+NOT_OF_A_SCENARIO = ("drawing",)  # its program is a file that the controller reads
 NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "expect", "contrary")
 
 
@@ -133,6 +134,10 @@ def of_file(path: str | Path) -> list[Source]:
 def chain(first: Source) -> list[Source]:
     """A source, those that it extends, then its machine and what that extends."""
     found = _extended(first, _scenario_beside)
+    for own in found:
+        for key in NOT_OF_A_SCENARIO:
+            if key in own.tables and own.lines is not None:
+                raise InputError(f"{own.place('', key)}: {key} is a machine's, no scenario's")
     named = next((s for s in found if "machine" in s.tables), None)
     if named is None:
         return found

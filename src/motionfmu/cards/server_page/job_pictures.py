@@ -53,11 +53,12 @@ def _planned(
     data: bytes, name: str, config: CardConfig | None, page: int
 ) -> tuple[bytes, dict[str, Any]]:
     from motionfmu.base.errors import InputError
-    from motionfmu.cards import plan, plt
+    from motionfmu.cards import plan
+    from motionfmu.drawings import reading
 
     if config is None:
         raise InputError(f"{name}: a drawing needs the card's configuration: fill it in first")
-    drawing = plt.parse(data, name, page=page)
+    drawing = reading.parse(data, name, page=page)
     told = {"notes": [n.text for n in drawing.notes], "page": drawing.page, "pages": drawing.pages}
     return plan.plan(drawing, config).job, told
 

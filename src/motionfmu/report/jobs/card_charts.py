@@ -10,7 +10,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards.job import Job
 from motionfmu.cards.plan import DRAWS, Plan
 from motionfmu.cards.plan_figures import speeds
-from motionfmu.cards.plt import PltDrawing
+from motionfmu.drawings import Drawing
 from motionfmu.report.diagram import (
     DOT,
     Diagram,
@@ -92,8 +92,8 @@ def draw_plan(plan: Plan, title: str, file: Path) -> None:
     _write(file, title, [plan_chart(plan), rate_chart(plan, 1), rate_chart(plan, 2)])
 
 
-def draw_drawing(drawing: PltDrawing, title: str, file: Path) -> None:
-    """Draw the layers of a PLT file; moves with the pen up are dotted."""
+def draw_drawing(drawing: Drawing, title: str, file: Path) -> None:
+    """Draw the layers of a drawing; moves with the pen up are dotted."""
     up = [p.points for p in drawing.lines if not p.down and len(p.points) > 1]
     lines = [path_lines(_joined(up), **UP)]
     for k, (pen, layer) in enumerate(drawing.layers.items()):

@@ -4,7 +4,7 @@ from html import escape
 from typing import Any
 
 from motionfmu.cards.plan import Plan
-from motionfmu.cards.plt import PltDrawing
+from motionfmu.drawings import Drawing
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, table
 from motionfmu.report.jobs.card_charts import plan_chart, rate_chart
@@ -15,7 +15,7 @@ FOOTER = (
 )
 
 
-def plan_page(name: str, plan: Plan, drawing: PltDrawing, numbers: dict[str, Any]) -> str:
+def plan_page(name: str, plan: Plan, drawing: Drawing, numbers: dict[str, Any]) -> str:
     """The whole HTML page."""
     page = Page()
     n = numbers

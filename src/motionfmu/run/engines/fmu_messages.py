@@ -3,6 +3,7 @@
 import re
 
 from motionfmu.base.errors import InputError
+from motionfmu.run.translated_places import in_source
 
 WARNING, ERROR = 1, 3  # status in both FMI versions; from ERROR on a run cannot go on
 # A run keeps so many different warnings of its FMUs at most.
@@ -17,6 +18,7 @@ def unnamed(message: str) -> bool:
 
 def keep(status: int, text: str, errors: list[str], warnings: list[str]) -> None:
     """Keep an error, or a warning of a component, each warning once."""
+    text = in_source(text)
     if status >= ERROR:
         errors.append(text)
     elif (

@@ -74,8 +74,12 @@ class Scanner:
 
     def where(self, byte: int) -> str:
         """File, line, column and byte in words."""
+        return f"{self.name}: {self.in_words(byte)}"
+
+    def in_words(self, byte: int) -> str:
+        """Line, column and byte in words."""
         line, column = self.place(byte)
-        return f"{self.name}: line {line}, column {column}, byte {byte}"
+        return f"line {line}, column {column}, byte {byte}"
 
     def wants(self, numbers: list[float], least: int, most: int) -> None:
         """Refuse an instruction with too few or too many numbers."""

@@ -5,27 +5,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from motionfmu.cards.plt_frame import UserUnits
-from motionfmu.cards.plt_scan import Scanner
+from motionfmu.drawings.drawing import Polyline
+from motionfmu.drawings.pen_path import CHORD, PenPath
+from motionfmu.drawings.plt_frame import UserUnits
+from motionfmu.drawings.plt_scan import Scanner
 
 UNIT = 0.025  # [mm] of a plotter unit
 VERTICES_MAX = 5_000_000  # of a file
-CHORD = 0.005  # [mm] farthest chord from an arc whose chords the file does not choose
 _CHORDS_MAX = 3600  # of one arc
 _BEZIER_MAX = 1000
 _DEGREE = math.pi / 180.0
-
-
-@dataclass(frozen=True)
-class Polyline:
-    """One move of the pen, down or up, through its vertices."""
-
-    pen: int  # From 1; 0 draws nothing
-    down: bool  # It draws
-    points: np.ndarray  # [mm]
-    first: int  # Bytes of the file that it comes from, the last one not included
-    last: int
-    speed: float = 0.0  # [mm/s] that VS asks for; 0 none
 
 
 @dataclass
@@ -36,7 +25,6 @@ class _PenStroke:
     xs: list[float]
     ys: list[float]
     first: int
-    last: int = 0
 
 
 class Plotter:
@@ -90,7 +78,8 @@ class Plotter:
             return
         points = np.stack([np.array(s.xs), np.array(s.ys)], axis=1) * UNIT
         speed = self.speeds.get(self.pen, self.speeds.get(0, 0.0))
-        self.pages[-1].append(Polyline(self.pen, s.down, points, s.first, s.last, speed))
+        path = PenPath.lines(points, s.first)
+        self.pages[-1].append(Polyline(self.pen, s.down, path, s.first, speed))
         if self.window is not None and s.down:
             low, high = points.min(axis=0) / UNIT, points.max(axis=0) / UNIT
             w = self.window
@@ -113,7 +102,6 @@ class Plotter:
                 self.count += 1
             self.stroke.xs.extend(xs)
             self.stroke.ys.extend(ys)
-            self.stroke.last = self.scan.next
         self.at = (xs[-1], ys[-1])
 
     def _coordinates(self, numbers: list[float]) -> None:
