@@ -34,6 +34,8 @@ class Machine:
         Of its folder.
     axes : list of MachineAxis
         Name, kind (``linear`` or ``rotary``) and row of each in arrays, from 1.
+    signals : MachineSignals
+        Names of its table [signals].
 
     Raises
     ------
@@ -45,13 +47,19 @@ class Machine:
         self.file = machine_file(path, Path.cwd())
         self.name = self.file.parent.name
         document = self._made({"stop": 1.0}, self.name, "")
-        self._signals, self.axes = document.body.signals, document.axes
+        self.signals, self.axes = document.body.signals, document.axes
+
+    @property
+    def config(self) -> Path | None:
+        """The configuration of its network card; None without one."""
+        name = self.signals.config
+        return None if name is None else self.plan().document.beside(name)
 
     @property
     def takes_programs(self) -> bool:
         """Whether its file says where a program goes and how it ends."""
-        ends = self._signals.done or self._signals.config
-        return self._signals.program is not None and ends is not None
+        ends = self.signals.done or self.signals.config
+        return self.signals.program is not None and ends is not None
 
     def __repr__(self) -> str:
         return f"<Machine {self.name}: {self.file}>"
@@ -100,17 +108,22 @@ class Machine:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
         ready = program_for(self._made({"stop": 1.0}, self.name, ""), file.resolve())
-        values = ready.values | {str(self._signals.program): str(ready.file)} | dict(set or {})
-        given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
+        values = ready.values | {str(self.signals.program): str(ready.file)} | dict(set or {})
+        given: dict[str, Any] = {"stop": self.signals.done, "limit": limit, "settle": settle}
         if ready.seconds is not None:
             given = {"stop": time_of(ready.seconds, START, APPROACH + settle)}
-        if self._signals.start is not None:
-            given["drive"] = [{"input": self._signals.start, "at": [START], "value": [1]}]
+        if self.signals.start is not None:
+            given["drive"] = [{"input": self.signals.start, "at": [START], "value": [1]}]
         about = f"{file.name} on {self.name}"
         return Scenario(self._made(given | tables | {"set": values}, file.stem, about))
 
-    def plan(self) -> Scenario:
+    def plan(self, **tables: Any) -> Scenario:
         """The machine without a program, checked against its FMUs.
+
+        Parameters
+        ----------
+        **tables
+            Keys or tables of a scenario.toml; without stop it runs for 1 s.
 
         Returns
         -------
@@ -122,7 +135,7 @@ class Machine:
         InputError
             Something in the machine's file is wrong.
         """
-        return Scenario(self._made({"stop": 1.0}, self.name, ""))
+        return Scenario(self._made({"stop": 1.0} | tables, self.name, ""))
 
     def run(
         self, program: str | Path, *, set: Mapping[str, Any] | None = None, **options: Any

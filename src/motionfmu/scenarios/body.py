@@ -106,13 +106,18 @@ class Figure(BaseModel):
 
 
 class MachineSignals(BaseModel):
-    """Where a machine takes its program and tells that it is done."""
+    """Where a machine takes its program, or targets, and tells that it is done."""
 
     model_config = _STRICT
     program: Name | None = None  # parameter that names it
     done: Name | None = None
     start: Name | None = None  # input that starts it when it becomes 1
     config: Name | None = None  # configuration of a network card, for which drawings are planned
+    target: Name | None = None  # input of a positioner: where to go when `start` becomes 1
+    count: Annotated[float, Field(gt=0)] | None = None  # [m] of one of `target`
+    lowest: Name | None = None  # parameters: least and largest target
+    highest: Name | None = None
+    homed: dict[str, Value] = Field(default_factory=dict)  # with which it starts as after homing
 
 
 class MachineAxis(BaseModel):

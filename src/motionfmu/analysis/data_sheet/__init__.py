@@ -1,0 +1,5 @@
+"""The data sheet of a machine: figures from runs of its FMUs, none written by hand."""
+
+from motionfmu.analysis.data_sheet.sheet import AxisSheet, DataSheet, data_sheet
+
+__all__ = ["AxisSheet", "DataSheet", "data_sheet"]
