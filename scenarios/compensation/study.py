@@ -92,7 +92,9 @@ def between(travel: float = TRAVEL) -> np.ndarray:
     return np.round(inner + shift, 3)
 
 
-def draw(before: PositioningTest, after: PositioningTest, table: PositioningTest, picture: Path) -> None:
+def draw(
+    before: PositioningTest, after: PositioningTest, table: PositioningTest, picture: Path
+) -> None:
     """Deviations before and after, and the table, over the travel."""
     figure, (top, middle, low) = plt.subplots(
         3, 1, figsize=(9.5, 9.5), sharex=True, layout="constrained"

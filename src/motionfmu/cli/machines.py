@@ -1,7 +1,6 @@
 """The command that lists machines, and measures one."""
 
 import json
-import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -53,6 +52,7 @@ def machines(
     needed("tune")
     from motionfmu.report import result_folder
     from motionfmu.report.data_sheet_page import page_text, write_sheet_picture
+    from motionfmu.report.data_sheet_table import markdown
     from motionfmu.run import machine
 
     given, own = settings(set_), machine(path)
@@ -63,6 +63,7 @@ def machines(
         for name, text in sheet.programs.items():
             (part / name).write_text(text, encoding="utf-8")
         (part / "report.html").write_text(page_text(sheet), encoding="utf-8")
+        (part / "figures.md").write_text(markdown(sheet), encoding="utf-8")
         write_sheet_picture(sheet, part / "figures")
         text = json.dumps(sheet.numbers(), indent=1, allow_nan=False)
         (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
@@ -84,40 +85,43 @@ def _measured(own: "object", given: dict[str, object]) -> "DataSheet":
 
 def _print(sheet: "DataSheet") -> None:
     """The figures in short."""
-    from motionfmu.report.data_sheet_page import milliseconds, percent
     from motionfmu.report.numbers import figure, length
 
     measured = [a for a in sheet.axes if a.positioning is not None]
     if measured:
-        rows = bare_table("ISO 230-2", *SHOWN)
+        rows = bare_table("ISO 230-2", *SHOWN, "unrest")
         for a in measured:
             assert a.positioning is not None
             factor, unit = a.axis.fine
             found = a.positioning.figures()
-            rows.add_row(a.axis.name, *(f"{figure(found[n] * factor)} {unit}" for n in SHOWN))
+            shown = [*(found[n] for n in SHOWN), a.unrest or 0.0]
+            rows.add_row(a.axis.name, *(f"{figure(size * factor)} {unit}" for size in shown))
         out.print(rows)
     for name, c in sheet.circles.items():
         both = length(c.both.g) if c.both else ""
         radius = length(c.both.d_nominal, sign=True) if c.both else ""
         out.print(f"ISO 230-4, {name}, R {c.radius:g} mm: G(b) {both}, D {radius}")
-    if any(a.loops for a in sheet.axes):
-        rows = bare_table("loop", "gain", "phase", "rise", "overshoot", "settling")
-        for a in sheet.axes:
-            for loop in a.loops:
-                m, step = loop.margins, loop.step
-                gain = f"x {figure(m.gain)}" if math.isfinite(m.gain) else ""
-                phase = f"{figure(m.phase)}°" if math.isfinite(m.phase) else ""
-                times = (
-                    milliseconds(step.rise),
-                    percent(step.overshoot),
-                    milliseconds(step.settling),
-                )
-                rows.add_row(f"{a.axis.name} {loop.kind}", gain, phase, *times)
-        out.print(rows)
+    _print_loops(sheet)
     if sheet.robot is not None:
         found = sheet.robot.found.numbers()
         poses = f"AP {length(sheet.robot.ap)}, RP {length(sheet.robot.rp)}"
         path = f"AT {length(found['AT_P'])}, RT {length(found['RT_P'])}"
         out.print(f"ISO 9283: {poses}, {path}")
     for what, why in sheet.left_out.items():
-        out.print(f"left out: {what}: {why}", markup=False)
+        out.print(f"left out: {what}: {why}", markup=False, soft_wrap=True)
+
+
+def _print_loops(sheet: "DataSheet") -> None:
+    """Margins and steps, a row a loop."""
+    from motionfmu.report.data_sheet_page import gain_words, milliseconds, percent, phase_words
+
+    rows = bare_table("loop", "gain", "phase", "rise", "overshoot", "settling")
+    for a in sheet.axes:
+        for loop in a.loops:
+            step = loop.step
+            sizes = gain_words(loop.margins), phase_words(loop.margins)
+            times = milliseconds(step.rise), milliseconds(step.settling)
+            cells = (*sizes, times[0], percent(step.overshoot), times[1])
+            rows.add_row(f"{a.axis.name} {loop.kind}", *cells)
+    if rows.row_count:
+        out.print(rows)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from html import escape
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from motionfmu.analysis.data_sheet import AxisSheet, DataSheet
 from motionfmu.analysis.data_sheet.robot_sheet import CYCLES, PATH_SPEED, SIDE, SPEED, RobotSheet
 from motionfmu.analysis.data_sheet.sheet_loops import POSITION, LoopSheet
 from motionfmu.analysis.data_sheet.sheet_programs import APPROACHES
+from motionfmu.analysis.linear import Margins
 from motionfmu.base.units import spelled
 from motionfmu.report.diagram import (
     DASH,
@@ -33,6 +35,7 @@ from motionfmu.report.style import AXES
 UP, DOWN = AXES[0], AXES[1]
 POINTS = 600  # of a curve
 HEIGHT, LOW = 200, 150  # [pixel] of a plot, of one in a picture
+COLORS = 48  # of a picture
 NONE = "\N{EN DASH}"
 HEADS_230 = ("A", "A_up", "A_down", "E", "R", "R_up", "R_down", "M", "B", "B_mean")
 WORDS_230 = {"A_up": "A↑", "A_down": "A↓", "R_up": "R↑", "R_down": "R↓", "B_mean": "mean B"}
@@ -92,7 +95,8 @@ def _limits(limit: Any) -> str:
         return NONE
     text = f"{parts[0]} {unit}".strip()
     if limit.continuous is not None:
-        text += f'<div class="sub">lasting {limit.continuous:.6g}</div>'
+        more = "" if limit.overload is None else f", above it {limit.overload:g} s"
+        text += f'<div class="sub">lasting {limit.continuous:.6g}{more}</div>'
     return text
 
 
@@ -105,6 +109,7 @@ def _add_positions(page: Page, sheet: DataSheet) -> None:
         f"ISO 230-2:2014, {APPROACHES} approaches of each target from either side, each read where"
         " the axis has rested. A is accuracy, E its systematic part, R repeatability, B the"
         " reversal value, M the range of the mean of both directions; ↑ and ↓ are one direction."
+        " Unrest is how far the axis moves while it is read, which is the mean of a second."
     )
     content = positioning_table(measured)
     for a in measured:
@@ -114,7 +119,7 @@ def _add_positions(page: Page, sheet: DataSheet) -> None:
 
 def positioning_table(measured: Sequence[AxisSheet]) -> str:
     """Figures of ISO 230-2, a row an axis."""
-    heads = ["axis", "targets", *(WORDS_230.get(n, n) for n in HEADS_230), "unit"]
+    heads = ["axis", "targets", *(WORDS_230.get(n, n) for n in HEADS_230), "unrest", "unit"]
     rows = []
     for a in measured:
         assert a.positioning is not None
@@ -122,7 +127,8 @@ def positioning_table(measured: Sequence[AxisSheet]) -> str:
         found = a.positioning.figures()
         ends = a.positioning.targets[[0, -1]]
         where = f"{len(a.positioning.targets)}: {ends[0]:g} .. {ends[1]:g} {a.axis.unit}"
-        rows.append((a.axis.name, where, *(figure(found[n] * factor) for n in HEADS_230), unit))
+        cells = [figure(found[n] * factor) for n in HEADS_230]
+        rows.append((a.axis.name, where, *cells, figure((a.unrest or 0.0) * factor), unit))
     return table(heads, rows, 2)
 
 
@@ -170,11 +176,19 @@ def _loop_name(loop: LoopSheet) -> str:
 def _margins(loop: LoopSheet) -> tuple[str, ...]:
     m = loop.margins
     kp = NONE if loop.kp is None else figure(loop.kp)
-    gain = f"x {figure(m.gain)}" if math.isfinite(m.gain) else NONE
-    phase = f"{figure(m.phase)}°" if math.isfinite(m.phase) else NONE
     delay = f"{figure(m.delay * 1e3)} ms" if math.isfinite(m.delay) else NONE
     band = f"{figure(m.bandwidth / (2.0 * math.pi))} Hz" if m.bandwidth > 0.0 else NONE
-    return kp, gain, phase, delay, figure(m.sensitivity), band
+    return kp, gain_words(m), phase_words(m), delay, figure(m.sensitivity), band
+
+
+def gain_words(m: Margins) -> str:
+    """A gain margin as a factor."""
+    return f"x {figure(m.gain)}" if math.isfinite(m.gain) else NONE
+
+
+def phase_words(m: Margins) -> str:
+    """A phase margin."""
+    return f"{figure(m.phase)}°" if math.isfinite(m.phase) else NONE
 
 
 def _step(found: Any) -> tuple[str, str, str]:
@@ -239,7 +253,7 @@ def line_chart(robot: RobotSheet, height: float = HEIGHT) -> Diagram:
     return Diagram((Scale("Along the line", "mm"),), (Subplot(y, [mark], height),))
 
 
-def write_sheet_picture(sheet: DataSheet, stem: Any) -> None:
+def write_sheet_picture(sheet: DataSheet, stem: Path) -> None:
     """Draw positioning, circle and steps as stem.png and stem.svg."""
     from motionfmu.report.matplotlib_figure import write_picture
 
@@ -255,3 +269,13 @@ def write_sheet_picture(sheet: DataSheet, stem: Any) -> None:
     columns = [c for c in (left, right) if c]
     if columns:
         write_picture(stem, f"{sheet.name}: figures from runs", sheet.about, *columns)
+        _with_few_colors(stem.with_suffix(".png"))
+
+
+def _with_few_colors(file: Path) -> None:
+    """The same picture with a palette, a quarter of the size, as it stands in a README."""
+    from PIL import Image  # what matplotlib writes pictures with
+
+    with Image.open(file) as drawn:
+        few = drawn.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+    few.save(file, optimize=True)

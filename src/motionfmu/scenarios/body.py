@@ -144,6 +144,18 @@ def _bound(x: Any) -> Any:
 Bound = Annotated[float | tuple[float, ...] | str, PlainValidator(_bound)]
 
 
+def _numbers(x: Any) -> Any:
+    """Times from TOML: one, or one for each axis, above 0."""
+    found = _bound(x)
+    if isinstance(found, str) or min(found if isinstance(found, tuple) else (found,)) <= 0.0:
+        told = "a time above 0, or a list of one for each axis wanted"
+        raise PydanticCustomError("numbers", told)
+    return found
+
+
+Numbers = Annotated[float | tuple[float, ...], PlainValidator(_numbers)]
+
+
 class FigureLimit(BaseModel):
     """Where the signal of a figure of the axes is, and what limits it."""
 
@@ -154,6 +166,7 @@ class FigureLimit(BaseModel):
     low: Bound | None = None
     high: Bound | None = None
     continuous: Bound | None = None  # of its RMS
+    overload: Numbers | None = None  # [s] that it may stay above continuous at a time
     when: Name | None = None  # parameter; where it is 0 or false there is no limit
 
 

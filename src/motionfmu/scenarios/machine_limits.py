@@ -32,6 +32,7 @@ class AxisLimit:
     low: float | None = None
     high: float | None = None
     continuous: float | None = None  # of its RMS
+    overload: float | None = None  # [s] that its size may stay above continuous at a time
 
 
 def wanted(resolver: Resolver) -> list[str]:
@@ -43,7 +44,7 @@ def wanted(resolver: Resolver) -> list[str]:
     for figure, given in document.body.limits.items():
         with faults.each():
             found.append(_signal(resolver, figure).name)
-            for key in (*BOUNDS, "when"):
+            for key in (*BOUNDS, "overload", "when"):
                 with faults.each():
                     _check_bound(resolver, figure, key, getattr(given, key))
     faults.tell()
@@ -164,6 +165,9 @@ def _of_axis(
             found[key] = float(_value(other, row, given)) * factor
         else:
             found[key] = value[place] if isinstance(value, tuple) else value
+    if acts and source.overload is not None:
+        times = source.overload
+        found["overload"] = times[place] if isinstance(times, tuple) else times
     unit = _figure_unit(resolver, figure)
     return AxisLimit(axis, figure, end, element, source.derivative, unit, **found)
 

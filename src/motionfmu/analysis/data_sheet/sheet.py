@@ -11,7 +11,13 @@ from motionfmu.analysis.data_sheet.robot_sheet import RobotSheet, robot_test
 from motionfmu.analysis.data_sheet.sheet_axes import SheetAxis, sheet_axes
 from motionfmu.analysis.data_sheet.sheet_loops import POSITION, LoopSheet, axis_model, loops
 from motionfmu.analysis.data_sheet.sheet_programs import PLANES, circle_program
-from motionfmu.analysis.data_sheet.sheet_runs import SheetMachine, circle, positioner, positioning
+from motionfmu.analysis.data_sheet.sheet_runs import (
+    READ,
+    SheetMachine,
+    circle,
+    positioner,
+    positioning,
+)
 from motionfmu.analysis.positioning import PositioningTest
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import parse
@@ -22,12 +28,12 @@ from motionfmu.scenarios.machine_limits import AxisLimit
 from motionfmu.study.tune.choice import operating_point, speed_output
 
 Told = Callable[[str, float], None]
-# A rest lasts so many settling times of the position loop, at least and at most so long [s].
-SETTLED, SHORTEST, LONGEST = 3.0, 0.25, 3.0
+# A rest lasts so many settling times of the position loop, at least and at most so long [s],
+# before what is read begins.
+SETTLED, SHORTEST, LONGEST = 3.0, 1.0, 4.0
 # A positioner's loop is looked at where it moves by this share of its travel in a second, so that
 # it does not come to its end, or as fast as its motions are in the mean.
 SLOW = 0.1
-USUAL = 0.55  # [s] a rest where no loop says how long
 
 
 @dataclass(frozen=True)
@@ -40,12 +46,15 @@ class AxisSheet:
         Its name, unit, and the ends between which it was moved.
     positioning : PositioningTest or None
         ISO 230-2, in the axis' unit; None if it was not measured.
+    unrest : float or None
+        How far the axis moves while it rests at a target and is read, at the most.
     loops : tuple of LoopSheet
         Outer loops first.
     """
 
     axis: SheetAxis
     positioning: PositioningTest | None = None
+    unrest: float | None = None
     loops: tuple[LoopSheet, ...] = ()
 
 
@@ -86,7 +95,12 @@ class DataSheet:
     programs: Mapping[str, str] = field(default_factory=dict)
 
     def numbers(self) -> dict[str, Any]:
-        """Every figure, ready for JSON; lengths in mm, angles in degrees, times in s."""
+        """Every figure for JSON, in mm, degrees and s.
+
+        Returns
+        -------
+        dict
+        """
         axes = {}
         for a in self.axes:
             test = a.positioning
@@ -95,11 +109,12 @@ class DataSheet:
                 "low": a.axis.low,
                 "high": a.axis.high,
                 "iso230_2": None if test is None else test.figures() | _targets(test),
+                "unrest": a.unrest,
                 "loops": [loop.numbers() for loop in a.loops],
             }
         limits = [
             {"axis": x.axis.name, "figure": x.figure, "unit": x.unit}
-            | {k: getattr(x, k) for k in ("limit", "low", "high", "continuous")}
+            | {k: getattr(x, k) for k in ("limit", "low", "high", "continuous", "overload")}
             for x in self.limits
         ]
         return {
@@ -149,7 +164,7 @@ def data_sheet(
         return _Measuring(SheetMachine(own, Path(folder), dict(set or {})), progress).sheet()
 
 
-Positions = dict[str, tuple[SheetAxis, PositioningTest | None]]
+Positions = dict[str, tuple[SheetAxis, PositioningTest | None, float | None]]
 
 
 class _Measuring:
@@ -247,7 +262,7 @@ class _Measuring:
 
     def _by_targets(self, axis: SheetAxis) -> Positions:
         """ISO 230-2 of an axis that goes where a target says."""
-        found: Positions = {a.name: (a, None) for a in self.axes}
+        found: Positions = {a.name: (a, None, None) for a in self.axes}
         self._next(f"positioning of {axis.name}")
         try:
             run = positioner(self.tested, axis)
@@ -261,11 +276,11 @@ class _Measuring:
             unit = parse("mm").factor / parse(signal.port.unit or "1").factor
             slow = min(run.speed, SLOW * (run.axis.high - run.axis.low))
             self.point = {speed: float(slow * unit)}
-        return found | {axis.name: (run.axis, run.test)}
+        return found | {axis.name: (run.axis, run.test, run.unrest)}
 
     def _by_programs(self, listed: Mapping[str, list[LoopSheet]]) -> Positions:
         """ISO 230-2 of each axis that goes where a program says."""
-        found: Positions = {a.name: (a, None) for a in self.axes}
+        found: Positions = {a.name: (a, None, None) for a in self.axes}
         if not self.reads_gcode:
             self.left_out["ISO 230-2"] = "its controller reads no part programs and has no target"
             return found
@@ -283,7 +298,7 @@ class _Measuring:
             except InputError as error:
                 self.left_out[f"ISO 230-2, {axis.name}"] = _first(error)
                 continue
-            found |= {a.name: (a, t) for a, t in zip(together, tests, strict=True)}
+            found |= {a.name: (a, t.test, t.unrest) for a, t in zip(together, tests, strict=True)}
         return found
 
     def _robot(self) -> RobotSheet | None:
@@ -301,11 +316,8 @@ class _Measuring:
 
 def _dwell(listed: list[LoopSheet]) -> float:
     """How long an axis rests at a target [s]; no whole number, which may count milliseconds."""
-    times = [x.step.settling for x in listed if x.kind == POSITION]
-    if not times:
-        return USUAL
-    wanted = min(max(SETTLED * max(times), SHORTEST), LONGEST)
-    return round(wanted, 1) + 0.05
+    slowest = max((x.step.settling for x in listed if x.kind == POSITION), default=0.0)
+    return round(min(max(SETTLED * slowest, SHORTEST), LONGEST), 1) + READ + 0.05
 
 
 def _first(error: InputError) -> str:

@@ -84,7 +84,7 @@ def circle_program(axes: dict[str, SheetAxis], plane: tuple[str, str, str]) -> s
     middle = [round(0.5 * (x.low + x.high), 1) for x in (a, b)]
     at = f"{first}{middle[0] + radius:g} {second}{middle[1]:g}"
     back = f"{OFFSETS[first]}{-radius:g}"
-    turns = [f"{way} {at} {back}" for way in ("G2", "G3") for _ in range(TURNS)]
+    turns = [f"{way} {at} {back} P{TURNS}" for way in ("G2", "G3")]
     head = [f"(ISO 230-4: circle of R {radius:g} in {first}{second}, {TURNS} turns each way)"]
-    head += [f"G21 G90 G64 {code} F{FEED:g}", f"G0 {at}"]
+    head += [f"G21 G90 {code} F{FEED:g}", f"G0 {at}"]
     return "\n".join([*head, *turns, "M2", ""])

@@ -1,5 +1,6 @@
 """Runs of a machine from which the figures of its data sheet are taken."""
 
+import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -10,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.circles import CircularTest
+from motionfmu.analysis.cycle_time import planned
 from motionfmu.analysis.data_sheet.sheet_axes import SheetAxis
 from motionfmu.analysis.data_sheet.sheet_programs import (
     APPROACHES,
@@ -19,8 +21,8 @@ from motionfmu.analysis.data_sheet.sheet_programs import (
     targets,
 )
 from motionfmu.analysis.positioning import PositioningTest
-from motionfmu.base.errors import NoNumber
-from motionfmu.run.machine_program import Machine
+from motionfmu.base.errors import InputError, NoNumber
+from motionfmu.run.machine_program import LIMIT, Machine
 from motionfmu.run.result import Result
 from motionfmu.run.run_plan import Options
 from motionfmu.run.runner import Scenario
@@ -28,12 +30,17 @@ from motionfmu.scenarios import contour_signals
 from motionfmu.scenarios.values import values_in
 
 Array = NDArray[np.float64]
+# A program that waits for what does not come ends at so many times its planned time, and more [s].
+LONGER, MORE = 1.5, 2.0
 RECORDED = 1e-3  # [s] between two samples that are kept of a positioning run
+# The mean over this time at the end of a rest is read [s], as a laser's: an axis with friction and
+# an integral never quite rests.
+READ = 1.0
 # A card's pen makes it rest for at least this long [s]; between two strokes nothing does.
 REST = 0.01
-# A positioner is watched for so long at a time [s] until it stays within so many counts; then it
-# has half as long again, and a second, before it is read.
-WATCHED, LONGEST, STAYS, LEFT = 5.0, 160.0, 20.0, 1.0
+# A positioner is watched for so long at a time [s] until it stays within so many counts; a motion
+# has half as long again, and what is read follows.
+WATCHED, LONGEST, STAYS = 5.0, 160.0, 20.0
 PRESS, HELD = 0.1, 0.1  # [s] before `start` becomes 1, and how long it is
 
 
@@ -49,7 +56,13 @@ class SheetMachine:
         """A program of this text on the machine."""
         file = self.folder / name
         file.write_text(text, encoding="utf-8")
-        return self.machine.scenario(file, set=self.set)
+        on = self.machine.scenario(file, set=self.set)
+        longest = LIMIT
+        with contextlib.suppress(
+            InputError
+        ):  # no component plans it, or the run tells what is wrong
+            longest = float(math.ceil(LONGER * planned(on, self.set).time + MORE))
+        return self.machine.scenario(file, set=self.set, limit=longest)
 
     def run(self, name: str, text: str, every: float | None = None) -> Result:
         """Run a program, with so long [s] between two samples or as the machine records."""
@@ -74,9 +87,15 @@ def sound(result: Result, name: str) -> Result:
     return result
 
 
-def positioning(
-    tested: SheetMachine, axes: Sequence[SheetAxis], dwell: float
-) -> list[PositioningTest]:
+@dataclass(frozen=True)
+class RestRun:
+    """What positioning an axis by a program gave, in its unit."""
+
+    test: PositioningTest
+    unrest: float  # how far it moves while it is read, at the most
+
+
+def positioning(tested: SheetMachine, axes: Sequence[SheetAxis], dwell: float) -> list[RestRun]:
     """Position the first axis as ISO 230-2 has it, and look at all of them, which go with it."""
     moved, pen = axes[0], tested.machine.signals.config is not None
     program = positioning_program(moved, dwell, pen)
@@ -88,13 +107,31 @@ def positioning(
         rests = np.searchsorted(line, program.lines.ravel(), side="right") - 1
         if (line[rests] != program.lines.ravel()).any():
             raise NoNumber(f"{moved.name}: the run has no sample of a rest at each target")
-    return [_test(axis.place(result)[rests], program.lines.shape, program.targets) for axis in axes]
+    read = 1 if pen else round(READ / float(result.time[1] - result.time[0]))
+    shape = program.lines.shape
+    found = []
+    for axis in axes:
+        place = axis.place(result)
+        test = _test(_read(place, rests, read).reshape(shape), program.targets)
+        found.append(RestRun(test, _unrest(place, rests, read)))
+    return found
 
 
-def _test(places: Array, shape: tuple[int, ...], wanted: Array) -> PositioningTest:
+def _unrest(place: Array, ends: NDArray[np.intp], count: int) -> float:
+    """From the lowest to the highest place within the samples up to an end, the most of all."""
+    return max(float(np.ptp(place[k + 1 - count : k + 1])) for k in ends)
+
+
+def _read(place: Array, ends: NDArray[np.intp], count: int) -> Array:
+    """The mean of so many samples up to each end."""
+    total = np.concatenate([[0.0], np.cumsum(place - place[0])])
+    return np.asarray(place[0] + (total[ends + 1] - total[ends + 1 - count]) / count)
+
+
+def _test(places: Array, wanted: Array) -> PositioningTest:
     """Deviations at the rests, from the first target's upward mean, where the laser is zeroed."""
     # Targets and position count from the same point only by chance; no figure depends on it.
-    deviation = places.reshape(shape) - wanted
+    deviation = places - wanted
     home = int(np.argmin(np.abs(wanted)))
     deviation = deviation - deviation[:, 0, home].mean()
     return PositioningTest(wanted, deviation[:, 0], deviation[:, 1])
@@ -115,7 +152,7 @@ def _by_speed(
     # The first rest is before the motion, the last behind it; between them rests at turns, too.
     ends = long[1:, 1] - 1
     place = axis.place(result)[ends]
-    wanted = program.targets[np.tile(_way(program), APPROACHES)]
+    wanted = program.targets[np.tile(_way(program), len(program.lines))]
     turn = 0.5 * FREE * (axis.high - axis.low)  # where it turns back it rests, too
     near = 0.25 * min(float(np.diff(program.targets).min()), turn)
     found, k = [], 0
@@ -151,6 +188,7 @@ class PositionerRun:
     """What positioning an axis by targets gave."""
 
     test: PositioningTest
+    unrest: float  # how far it moves while it is read, at the most [mm]
     axis: SheetAxis  # with the travel that its targets have
     speed: float  # mean speed of the longest motion [mm/s]
 
@@ -178,15 +216,17 @@ def positioner(tested: SheetMachine, axis: SheetAxis) -> PositionerRun:
             route += [*listed, end]
     counts = [round((place - start) / one) for place in route]
     used = _takes(tested, axis, [counts[0], round((ends[1] - start) / one)], STAYS * one)
-    each = math.ceil(100.0 * (1.5 * used + LEFT)) / 100.0
+    each = math.ceil(100.0 * (1.5 * used + 2.0 * READ)) / 100.0
     result = _moved(tested, counts, each)
     at = np.searchsorted(result.time, [(k + 1) * each - 1e-9 for k in rests]) - 1
-    lag = axis.place(result)[at].reshape(APPROACHES, 2, len(places))
+    read = round(READ / float(result.time[1] - result.time[0]))
+    place = axis.place(result)
+    lag = _read(place, at, read).reshape(APPROACHES, 2, len(places))
     lag[:, 1] = lag[:, 1, ::-1]
     # what is asked for is a whole number of counts
     wanted = np.array([start + one * round((p - start) / one) for p in places])
     test = PositioningTest(wanted, lag[:, 0] - wanted, lag[:, 1] - wanted)
-    return PositionerRun(test, axis, (ends[1] - ends[0]) / used)
+    return PositionerRun(test, _unrest(place, at, read), axis, (ends[1] - ends[0]) / used)
 
 
 def _takes(tested: SheetMachine, axis: SheetAxis, counts: list[int], stays: float) -> float:

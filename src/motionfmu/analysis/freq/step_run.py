@@ -12,6 +12,7 @@ from motionfmu.analysis.freq.limit import usual_kick
 from motionfmu.analysis.freq.response import fastest, gentle, ramp, room
 from motionfmu.analysis.freq.shape import limits
 from motionfmu.analysis.linear import AxisModel
+from motionfmu.analysis.linear.axis_values import element
 from motionfmu.analysis.linear.block import Plant
 from motionfmu.analysis.linear.stability import response
 
@@ -21,6 +22,7 @@ _ROOM, _SPEED = 0.5, 0.5
 # Before the step comes the axis gets to speed, and settles, for so many lengths of the answer; a
 # ramp takes less than two thirds of that.
 _LEAD = 3.0
+_WHOLE = 200.0  # units of an input of whole numbers, which rounds what is added
 # A run of more communication steps would take longer than anybody waits.
 LONGEST = 60_000
 # An input is a command of the position if this slow [rad/s] its effect on it is no more than so
@@ -102,6 +104,10 @@ class LoopStep:
     def _size(self, samples: int, bandwidth: float) -> float:
         """A step, in the unit of the input, that reaches no limit and turns nothing back."""
         kick = abs(usual_kick(self.axis, self.at, self.cut) / self.gain)
+        component, _, name = self.command.partition(".")
+        ports = self.axis.scenario.resolver.ports[component]
+        if element(ports, name, self.axis.axis)[0].type == "Int32":
+            kick = max(kick, _WHOLE)
         size = kick * bandwidth if self.inner else kick
         loop = self.at, self.cut
         caps = [(name, _ROOM * most, False) for name, most in limits(self.axis, loop).items()]
