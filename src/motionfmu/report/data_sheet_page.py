@@ -35,7 +35,7 @@ from motionfmu.report.style import AXES
 UP, DOWN = AXES[0], AXES[1]
 POINTS = 600  # of a curve
 HEIGHT, LOW = 200, 150  # [pixel] of a plot, of one in a picture
-COLORS = 48  # of a picture
+COLORS = 64  # of a picture
 NONE = "\N{EN DASH}"
 HEADS_230 = ("A", "A_up", "A_down", "E", "R", "R_up", "R_down", "M", "B", "B_mean")
 WORDS_230 = {"A_up": "A↑", "A_down": "A↓", "R_up": "R↑", "R_down": "R↓", "B_mean": "mean B"}
@@ -277,5 +277,7 @@ def _with_few_colors(file: Path) -> None:
     from PIL import Image  # what matplotlib writes pictures with
 
     with Image.open(file) as drawn:
-        few = drawn.convert("RGB").quantize(COLORS, dither=Image.Dither.NONE)
+        # an octree keeps the colour of a thin line, which the median cut gives away
+        octree, none = Image.Quantize.FASTOCTREE, Image.Dither.NONE
+        few = drawn.convert("RGB").quantize(COLORS, octree, dither=none)
     few.save(file, optimize=True)

@@ -74,11 +74,11 @@ class SheetAxis:
 
 def _factor(travel: AxisLimit, rotary: bool) -> float:
     """From the unit of the position's signal to mm, or to degrees."""
-    unit = units.parse(travel.unit if travel.unit != "1" else "1")
+    unit = units.parse(travel.unit)
     if unit.exponents == units.parse("m").exponents:  # 1 mm stands for 1° where a row has lengths
         return float(unit.factor / units.parse("mm").factor)
     if rotary:
-        return float(unit.factor / units.parse("deg").factor)
+        return math.degrees(unit.factor)
     raise InputError(f"{travel.signal.name} [{travel.unit}] is no position")
 
 
