@@ -9,7 +9,6 @@ at other targets, shows what is left.
 
 import sys
 import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
 import matplotlib
@@ -19,6 +18,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import motionfmu
+from motionfmu.analysis.positioning import PositioningTest
 
 HERE = Path(__file__).parent
 PULSES = 5000  # per mm
@@ -27,33 +27,8 @@ TRAVEL = 200.0  # [mm] to either side of the origin
 RUNS = 5  # approaches of each target from each side
 OVERRUN, FEED = 5.0, 6000.0  # [mm], [mm/min]
 DWELL, RAMP = 0.3, 0.11  # [s] at a target; that a ramp takes, and the clock of the card
+FIGURES = ("A", "E", "B", "M")  # of ISO 230-2
 BLUE, ORANGE = "#0072b2", "#d55e00"
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """Deviations of the position from its targets."""
-
-    targets: np.ndarray  # [mm] (m,)
-    up: np.ndarray  # [mm] (n, m) approached in positive direction
-    down: np.ndarray  # [mm] (n, m)
-
-    @property
-    def means(self) -> tuple[np.ndarray, np.ndarray]:
-        """Mean deviations, up and down [mm]."""
-        return self.up.mean(axis=0), self.down.mean(axis=0)
-
-    def figures(self) -> dict[str, float]:
-        """A, E, B and M of ISO 230-2 [mm]."""
-        up, down = self.means
-        both = np.array([up, down])
-        spread = 2.0 * np.array([self.up.std(axis=0, ddof=1), self.down.std(axis=0, ddof=1)])
-        return {
-            "A": float(np.max(both + spread) - np.min(both - spread)),
-            "E": float(np.ptp(both)),
-            "B": float(np.max(np.abs(up - down))),
-            "M": float(np.ptp(both.mean(axis=0))),
-        }
 
 
 def program(targets: np.ndarray, runs: int) -> tuple[str, list[tuple[int, float]]]:
@@ -69,7 +44,7 @@ def program(targets: np.ndarray, runs: int) -> tuple[str, list[tuple[int, float]
     return "\n".join([*lines, "M2", ""]), readings
 
 
-def measure(targets: np.ndarray, runs: int, table: Path | None) -> Measurement:
+def measure(targets: np.ndarray, runs: int, table: Path | None) -> PositioningTest:
     """Approach the targets with or without a table and read the laser.
 
     The laser is read where a dwell ends. It is set to zero at the origin, approached upwards.
@@ -92,10 +67,10 @@ def measure(targets: np.ndarray, runs: int, table: Path | None) -> Measurement:
     up, down = deviation[:, 0], deviation[:, 1, ::-1]
     zero = up[:, zeroed == 0.0].mean()
     asked = np.isin(zeroed, targets)
-    return Measurement(targets, up[:, asked] - zero, down[:, asked] - zero)
+    return PositioningTest(targets, up[:, asked] - zero, down[:, asked] - zero)
 
 
-def write_table(m: Measurement, file: Path) -> None:
+def write_table(m: PositioningTest, file: Path) -> None:
     """The measured deviations with their sign turned, as a comp_file for X."""
     home = int(np.argmin(np.abs(m.targets)))
     rows = np.column_stack([np.round(-x * PULSES).astype(int) for x in m.means])
@@ -117,7 +92,9 @@ def between(travel: float = TRAVEL) -> np.ndarray:
     return np.round(inner + shift, 3)
 
 
-def draw(before: Measurement, after: Measurement, table: Measurement, picture: Path) -> None:
+def draw(
+    before: PositioningTest, after: PositioningTest, table: PositioningTest, picture: Path
+) -> None:
     """Deviations before and after, and the table, over the travel."""
     figure, (top, middle, low) = plt.subplots(
         3, 1, figsize=(9.5, 9.5), sharex=True, layout="constrained"
@@ -133,7 +110,7 @@ def draw(before: Measurement, after: Measurement, table: Measurement, picture: P
         ):
             axes.plot(m.targets, runs.T * 1e3, ".", color=colour, markersize=4, alpha=0.5)
             axes.plot(m.targets, mean * 1e3, color=colour, linewidth=1.4, label=name)
-        values = ", ".join(f"{k} {v * 1e3:.1f}" for k, v in m.figures().items())
+        values = ", ".join(f"{k} {m.figures()[k] * 1e3:.1f}" for k in FIGURES)
         axes.set_title(f"{title}: {values} µm", loc="left", fontsize=11)
         axes.set_ylabel("deviation [µm]")
         axes.grid(alpha=0.25)
@@ -159,9 +136,9 @@ def main(picture: Path) -> None:
     write_table(table, HERE / "screw.csv")
     before = measure(between(), RUNS, None)
     after = measure(between(), RUNS, HERE / "screw.csv")
-    print(f"{'[µm]':8}" + "".join(f"{k:>8}" for k in before.figures()))
+    print(f"{'[µm]':8}" + "".join(f"{k:>8}" for k in FIGURES))
     for name, m in (("before", before), ("after", after)):
-        print(f"{name:8}" + "".join(f"{v * 1e3:8.2f}" for v in m.figures().values()))
+        print(f"{name:8}" + "".join(f"{m.figures()[k] * 1e3:8.2f}" for k in FIGURES))
     draw(before, after, table, picture)
     print(f"picture: {picture}")
 

@@ -21,17 +21,6 @@ def study() -> ModuleType:
     return module
 
 
-def test_figures_of_iso_230_2_by_hand(study) -> None:
-    """Two targets, two runs: means 1, 4 up and -2, 3 down; s = sqrt(2) of the first, upwards."""
-    up = np.array([[0.0, 4.0], [2.0, 4.0]])
-    down = np.array([[-2.0, 3.0], [-2.0, 3.0]])
-    found = study.Measurement(np.array([0.0, 1.0]), up, down).figures()
-    assert found["B"] == 3.0  # |1 - -2|
-    assert found["E"] == 6.0  # 4 - -2
-    assert found["M"] == 4.0  # 3.5 - -0.5
-    assert found["A"] == pytest.approx(4.0 - min(-2.0, 1.0 - 2.0 * math.sqrt(2.0)))
-
-
 def test_a_screw_is_identified_and_compensated(study, tmp_path: Path) -> None:
     """Backlash 15 um, wave of 6 um over 130 mm, 45 um/m; table points 20 mm apart."""
     table = study.measure(study.grid(60.0), 2, None)

@@ -42,7 +42,7 @@ def test_a_copied_machine_stands_alone_and_is_the_same(name: str, tmp_path: Path
         b.step_ns,
         b.every,
     )
-    files = {"mcc.tool_table"}  # beside each machine
+    files = {"mcc.tool_table", "soft.points"}  # beside each machine
     values = [{s.end.name: s.values for s in x.settings if s.end.name not in files} for x in (a, b)]
     assert values[0] == values[1]
     assert [e.name for e in mine.ends] == [e.name for e in theirs.ends]

@@ -16,10 +16,8 @@ from motionfmu.scenarios import package_files
 from motionfmu.scenarios.machine_limits import AxisLimit
 
 MACHINES = ROOT / "src/motionfmu/machines"
-# The program that stands beside each machine that takes one, and what another one needs.
+# The program that stands beside each machine that takes one.
 PROGRAMS = {file.parent.name: file for file in MACHINES.glob("*/example.*")}
-PROGRAMS |= {"robot6": ROOT / "scenarios/robot_line/line.job"}
-BESIDE = {"robot6": {"soft.points": ROOT / "scenarios/robot_line/line.points"}}
 WITHOUT = {n for n in package_files.machines() if not motionfmu.machine(n).takes_programs}
 
 
@@ -43,8 +41,7 @@ def test_every_machine_that_takes_a_program_has_one_to_try() -> None:
 
 @pytest.mark.parametrize("name", sorted(PROGRAMS))
 def test_a_program_runs_on_a_machine_without_a_scenario(name: str) -> None:
-    values = {key: str(file) for key, file in BESIDE.get(name, {}).items()}
-    result = motionfmu.machine(name).run(PROGRAMS[name], set=values)
+    result = motionfmu.machine(name).run(PROGRAMS[name])
     assert result.ok and result.checks
     if result.done_at is None:  # a card says when its job begins, and how long that takes
         return
@@ -234,12 +231,12 @@ def test_a_limit_is_the_value_of_the_run_in_the_unit_of_the_signal() -> None:
     assert (rows["X", "speed"].limit, rows["Y", "speed"].limit) == (900.0, 800.0)
     assert rows["X", "speed"].unit == "rpm" and rows["Y", "speed"].element == 1
     assert rows["X", "voltage"].limit == 10.0
-    # [rpm] beside a motor speed in rad/s, and degrees beside an angle in rad
+    # [rpm] beside a motor speed in rad/s; axes that turn in degrees
     assert limits_of("first_order")["X", "speed"].limit == pytest.approx(3000 * 2 * np.pi / 60)
     arm = limits_of("robot6")
-    assert arm["J2", "travel"].low == pytest.approx(np.radians(-155))
-    assert (arm["J6", "acceleration"].unit, arm["J6", "acceleration"].derivative) == ("rad/s2", 1)
-    assert arm["J6", "acceleration"].limit == pytest.approx(np.radians(1500))
+    assert arm["J2", "travel"].low == pytest.approx(-155)
+    assert (arm["J6", "acceleration"].unit, arm["J6", "acceleration"].derivative) == ("deg/s2", 1)
+    assert arm["J6", "acceleration"].limit == pytest.approx(1500)
     # the library watches the following error only where its limit is not 0
     assert rows["X", "following_error"].limit is None
     watched = limits_of("xy_table", **{"mcc.track_error_limit": 500})
@@ -247,16 +244,19 @@ def test_a_limit_is_the_value_of_the_run_in_the_unit_of_the_signal() -> None:
 
 
 def test_signals_of_limits_are_recorded_unasked(tmp_path: Path) -> None:
-    line = 'lag = { signal = "machine.screw_force", limit = [5, 6, 7], continuous = 2.5 }\n'
+    line = (
+        'lag = { signal = "machine.screw_force", limit = [5, 6, 7], continuous = 2.5,'
+        " overload = [1, 2, 3] }\n"
+    )
     made = own_machine(tmp_path / "m", "[limits]\n" + line)
     (tmp_path / "a.ngc").write_text("M2\n")
     plan = made.scenario(tmp_path / "a.ngc")
     assert "machine.screw_force" in {e.name for e in plan.ends}
     rows = [x for x in plan.axis_limits() if x.figure == "lag"]
-    assert [(x.axis.name, x.limit, x.continuous) for x in rows] == [
-        ("X", 5.0, 2.5),
-        ("Y", 6.0, 2.5),
-        ("Z", 7.0, 2.5),
+    assert [(x.axis.name, x.limit, x.continuous, x.overload) for x in rows] == [
+        ("X", 5.0, 2.5, 1.0),
+        ("Y", 6.0, 2.5, 2.0),
+        ("Z", 7.0, 2.5, 3.0),
     ]
     # an axis that the machine has and a scenario does not use is taken away by its name
     lone = motionfmu.load(ROOT / "scenarios/compensation")
@@ -280,6 +280,9 @@ def test_signals_of_limits_are_recorded_unasked(tmp_path: Path) -> None:
         ("[limits]\nSpeed = {}\n", 4, "string should match pattern"),
         (f"[limits]\n{SPEED} limt = 3 }}\n", 4, "unknown key 'limt'; did you mean 'limit'?"),
         (f"[limits]\n{SPEED} limit = true }}\n", 4, "limits.speed.limit = True: a number, a list"),
+        (f"[limits]\n{SPEED} overload = 0 }}\n", 4, "a time above 0, or a list of one for each"),
+        (f"[limits]\n{SPEED} overload = 'mcc.feed' }}\n", 4, "a time above 0, or a list of one"),
+        (f"[limits]\n{SPEED} overload = [1, 2] }}\n", 4, "overload = [1.0, 2.0]: a number for"),
         (f"[limits]\n{SPEED} limit = [1, 2] }}\n", 4, "limit = [1.0, 2.0]: a number for each of 3"),
         (f"[limits]\n{SPEED} limit = 'mcc.feed' }}\n", 4, "mcc.feed [mm/min] limits speed [rpm]"),
         (f"[limits]\n{SPEED} low = 'mcc.fed' }}\n", 4, "no variable 'fed'; did you mean 'feed'?"),

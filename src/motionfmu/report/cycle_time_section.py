@@ -112,7 +112,7 @@ def add_axes(page: Page, found: Sequence[AxisFigure]) -> None:
     """Add a table of the axes' figures, each beside what limits it."""
     if not found:
         return
-    names = "figure axis least greatest RMS limit share at_it_[s] continuous"
+    names = "figure axis least greatest RMS limit share at_it_[s] continuous above_[s] longest_[s]"
     heads = [name.replace("_", " ") for name in names.split()]
     rows = []
     for f in found:
@@ -129,13 +129,24 @@ def add_axes(page: Page, found: Sequence[AxisFigure]) -> None:
                 "" if f.share is None else f"{100.0 * f.share:.0f} %",
                 f"{f.time_at_limit:.3f}" if bounds(f) else "",
                 "" if f.continuous_share is None else f"{100.0 * f.continuous_share:.0f} %",
+                "" if f.limit.continuous is None else f"{f.time_above:.3f}",
+                _longest(f),
             )
         )
     note = (
         "Each figure over the whole run beside what limits it. <b>Continuous</b> is the RMS over"
-        " what the axis bears for ever."
+        " what the axis bears for ever; <b>above</b> is the time beyond that, <b>longest</b> the"
+        " longest without a break, and the share of what is allowed where the machine states it."
     )
     page.section("Axes and their limits", note, table(heads, rows, numeric=2))
+
+
+def _longest(f: AxisFigure) -> str:
+    """The longest time above what may last, and its share of what is allowed."""
+    if f.limit.continuous is None:
+        return ""
+    share = f.overload_share
+    return f"{f.longest_above:.3f}" + ("" if share is None else f", {100.0 * share:.0f} %")
 
 
 def bounds(f: AxisFigure) -> str:

@@ -25,6 +25,8 @@ class AxisFigure:
     at: float  # [s] when
     rms: float
     time_at_limit: float  # [s] at or beyond its limit, low or high
+    time_above: float = 0.0  # [s] above what may last, in all
+    longest_above: float = 0.0  # [s] the longest such time without a break
 
     @property
     def share(self) -> float | None:
@@ -36,10 +38,15 @@ class AxisFigure:
         """The RMS over what may last; None where that is not known."""
         return self.rms / self.limit.continuous if self.limit.continuous else None
 
+    @property
+    def overload_share(self) -> float | None:
+        """The longest time above what may last, over what is allowed; None where none is stated."""
+        return self.longest_above / self.limit.overload if self.limit.overload else None
+
     def numbers(self) -> dict[str, Any]:
         """The same for JSON."""
         limit = self.limit
-        bounds = {k: getattr(limit, k) for k in ("limit", "low", "high", "continuous")}
+        bounds = {k: getattr(limit, k) for k in ("limit", "low", "high", "continuous", "overload")}
         return {
             "axis": limit.axis.name,
             "figure": limit.figure,
@@ -50,6 +57,8 @@ class AxisFigure:
             "at": self.at,
             "rms": self.rms,
             "time_at_limit": self.time_at_limit,
+            "time_above": self.time_above,
+            "longest_above": self.longest_above,
             "limits": {k: v for k, v in bounds.items() if v is not None},
         }
 
@@ -69,6 +78,7 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
     n, step = limit.derivative, float(time[1] - time[0])
     tail, low, high, squares, count, reached = np.zeros(0), np.inf, -np.inf, 0.0, 0, 0
     largest, at = 0.0, float(time[0])
+    above, longest, run = 0, 0, 0  # samples
     for block in blocks(len(time), read):
         raw = np.asarray(block, float)
         x = raw if raw.ndim == 1 else raw[:, limit.element or 0]
@@ -84,8 +94,24 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
         low, high = min(low, float(x.min())), max(high, float(x.max()))
         squares, count = squares + float(x @ x), count + len(x)
         reached += int(np.count_nonzero(_at_limit(x, limit)))
+        if limit.continuous is not None:
+            over = np.abs(x) > limit.continuous
+            above += int(np.count_nonzero(over))
+            most, run = _longest(over, run)
+            longest = max(longest, most)
     rms = float(np.sqrt(squares / count)) if count else 0.0
-    return AxisFigure(limit, low, high, largest, at, rms, reached * step)
+    times = (n * step for n in (reached, above, longest))
+    return AxisFigure(limit, low, high, largest, at, rms, *times)
+
+
+def _longest(over: NDArray[np.bool_], before: int) -> tuple[int, int]:
+    """The longest run of true samples behind so many before, and how many are true at the end."""
+    breaks = np.flatnonzero(~over)
+    if not len(breaks):
+        return before + len(over), before + len(over)
+    inside = int(np.diff(breaks).max(initial=1)) - 1
+    end = len(over) - 1 - int(breaks[-1])
+    return max(before + int(breaks[0]), inside, end), end
 
 
 def _at_limit(x: NDArray[np.float64], limit: AxisLimit) -> NDArray[np.bool_]:

@@ -88,7 +88,8 @@ def _readme(plan: RunPlan, name: str, like: str, about: str) -> Iterator[str]:
     """A data sheet: the axes and what limits them."""
     yield from (f"# {name}", "", about, "")
     yield f"Made from {like} by `motionfmu new machine {name} --like {like}`; it stands alone, and"
-    yield "all its values are in [machine.toml](machine.toml)."
+    yield "all its values are in [machine.toml](machine.toml). `motionfmu machines` with its folder"
+    yield "measures it: positioning, circles, margins and steps of its loops, or poses of a robot."
     rows = plan.axis_limits()
     axes = list(dict.fromkeys(x.axis.name for x in rows))
     if axes:

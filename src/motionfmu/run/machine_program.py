@@ -33,6 +33,8 @@ class Machine:
         Of its folder.
     axes : list of MachineAxis
         Name, kind (``linear`` or ``rotary``) and row of each in arrays, from 1.
+    signals : MachineSignals
+        Names of its table [signals].
 
     Raises
     ------
@@ -44,13 +46,19 @@ class Machine:
         self.file = machine_file(path, Path.cwd())
         self.name = self.file.parent.name
         document = self._made({"stop": 1.0}, self.name, "")
-        self._signals, self.axes = document.body.signals, document.axes
+        self.signals, self.axes = document.body.signals, document.axes
+
+    @property
+    def config(self) -> Path | None:
+        """The configuration of its network card; None without one."""
+        name = self.signals.config
+        return None if name is None else self.plan().document.beside(name)
 
     @property
     def takes_programs(self) -> bool:
         """Whether its file says where a program goes and how it ends."""
-        ends = self._signals.done or self._signals.config
-        return self._signals.program is not None and ends is not None
+        ends = self.signals.done or self.signals.config
+        return self.signals.program is not None and ends is not None
 
     def __repr__(self) -> str:
         return f"<Machine {self.name}: {self.file}>"
@@ -101,13 +109,13 @@ class Machine:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
         ready = self.translated(file, tables.get("drawing", {}))
-        values = {str(self._signals.program): str(ready.file), **self._beside(file.resolve())}
+        values = {str(self.signals.program): str(ready.file), **self._beside(file.resolve())}
         values = ready.values | values | dict(set or {})
-        given: dict[str, Any] = {"stop": self._signals.done, "limit": limit, "settle": settle}
+        given: dict[str, Any] = {"stop": self.signals.done, "limit": limit, "settle": settle}
         if ready.seconds is not None:
             given = {"stop": time_of(ready.seconds, START, APPROACH + settle)}
-        if self._signals.start is not None:
-            given["drive"] = [{"input": self._signals.start, "at": [START], "value": [1]}]
+        if self.signals.start is not None:
+            given["drive"] = [{"input": self.signals.start, "at": [START], "value": [1]}]
         about = f"{file.name} on {self.name}"
         found = Scenario(self._made(given | tables | {"set": values}, file.stem, about))
         found.notes = ready.notes
@@ -133,8 +141,13 @@ class Machine:
         document.refuse(list(document.wrong))
         return program_for(document, file.resolve())
 
-    def plan(self) -> Scenario:
+    def plan(self, **tables: Any) -> Scenario:
         """The machine without a program, checked against its FMUs.
+
+        Parameters
+        ----------
+        **tables
+            Keys or tables of a scenario.toml; without stop it runs for 1 s.
 
         Returns
         -------
@@ -146,7 +159,7 @@ class Machine:
         InputError
             Something in the machine's file is wrong.
         """
-        return Scenario(self._made({"stop": 1.0}, self.name, ""))
+        return Scenario(self._made({"stop": 1.0} | tables, self.name, ""))
 
     def run(
         self, program: str | Path, *, set: Mapping[str, Any] | None = None, **options: Any
@@ -166,7 +179,7 @@ class Machine:
 
     def _beside(self, program: Path) -> dict[str, str]:
         """Parameters that name files beside the program which have its name."""
-        pairs = self._signals.beside.items()
+        pairs = self.signals.beside.items()
         found = {key: program.with_suffix(ending) for key, ending in pairs}
         return {key: str(file) for key, file in found.items() if is_file(file)}
 

@@ -110,7 +110,7 @@ class Figure(BaseModel):
 
 
 class MachineSignals(BaseModel):
-    """Where a machine takes its program and tells that it is done."""
+    """Where a machine takes its program, or targets, and tells that it is done."""
 
     model_config = _STRICT
     program: Name | None = None  # parameter that names it
@@ -119,6 +119,11 @@ class MachineSignals(BaseModel):
     config: Name | None = None  # configuration of a network card, for which drawings are planned
     # Parameters that name a file beside the program with its name and this ending, if there is one.
     beside: dict[str, Ending] = Field(default_factory=dict, max_length=LISTED_MAX)
+    target: Name | None = None  # input of a positioner: where to go when `start` becomes 1
+    count: Annotated[float, Field(gt=0)] | None = None  # [m] of one of `target`
+    lowest: Name | None = None  # parameters: least and largest target
+    highest: Name | None = None
+    homed: dict[str, Value] = Field(default_factory=dict)  # with which it starts as after homing
 
 
 class MachineAxis(BaseModel):
@@ -164,6 +169,18 @@ def _bound(x: Any) -> Any:
 Bound = Annotated[float | tuple[float, ...] | str, PlainValidator(_bound)]
 
 
+def _numbers(x: Any) -> Any:
+    """Times from TOML: one, or one for each axis, above 0."""
+    found = _bound(x)
+    if isinstance(found, str) or min(found if isinstance(found, tuple) else (found,)) <= 0.0:
+        told = "a time above 0, or a list of one for each axis wanted"
+        raise PydanticCustomError("numbers", told)
+    return found
+
+
+Numbers = Annotated[float | tuple[float, ...], PlainValidator(_numbers)]
+
+
 class FigureLimit(BaseModel):
     """Where the signal of a figure of the axes is, and what limits it."""
 
@@ -174,6 +191,7 @@ class FigureLimit(BaseModel):
     low: Bound | None = None
     high: Bound | None = None
     continuous: Bound | None = None  # of its RMS
+    overload: Numbers | None = None  # [s] that it may stay above continuous at a time
     when: Name | None = None  # parameter; where it is 0 or false there is no limit
 
 

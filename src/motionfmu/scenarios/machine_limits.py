@@ -35,6 +35,7 @@ class AxisLimit:
     low: float | None = None
     high: float | None = None
     continuous: float | None = None  # of its RMS
+    overload: float | None = None  # [s] that its size may stay above continuous at a time
     scale: float = 1.0  # of the signal's unit, to `unit`
 
 
@@ -47,7 +48,7 @@ def wanted(resolver: Resolver) -> list[str]:
     for figure, given in document.body.limits.items():
         with faults.each():
             found.append(_signal(resolver, figure).name)
-            for key in (*BOUNDS, "when"):
+            for key in (*BOUNDS, "overload", "when"):
                 with faults.each():
                     _check_bound(resolver, figure, key, getattr(given, key))
     faults.tell()
@@ -169,8 +170,11 @@ def _of_axis(
         else:
             found[key] = value[place] if isinstance(value, tuple) else value
     unit, scale = _shown_as(axis, _figure_unit(resolver, figure))
-    found = {key: value * scale for key, value in found.items()}
-    return AxisLimit(axis, figure, end, element, source.derivative, unit, **found, scale=scale)
+    found = {key: value * scale for key, value in found.items()} | {"scale": scale}
+    if acts and source.overload is not None:
+        times = source.overload
+        found["overload"] = times[place] if isinstance(times, tuple) else times
+    return AxisLimit(axis, figure, end, element, source.derivative, unit, **found)
 
 
 def _shown_as(axis: MachineAxis, unit: str) -> tuple[str, float]:

@@ -155,7 +155,8 @@ class Bench:
             value = self.axis.value(f"{component}.{name}")
         except (InputError, ValueError):
             return
-        given[f"{component}.{name}"] = self.own(component, name, value)
+        whole = f"{component}.{name.partition('[')[0]}"  # a wire may end at one element
+        given[whole] = self.own(component, name, value, given=given.get(whole))
 
     def _all(self, component: str, name: str, value: Any) -> Any:
         end = self.axis.scenario.resolver.end(f"{component}.{name}", "set", name)

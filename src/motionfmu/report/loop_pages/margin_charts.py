@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.freq.loop_study import LoopStudy
+from motionfmu.analysis.linear.closed_step import chart_length, closed_step
 from motionfmu.analysis.linear.stability import closed_poles, grid, response
 from motionfmu.report.diagram import (
     DASH,
@@ -151,21 +152,9 @@ def sensitivity(study: LoopStudy) -> Diagram:
 
 def step(study: LoopStudy) -> Diagram:
     """Response of L/(1 + L) to a step."""
-    loop = study.loop
-    k = 1.0 / (1.0 + loop.D[0, 0])
-    a = loop.A - loop.B @ loop.C * k
-    b, c, d = loop.B * k, loop.C * k, loop.D[0, 0] * k
-    omega = study.margins.bandwidth
-    length = 30.0 / omega if omega > 0.0 else _STEP_POINTS * loop.dt
-    count = max(20, min(math.ceil(length / loop.dt), 200_000))
-    keep = max(1, count // _STEP_POINTS)
-    x, shown = np.zeros((loop.nstates, 1)), []
-    for n in range(count):
-        if n % keep == 0:
-            shown.append(float((c @ x)[0, 0] + d))
-        x = a @ x + b
-    time = np.arange(len(shown)) * (keep * loop.dt * 1e3)
-    values = np.clip(np.nan_to_num(np.array(shown), nan=0.0), -3.0, 5.0)
+    time, values = closed_step(study.loop, chart_length(study.loop, study.margins))
+    keep = max(1, len(time) // _STEP_POINTS)
+    time, values = time[::keep] * 1e3, np.clip(np.nan_to_num(values[::keep], nan=0.0), -3.0, 5.0)
     curve = SamplesMark(Samples(time, values, steps=keep == 1), "L/(1 + L)", BLUE, WIDTH)
     marks: list[Mark] = [curve, LevelMark(1.0, dash=DASH)]
     return one(Scale("Time", "ms"), Scale("Response to a step of 1"), marks, _LOW)
