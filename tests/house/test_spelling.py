@@ -14,6 +14,7 @@ MAYBE = re.compile(r"\b(um|us|deg|Ohm)\b|/s\^?[23]|N\.m|kg\.m2")  # worth a look
 # Files whose texts name units for FMI or for data: spelled when they are shown.
 NAMES = {
     "src/motionfmu/base/units.py",  # the units themselves
+    "src/motionfmu/records/quantities.py",  # what other spellings of them mean
     "src/motionfmu/analysis/iso9283/evaluation.py",  # keys of result.json
     "src/motionfmu/cards/config_tables.py",  # also for comments of C headers, in ASCII
     "scenarios/compensation/study.py",  # a comment of the table it writes, in ASCII

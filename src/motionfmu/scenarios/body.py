@@ -74,7 +74,7 @@ class Contour(BaseModel):
     pulses: Name
 
 
-class Record(BaseModel):
+class RecordTable(BaseModel):
     """What is recorded: names or patterns of outputs, at every step or every so many."""
 
     model_config = _STRICT
@@ -179,7 +179,7 @@ class Body(BaseModel):
     set: dict[str, Value] = Field(default_factory=dict)
     drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
     leave: Names = Field(default_factory=list)
-    record: Record
+    record: RecordTable
     contour: Contour | None = None
     iso9283: Iso9283 | None = None
     view: View = View()
@@ -209,7 +209,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "expect": Bounds,
     "contrary": Contrary,
     "contour": Contour,
-    "record": Record,
+    "record": RecordTable,
     "signals": MachineSignals,
     "axis": MachineAxis,
     "limits": FigureLimit,
