@@ -76,7 +76,8 @@ def _side(path: Path, machine: str | None) -> "Path | Scenario":
 
 
 def _tell(found: "Comparison") -> None:
-    from motionfmu.compare.words import GONE, change_text, text_of
+    from motionfmu.compare.words import GONE, change_text
+    from motionfmu.report.numbers import text_of
     from motionfmu.run.checks import tally
 
     for name, x in (("A", found.a), ("B", found.b)):

@@ -7,10 +7,10 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import spelled
 from motionfmu.compare.side import Side
+from motionfmu.report.numbers import NOTHING
 from motionfmu.scenarios.fmus import Port, ports
 from motionfmu.scenarios.values import start_values
 
-NOTHING = "—"
 LISTED = 8  # so many values of a list are shown
 
 

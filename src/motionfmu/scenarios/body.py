@@ -8,7 +8,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidat
 from pydantic_core import PydanticCustomError
 
 from motionfmu.base.toml_lines import KEY_MAX
-from motionfmu.scenarios.analyses import Iso9283, View, Waveform
+from motionfmu.scenarios.analyses import Iso9283, RecordFile, View, Waveform
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 Pair = tuple[float, float]
@@ -180,6 +180,7 @@ class Body(BaseModel):
     drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
     leave: Names = Field(default_factory=list)
     record: RecordTable
+    record_file: RecordFile | None = None
     contour: Contour | None = None
     iso9283: Iso9283 | None = None
     view: View = View()
@@ -193,6 +194,12 @@ class Body(BaseModel):
     def stop_limit(self) -> float:
         """The latest time at which a run ends [s]."""
         return self.stop if isinstance(self.stop, float) else self.limit or LONGEST
+
+    @property
+    def driven(self) -> frozenset[str]:
+        """Inputs that [drive] or a record drives, whole arrays by their names."""
+        given = self.record_file.drive if self.record_file else {}
+        return frozenset((*(d.input for d in self.drive), *(n.partition("[")[0] for n in given)))
 
     @property
     def asked(self) -> Iterator[tuple[str, str, tuple[Bounds, ...]]]:
@@ -210,6 +217,7 @@ MODELS: dict[str, type[BaseModel]] = {
     "contrary": Contrary,
     "contour": Contour,
     "record": RecordTable,
+    "record_file": RecordFile,
     "signals": MachineSignals,
     "axis": MachineAxis,
     "limits": FigureLimit,
