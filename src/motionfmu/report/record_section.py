@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from html import escape
+from pathlib import Path
 from typing import Any
 
 from motionfmu.base.units import spelled
@@ -16,24 +17,21 @@ from motionfmu.run.figures import Chart, Curve, Panel
 from motionfmu.run.record_matches import RecordMatches
 
 DRAWN = 12  # signals; all are in the table
-GONE = f"run {MINUS} record"
-HEADS = (
-    "Signal",
-    "Record",
-    f"largest {GONE}",
-    "at",
-    "RMS",
-    "mean",
-    "NRMSE",
-    "of its motion",
-    "lag",
-)
 NOTE = (
     "NRMSE: norm of the difference over the norm of the record; of its motion: over that of the"
-    " record less its mean. Lag: how much later the run comes, by the largest correlation; it is"
-    " in all other numbers."
+    " record less its mean. Lag: how much later the signal comes than the record, by the largest"
+    " correlation; it is in all other numbers."
 )
 RED = "#5a0f45"
+
+
+def heads(first: str, second: str) -> tuple[str, ...]:
+    """Heads of a table of matches."""
+    gone = f"largest {first} {MINUS} {second}"
+    return (*_FIRST, gone, "at", "RMS", "mean", "NRMSE", "of its motion", "lag")
+
+
+_FIRST = ("Signal", "Column")
 
 
 def add_record(page: Page, found: RecordMatches) -> None:
@@ -45,12 +43,15 @@ def add_record(page: Page, found: RecordMatches) -> None:
         if one.lag.reason
     )
     told = "".join(f'<p class="note">{escape(w)}.</p>' for w in (*whys, *found.record.notes))
-    page.section(
-        "Record over run", f"{escape(about(found.record))} {NOTE}", table(HEADS, rows, 2) + told
-    )
+    note = f"{escape(about(found.record))} {NOTE}"
+    page.section("Record over run", note, table(heads("run", "record"), rows, 2) + told)
     for i, (name, (over, one)) in enumerate(list(found.found.items())[:DRAWN]):
         drawn = chart(name, over.unit, one, ("run", "record"))
-        page.section(f"<code>{escape(name)}</code>", "", page.place(f"record{i}", drawn, True, RUN))
+        page.section(
+            f"<code>{escape(name)}</code>, {escape(over.column)}",
+            "",
+            page.place(f"record{i}", drawn, True, RUN),
+        )
 
 
 def about(record: Record) -> str:
@@ -58,7 +59,7 @@ def about(record: Record) -> str:
     rate = record.rate
     even = f"{figure(rate)} Hz" if rate else "uneven samples"
     span = f"{record.time[0]:.9g} to {record.time[-1]:.9g} s"
-    return f"{record.name}: {len(record.ns)} samples, {even}, {span}."
+    return f"{Path(record.name).name}: {len(record.ns)} samples, {even}, {span}."
 
 
 def row(name: str, column: str, unit: str, one: Match) -> tuple[str, ...]:

@@ -98,7 +98,15 @@ def made_of(resolver: Resolver) -> dict[str, Any] | None:
     table = table_of(resolver)
     if table is None:
         return None
-    return {"file": table.file, "content": digest(file_of(resolver)), "drive": dict(table.drive)}
+    return {
+        "file": table.file,
+        "content": digest(file_of(resolver)),
+        "layout": table.layout,
+        "drive": dict(table.drive),
+        "resample": table.resample,
+        "gaps": table.gaps,
+        "over": dict(table.over),
+    }
 
 
 def digest(path: Path) -> str:
