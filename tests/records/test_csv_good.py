@@ -188,6 +188,20 @@ WRITTEN: list[Any] = [
         {"x": "um", "u": None},
     ),
     (
+        "t,x\n0,1.4\n1,2.6\n",
+        {"columns": {"n": {"column": "x", "scale": 10, "round": True}}},
+        [0, 1_000_000_000],
+        {"n": [14, 26]},
+        {"n": None},
+    ),
+    (
+        "t,x\n0,1.4\n1,2.6\n",
+        {"columns": {"n": {"column": "x", "round": True}}},
+        [0, 1_000_000_000],
+        {"n": [1, 3]},
+        {"n": None},
+    ),
+    (
         "t,a [mm],b [mm]\n0,1,2\n1,3,4\n",
         {"columns": {"P": ["b", "a"]}},
         [0, 1_000_000_000],

@@ -11,7 +11,7 @@ from motionfmu.base.toml_lines import shown
 DUPLICATES = ("refuse", "first", "last", "mean")
 DECIMALS = (".", ",")
 # Keys of the table of a column.
-COLUMN_KEYS = ("column", "unit", "scale", "zero")
+COLUMN_KEYS = ("column", "unit", "scale", "zero", "round")
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,8 @@ class Layout:
     ----------
     columns : mapping
         By a name of one's own: the column's name in the file, a list of names, which become the
-        elements of one column, or a table ``{column, unit, scale, zero}``: scale (value - zero).
+        elements of one column, or a table ``{column, unit, scale, zero, round}``: the value is
+        scale (value - zero), with round = true the nearest whole number.
     time : str or None
         Name of the column of times.
     time_unit : str or None
@@ -140,6 +141,8 @@ def _column(given: Any) -> str:
             return f"unknown key {key!r}{suggestion(key, COLUMN_KEYS)}"
         if key in ("scale", "zero") and not _number(value):
             return f"{key} = {shown(value)}: a number wanted"
+        if key == "round" and not isinstance(value, bool):
+            return f"round = {shown(value)}: true or false wanted"
         if key == "unit" and not isinstance(value, str):
             return f"unit = {shown(value)}: a text wanted"
     if "column" not in given or _column(given["column"]) or isinstance(given["column"], Mapping):

@@ -43,6 +43,10 @@ class RawTable:
     timed: int | None = None  # the column of times, if that is known
 
 
+class NoTimes(InputError):
+    """A file has no column of times, and nobody has said a rate."""
+
+
 def record_of(table: RawTable, layout: Layout) -> Record:
     """The record of a file's columns, laid out as a caller says."""
     notes = list(table.notes)
@@ -137,7 +141,7 @@ def _time_column(table: RawTable, layout: Layout) -> int | None:
             raise InputError(f"{table.where(-1, k)}: {name!r} is in [{unit}], no unit of time")
     names = ", ".join(table.names)
     told = "say time, or rate"
-    raise InputError(f"{table.where(-1, 0)}: no column of times ({names}): {told}")
+    raise NoTimes(f"{table.where(-1, 0)}: no column of times ({names}): {told}")
 
 
 def _lasts(unit: str | None) -> bool:
@@ -246,6 +250,8 @@ def _mapped(
             data = table.values[k][rows]
             if (scale, zero) != (1.0, 0.0):
                 data = scale * (data - zero)
+            if asked.get("round"):
+                data = np.round(data)
             values.append(data)
             units.append(unit)
     for k in (k for k in others if k not in taken):
