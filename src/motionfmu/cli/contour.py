@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+# CCN 16: one command with three kinds of input, each handed on at once.
 @app.command()
 def contour(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,

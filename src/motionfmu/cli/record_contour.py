@@ -87,6 +87,7 @@ def measured_path(
     report(target / "report.html")
 
 
+# CCN 16: what may be missing of a ballbar's record, each with its words.
 def measured_ballbar(
     files: Sequence[Path],
     nominal: tuple[float | None, float | None, str],

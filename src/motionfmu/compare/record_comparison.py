@@ -118,6 +118,7 @@ def _said(x: Record) -> dict[str, Any]:
     }
 
 
+# CCN 17: what each argument stands for if it is not given.
 def compare_record(
     a: Any,
     b: Any,

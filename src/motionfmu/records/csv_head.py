@@ -29,6 +29,7 @@ def nameless(k: int) -> str:
     return f"c{k + 1}"
 
 
+# CCN 20: a chain of formats, then comprehensions over the columns.
 def head_of(lines: Sequence[str], first: int, width: int, dialect: Dialect) -> Head:
     """The head above a block of numbers that begins at a line and has so many columns."""
     rows = [(k, _fields(lines[k], dialect)) for k in range(first) if lines[k].strip()]
@@ -89,6 +90,7 @@ def _only_units(row: Sequence[Field]) -> bool:
     )
 
 
+# CCN 16: comprehensions over the columns of one kind of head.
 def _twincat(rows: Sequence[tuple[int, list[Field]]], width: int) -> Head | None:
     """TwinCAT Scope: a line for each property, and a column of times headed by its name."""
     named = {row[0].text: (k, row) for k, row in rows if row}

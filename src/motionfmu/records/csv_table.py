@@ -54,6 +54,7 @@ class NumberLines:
     kept: list[int]  # columns that may have numbers
 
 
+# CCN 16: the steps of reading, each with what the caller may have said of it.
 def csv_table(file: Path, layout: Layout) -> RawTable:
     """Read a text of columns; what is wrong is one InputError with line and character."""
     lines = _END.split(_text(file, layout))
@@ -144,7 +145,7 @@ def _place(data: bytes, byte: int) -> str:
     return f"{line}:{byte - begin}"
 
 
-# CCN 17: what may stand between, above and behind lines of numbers, each with its rule.
+# CCN 16: what may stand between, above and behind lines of numbers, each with its rule.
 def _rows(
     lines: Sequence[str], first: int, found: tuple[Dialect, int, bool], name: str
 ) -> list[int]:
@@ -321,6 +322,7 @@ def _stamped(body: NumberLines, k: int, column: Sequence[Field], head: Head) -> 
     return found
 
 
+# CCN 24: comprehensions over channels; there is one decision, which columns of times to keep.
 def _one_of_times(table: RawTable, times: Sequence[int], layout: Layout) -> RawTable:
     """The columns that share one column of times; those of others are left out, or an error."""
     if not times:

@@ -1,7 +1,7 @@
 """How a file of measured data is laid out, as far as it does not say so itself."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -84,7 +84,6 @@ class Layout:
         return made
 
 
-# CCN 20: a rule for each option, which know nothing of each other.
 def _wrong(x: Layout) -> list[str]:
     """What is wrong with a layout, the worst first."""
     told = []
@@ -94,32 +93,41 @@ def _wrong(x: Layout) -> list[str]:
             told.append(f"{key} = {shown(value)}: a text wanted")
     if told:
         return told
-    if x.rate is not None and not (_number(x.rate) and x.rate > 0):
-        told.append(f"rate = {shown(x.rate)}: samples a second wanted, more than 0")
-    if x.rate is not None and x.time is not None:
-        told.append(f"rate = {x.rate:g} Hz and time = {x.time!r}: one of them")
-    if x.offset != "start" and not _number(x.offset):
-        told.append(f'offset = {shown(x.offset)}: seconds or "start" wanted')
-    if x.delimiter is not None and len(x.delimiter) != 1:
-        told.append(f"delimiter = {x.delimiter!r}: one character wanted")
-    if x.decimal is not None and x.decimal not in DECIMALS:
-        told.append(f'decimal = {x.decimal!r}: "." or "," wanted')
-    if x.decimal == x.delimiter == ",":
-        told.append('delimiter and decimal are both ","')
-    if isinstance(x.skip, bool) or not isinstance(x.skip, int) or x.skip < 0:
-        told.append(f"skip = {shown(x.skip)}: a number of lines wanted")
-    if x.duplicates not in DUPLICATES:
-        told.append(f"duplicates = {shown(x.duplicates)}: {', '.join(DUPLICATES)} wanted")
-    for key in ("names", "missing"):
-        texts = getattr(x, key)
-        if texts is not None and not (_texts(texts)):
-            told.append(f"{key} = {shown(texts)}: a list of texts wanted")
+    told = [*_of_times(x), *_of_text(x)]
     if not isinstance(x.columns, Mapping):
         return [*told, f"columns = {shown(x.columns)}: columns by name wanted"]
     for name, column in x.columns.items():
         if text := _column(column):
             told.append(f"columns: {name} = {shown(column)}: {text}")
     return told
+
+
+def _of_times(x: Layout) -> Iterator[str]:
+    """What is wrong with what is said of times."""
+    if x.rate is not None and not (_number(x.rate) and x.rate > 0):
+        yield f"rate = {shown(x.rate)}: samples a second wanted, more than 0"
+    elif x.rate is not None and x.time is not None:
+        yield f"rate = {x.rate:g} Hz and time = {x.time!r}: one of them"
+    if x.offset != "start" and not _number(x.offset):
+        yield f'offset = {shown(x.offset)}: seconds or "start" wanted'
+    if x.duplicates not in DUPLICATES:
+        yield f"duplicates = {shown(x.duplicates)}: {', '.join(DUPLICATES)} wanted"
+
+
+def _of_text(x: Layout) -> Iterator[str]:
+    """What is wrong with what is said of a text."""
+    if x.delimiter is not None and len(x.delimiter) != 1:
+        yield f"delimiter = {x.delimiter!r}: one character wanted"
+    if x.decimal is not None and x.decimal not in DECIMALS:
+        yield f'decimal = {x.decimal!r}: "." or "," wanted'
+    if x.decimal == x.delimiter == ",":
+        yield 'delimiter and decimal are both ","'
+    if isinstance(x.skip, bool) or not isinstance(x.skip, int) or x.skip < 0:
+        yield f"skip = {shown(x.skip)}: a number of lines wanted"
+    for key in ("names", "missing"):
+        texts = getattr(x, key)
+        if texts is not None and not _texts(texts):
+            yield f"{key} = {shown(texts)}: a list of texts wanted"
 
 
 def _texts(x: Any) -> bool:
@@ -130,6 +138,7 @@ def _number(x: Any) -> bool:
     return isinstance(x, int | float) and not isinstance(x, bool) and math.isfinite(x)
 
 
+# CCN 16: a rule for each key of a column, which know nothing of each other.
 def _column(given: Any) -> str:
     """What is wrong with the entry of a column; else empty."""
     if isinstance(given, str) or (_texts(given) and given):

@@ -188,6 +188,7 @@ def _times(table: RawTable, column: int, layout: Layout, notes: list[str]) -> Ar
     return np.asarray(values * per)
 
 
+# CCN 19: what may be wrong with times, each with its message, and three ways out of duplicates.
 def _increasing(
     table: RawTable, column: int, ns: Array, layout: Layout, notes: list[str]
 ) -> tuple[Array, Array, RawTable]:

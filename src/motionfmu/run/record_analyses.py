@@ -24,7 +24,7 @@ Array = NDArray[Any]
 def record_contour(
     run: Result, measured: Record, over: Mapping[str, str] | None = None
 ) -> ContourResult:
-    """The contour error of a measured tool against the program of a run.
+    """Find a measured tool's contour error against a run's program.
 
     Parameters
     ----------
@@ -60,6 +60,7 @@ def _over(resolver: Resolver, over: Mapping[str, str] | None) -> Mapping[str, st
     return over if over is not None else table.over if table is not None else {}
 
 
+# CCN 17: the names that an axis may have, the stronger first.
 def _tool(
     measured: Record, signal: str, over: Mapping[str, str], path: Path
 ) -> tuple[Array, tuple[int, ...]]:
@@ -125,7 +126,7 @@ class RecordedTool:
 def record_iso9283(
     run: Result, measured: Record, over: Mapping[str, str] | None = None
 ) -> Evaluation:
-    """The figures after ISO 9283 of a measured tool, along the path of a run's scenario.
+    """Find a measured tool's figures after ISO 9283.
 
     Parameters
     ----------

@@ -22,10 +22,17 @@ DIGITS = 16  # of a file's SHA-256: enough to tell two files apart
 
 @dataclass(frozen=True)
 class RecordMatches:
-    """Each column of a record over its signal of a run."""
+    """Each column of a record over its signal of a run.
+
+    Attributes
+    ----------
+    record : Record
+    found : dict
+        By signal, its `Overlay`, which has the column, and the `Match`.
+    """
 
     record: Record
-    found: dict[str, tuple[Overlay, Match]]  # by the signal
+    found: dict[str, tuple[Overlay, Match]]
 
     def numbers(self) -> dict[str, Any]:
         """The numbers, ready for JSON."""
@@ -37,7 +44,18 @@ class RecordMatches:
         }
 
     def number(self, name: str) -> float:
-        """One number by column or signal, and its own name: ``position.nrmse``."""
+        """One number by column or signal, and its own name.
+
+        Parameters
+        ----------
+        name : str
+            ``position.nrmse``.
+
+        Raises
+        ------
+        NoNumber
+            There is none; the reason.
+        """
         whole, _, own = name.rpartition(".")
         signals = _signals(whole, (over for over, _ in self.found.values()))
         value = self.found[signals[0]][1].numbers()[own]

@@ -364,7 +364,7 @@ class Result(Mapping[str, NDArray[Any]]):
         return ""
 
     def record(self) -> Record:
-        """The signals of this run as a record, which any measured one can stand beside.
+        """The signals of this run, as a measured record is.
 
         Returns
         -------

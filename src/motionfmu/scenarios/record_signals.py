@@ -174,6 +174,7 @@ def stimuli(
     return list(resolver.known[key])
 
 
+# CCN 20: what an input may not be, each with its message.
 def _driven(
     resolver: Resolver,
     given: tuple[str, Mapping[int | None, str]],
@@ -219,7 +220,6 @@ def _driven(
     ]
 
 
-# CCN 16: each thing that a driving column must not be has its message.
 def _sampled(resolver: Resolver, pair: tuple[str, str], end: End, ns: Array) -> Array:
     """Values (m, k) of a column at the times of the steps, in the input's unit."""
     document, table, measured = resolver.document, table_of(resolver), record_of(resolver)

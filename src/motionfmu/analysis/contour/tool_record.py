@@ -50,7 +50,7 @@ class ToolRecord:
 
 
 def analyse_record(record: ToolRecord, path: Path, window: float = WINDOW_MIN) -> ContourResult:
-    """Find the contour error of a measured position against the exact geometry.
+    """Find the contour error of a measured position.
 
     Parameters
     ----------

@@ -46,11 +46,12 @@ def ballbar_test(
     plane: str = "XY",
     feed: float | None = None,
 ) -> CircularTest:
-    """The circular test of records of a ballbar, of both ways in one record or in two.
+    """Make the circular test of a ballbar's records.
 
     Parameters
     ----------
     records : iterable of BallbarRecord
+        One with both ways, or one for each.
     radius : float
         Nominal [mm].
     plane : str
