@@ -71,7 +71,7 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
     found = pairs.compare(left, right, signals or ("*",), settings(set_))
     page = None
     if folder or not as_json:
-        page = found.save(folder or results(found.a.numbers["scenario"], "compare"))
+        page = found.save(_place(folder, found.a.numbers["scenario"]))
     if as_json:
         give(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
     else:
@@ -80,6 +80,11 @@ def compare(  # noqa: PLR0913  (each is an option of the command)
         report(page)
     if not found.ok:
         raise typer.Exit(FAILED)
+
+
+def _place(folder: Path | None, name: str) -> Path:
+    """The folder of the result."""
+    return folder or results(name, "compare")
 
 
 def _side(path: Path, machine: str | None) -> "Path | Scenario":
@@ -95,7 +100,7 @@ def _tell_record(found: "RecordComparison", folder: Path | None, as_json: bool) 
 
     page = None
     if folder or not as_json:
-        page = found.save(folder or results(Path(found.a.name).stem, "compare"))
+        page = found.save(_place(folder, Path(found.a.name).stem))
     if as_json:
         give(json.dumps(found.numbers(), indent=1, allow_nan=False, default=str))
         return
