@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from console import within
 
 import motionfmu
 from motionfmu.base.errors import InputError
@@ -266,3 +267,50 @@ def test_numbers_that_no_run_has_are_refused(tmp_path: Path) -> None:
     del given["record_file"]
     with pytest.raises(InputError, match=r"there is no \[record_file\] table"):
         run(tmp_path, given | {"check": {"record.torque.nrmse": {"max": 1.0}}})
+
+
+def test_a_machine_has_a_record_and_its_copies_have_it_too(tmp_path: Path) -> None:
+    """A machine.toml names it beside itself; `new machine` and `run --save-as` copy the file."""
+    place = tmp_path / "machines/traced"
+    place.mkdir(parents=True)
+    record = Record(
+        "trace",
+        np.arange(0, 40_000_000_000, 10_000_000),
+        {"feed": np.linspace(0.0, 1.0, 4000)},
+        {"feed": "mm/s"},
+    )
+    record.save(place / "feed.csv")
+    (place / "machine.toml").write_text(
+        '# The table with a trace.\nextends = "xy_table"\n[record_file]\nfile = "feed.csv"\n'
+        'over = { "mcc.path_feed" = "feed" }\n'
+    )
+    (tmp_path / "part.ngc").write_text("G21 G90 G0 X0 Y0\nG1 X5 F3000\nM30\n")
+    machine = motionfmu.machine(place)
+    found = machine.run(tmp_path / "part.ngc").record_matches().numbers()
+    assert found["mcc.path_feed"]["column"] == "feed" and found["mcc.path_feed"]["samples"] > 10
+    told = within("new", "machine", "mine", "--like", place, folder=tmp_path)
+    assert told.returncode == 0, told.stderr
+    copied = motionfmu.machine(tmp_path / "machines/mine").run(tmp_path / "part.ngc")
+    assert copied.record_matches().numbers() == found
+    trace(tmp_path)
+    over = {"file": str(tmp_path / "trace.csv"), "over": {"drives.torque[1]": "torque"}}
+    scenario = machine.scenario(tmp_path / "part.ngc", record_file=over)
+    from motionfmu.run.run_plan import Options
+    from motionfmu.run.saved_scenario import save_scenario
+
+    save_scenario(scenario, tmp_path / "saved", Options())
+    saved = motionfmu.load(tmp_path / "saved").run()
+    assert "drives.torque[1]" in saved.record_matches().found
+
+
+def test_an_export_says_what_it_does_not_carry(tmp_path: Path) -> None:
+    """One FMU leaves the driven input open; an SSP has room for few steps and says so."""
+    trace(tmp_path)
+    drive = {"machine.torque_command[1]": "torque"}
+    given = table(file="trace.csv", drive=drive) | {"leave": ["machine.force"]}
+    scenario = motionfmu.scenario(given, name="test", folder=tmp_path)
+    from motionfmu.export.system_ssp import as_ssp
+
+    written = as_ssp(scenario, tmp_path / "a.ssp", 3, {})
+    assert len(written.left_out) == 1
+    assert written.left_out[0].startswith("[record_file] machine.torque_command: ")

@@ -1,5 +1,6 @@
 """How a text of columns is written: its delimiter, its decimal sign, where its numbers begin."""
 
+import contextlib
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -198,9 +199,10 @@ def _of_two(
         dialect, found = pair
         above = [s for s in lines[: found.first] if s.strip()]
         if above:
-            with_names = len(fields(above[-1].lstrip("#%! "), dialect.delimiter))
-            if with_names == found.width and (dialect.delimiter or found.width == 1):
-                return pair
+            with contextlib.suppress(OpenQuote):
+                names = fields(above[-1].lstrip("#%! "), dialect.delimiter)
+                if len(names) == found.width and (dialect.delimiter or found.width == 1):
+                    return pair
     first = comma[1].first
     one, two = comma[1].width, others[0][1].width
     told = f"{lines[first].strip()!r} is {one} columns, or {two} with decimal commas"
