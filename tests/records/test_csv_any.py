@@ -20,12 +20,12 @@ LAYOUT = st.fixed_dictionaries(
     {},
     optional={
         "time": NAME,
-        "rate": st.sampled_from([1.0, 1e3, 0.0, -1.0, 1e12]),
+        "rate": st.sampled_from([1.0, 1e3, 0.0, -1.0, 1e12, 1e-10, 1e-300]),
         "delimiter": st.sampled_from([",", ";", " ", "", "::"]),
         "decimal": st.sampled_from([".", ",", "'"]),
         "skip": st.integers(-1, 4),
         "names": st.lists(NAME, max_size=4),
-        "offset": st.sampled_from([0.0, "start", "stop", 1e9]),
+        "offset": st.sampled_from([0.0, "start", "stop", 1e9, 4.6e9, 1e300]),
         "duplicates": st.sampled_from(["refuse", "first", "last", "mean", "most"]),
         "columns": st.dictionaries(NAME, st.one_of(NAME, st.lists(NAME, max_size=3))),
     },
@@ -34,6 +34,7 @@ LAYOUT = st.fixed_dictionaries(
 
 @given(TEXT, LAYOUT)
 @settings(max_examples=600, derandomize=True, deadline=None)
+@example("true\n0\t", {"rate": 1e12})
 @example('"\n1,5 ', {})
 def test_any_text_is_read_or_refused(text: str, layout: dict[str, Any]) -> None:
     with tempfile.TemporaryDirectory() as folder:

@@ -179,7 +179,7 @@ CASES: list[tuple[str, str, dict[str, Any], str]] = [
         "a rate of nothing",
         GOOD,
         {"rate": 0},
-        "record: rate = 0: samples a second wanted, more than 0",
+        "record: rate = 0: samples a second wanted, up to 1e+09",
     ),
     (
         "an option that is none",

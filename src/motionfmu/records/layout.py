@@ -10,6 +10,8 @@ from motionfmu.base.toml_lines import shown
 
 DUPLICATES = ("refuse", "first", "last", "mean")
 DECIMALS = (".", ",")
+RATE_MAX = 1e9  # [Hz] times are whole ns
+TIME_MAX = 2.0**62 / 1e9  # [s] 146 years
 # Keys of the table of a column.
 COLUMN_KEYS = ("column", "unit", "scale", "zero", "round")
 
@@ -104,11 +106,11 @@ def _wrong(x: Layout) -> list[str]:
 
 def _of_times(x: Layout) -> Iterator[str]:
     """What is wrong with what is said of times."""
-    if x.rate is not None and not (_number(x.rate) and x.rate > 0):
-        yield f"rate = {shown(x.rate)}: samples a second wanted, more than 0"
+    if x.rate is not None and not (_number(x.rate) and 0 < x.rate <= RATE_MAX):
+        yield f"rate = {shown(x.rate)}: samples a second wanted, up to {RATE_MAX:g}"
     elif x.rate is not None and x.time is not None:
         yield f"rate = {x.rate:g} Hz and time = {x.time!r}: one of them"
-    if x.offset != "start" and not _number(x.offset):
+    if x.offset != "start" and not (_number(x.offset) and abs(float(x.offset)) <= TIME_MAX):
         yield f'offset = {shown(x.offset)}: seconds or "start" wanted'
     if x.duplicates not in DUPLICATES:
         yield f"duplicates = {shown(x.duplicates)}: {', '.join(DUPLICATES)} wanted"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motionfmu.base import units as si
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.units import spelled
-from motionfmu.records.layout import Layout
+from motionfmu.records.layout import TIME_MAX, Layout
 from motionfmu.records.quantities import fmi_name, quantity
 from motionfmu.records.signal_record import Record, grouped
 
@@ -19,7 +19,7 @@ Array = NDArray[Any]
 # Names of a column of times, without regard to case.
 TIMES = {"time", "t", "zeit", "timestamp", "time stamp", "x-axis", "second", "seconds", "sekunden"}
 TIMES |= {"tout", "temps", "time_s", "zeitstempel", "abs time", "rel. time", "elapsed time"}
-NS_MAX = 2.0**62  # [ns] 146 years
+NS_MAX = TIME_MAX * 1e9  # [ns]
 _SECOND = si.parse("s").exponents
 
 
@@ -61,6 +61,8 @@ def record_of(table: RawTable, layout: Layout) -> Record:
         raise InputError(f"{table.name}: {len(rows)} sample{'s' * (len(rows) != 1)}, two wanted")
     if layout.offset == "start":
         ns = ns - ns[0]
+    elif abs(float(ns[-1])) + abs(float(layout.offset)) * 1e9 > NS_MAX:
+        raise InputError(f"{table.name}: offset = {layout.offset:g} s: beyond all times here")
     elif layout.offset:
         ns = ns + round(float(layout.offset) * 1e9)
     others = [k for k in range(len(table.names)) if k != time]
@@ -158,13 +160,20 @@ def _by_rate(table: RawTable, layout: Layout, notes: list[str]) -> Array:
     """Times [ns] of so many samples a second."""
     count = np.arange(len(table.values[0]))
     if layout.rate is not None:
-        return np.round(count * (1e9 / layout.rate)).astype(np.int64)
+        return _whole(table, count * (1e9 / layout.rate))
     assert table.started is not None
     start, step = table.started
     notes.append(f"times by the file's head: from {start:.9g} s, every {step:.9g} s")
     if step * 1e9 < 1.0:
         raise InputError(f"{table.name}: a sample every {step:.3g} s: times are whole ns here")
-    return np.round(1e9 * (start + step * count)).astype(np.int64)
+    return _whole(table, 1e9 * (start + step * count))
+
+
+def _whole(table: RawTable, ns: Array) -> Array:
+    """Times as whole numbers."""
+    if not np.abs(ns).max() <= NS_MAX:
+        raise InputError(f"{table.name}: times to {ns[-1] / 1e9:.3g} s are beyond all times here")
+    return np.round(ns).astype(np.int64)
 
 
 def _times(table: RawTable, column: int, layout: Layout, notes: list[str]) -> Array:
@@ -183,7 +192,7 @@ def _times(table: RawTable, column: int, layout: Layout, notes: list[str]) -> Ar
     if scale.exponents != _SECOND:
         raise InputError(f"{table.where(-1, column)}: {name!r} is in [{unit}], no unit of time")
     per = round(scale.factor * 1e9)
-    if values.dtype.kind in "iu":
+    if values.dtype.kind in "iu" and float(np.abs(values).max()) * per <= NS_MAX:
         return np.asarray(values.astype(np.int64) * per)
     return np.asarray(values * per)
 
