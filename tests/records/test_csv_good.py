@@ -188,6 +188,13 @@ WRITTEN: list[Any] = [
         {"x": "um", "u": None},
     ),
     (
+        "time,x\n23:59:59.9,1\n00:00:00.1,2\n",
+        {"offset": "start"},
+        [0, 200_000_000],
+        {"x": [1, 2]},
+        {"x": None},
+    ),
+    (
         "t,x\n0,1.4\n1,2.6\n",
         {"columns": {"n": {"column": "x", "scale": 10, "round": True}}},
         [0, 1_000_000_000],

@@ -77,6 +77,8 @@ def test_a_sample_has_its_own_value_and_others_lie_between() -> None:
     assert record.at(np.array([0, 5, 10, 20, 30]), "x").tolist() == [1.0, 2.0, 3.0, 5.0, 7.0]
     assert record.at(np.array([0, 9, 29, 30]), "x", "hold").tolist() == [1.0, 1.0, 3.0, 7.0]
     assert record.at(np.array([0, 9, 29, 30]), "n").tolist() == [1, 1, 2, 3]
+    holed = made([0, 10, 20], x=[1.0, np.nan, 3.0])
+    assert holed.at(np.array([0, 20]), "x").tolist() == [1.0, 3.0]  # whatever stands beside it
     with pytest.raises(InputError, match=r"0 .. 3.1e-08 s wanted, the record has 0 .. 3e-08 s"):
         record.at(np.array([0, 31]), "x")
     with pytest.raises(InputError, match="linear or hold wanted"):

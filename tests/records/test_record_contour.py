@@ -136,6 +136,9 @@ def test_a_ballbar_record_is_read_for_what_made_it(name: str) -> None:
     test = ballbar_test([BallbarRecord(angle, deviation)], 100.0, feed=1000 / 60)
     assert test.ccw and test.cw and test.both
     assert math.degrees(test.ccw.coverage) == pytest.approx(360.0, abs=0.3)
+    for way, sign in ((test.ccw, 1.0), (test.cw, -1.0)):
+        turned = np.unwrap(np.arctan2(way.points[:, 1], way.points[:, 0]))
+        assert np.sign(turned[-1] - turned[0]) == sign
     mark = signature(test)
     assert mark.findings[0].name == name
     assert mark.findings[0].size == pytest.approx(0.012, rel=1e-6)

@@ -34,3 +34,8 @@ def __getattr__(name: str) -> Any:
     from motionfmu.run import record_analyses
 
     return getattr(record_analyses, name)
+
+
+def __dir__() -> list[str]:
+    """Names of `__all__`, though some are not imported yet, and what is there."""
+    return [*{*__all__, *globals()}]
