@@ -4,6 +4,7 @@
 >>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
 >>> result.plot("mcc.path_feed")  # doctest: +SKIP
 >>> result = motionfmu.machine("mill3").run("part.ngc")  # doctest: +SKIP
+>>> trace = motionfmu.record("trace.csv")  # doctest: +SKIP
 
 The library and the card without FMUs are in `motionfmu.virtual.mcc`, the robot in
 `motionfmu.virtual.robot`, part programs in `motionfmu.analysis.gcode`, linear models in
@@ -17,9 +18,20 @@ if TYPE_CHECKING:
     from typing import Any
 
     from motionfmu.base.errors import InputError
+    from motionfmu.records import Record, record
     from motionfmu.run import Machine, Result, Scenario, load, machine, scenario
 
-__all__ = ["InputError", "Machine", "Result", "Scenario", "load", "machine", "scenario"]
+__all__ = [
+    "InputError",
+    "Machine",
+    "Record",
+    "Result",
+    "Scenario",
+    "load",
+    "machine",
+    "record",
+    "scenario",
+]
 
 
 def __getattr__(name: str) -> "Any":
@@ -28,6 +40,10 @@ def __getattr__(name: str) -> "Any":
         from motionfmu.base.errors import InputError
 
         return InputError
+    if name in ("Record", "record"):
+        from motionfmu import records
+
+        return getattr(records, name)
     if name in __all__:
         from motionfmu import run
 

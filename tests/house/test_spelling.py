@@ -15,6 +15,7 @@ MAYBE = re.compile(r"\b(um|us|deg|Ohm)\b|/s\^?[23]|N\.m|kg\.m2")  # worth a look
 NAMES = {
     "src/motionfmu/base/units.py",  # the units themselves
     "src/motionfmu/scenarios/machine_limits.py",  # units of signals, looked up
+    "src/motionfmu/records/quantities.py",  # what other spellings of them mean
     "src/motionfmu/analysis/iso9283/evaluation.py",  # keys of result.json
     "src/motionfmu/cards/config_tables.py",  # also for comments of C headers, in ASCII
     "scenarios/compensation/study.py",  # a comment of the table it writes, in ASCII

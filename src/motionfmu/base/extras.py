@@ -18,8 +18,8 @@ class Extra:
 CARD = ("matplotlib", "scipy", "starlette", "uvicorn", "websockets")
 EXTRAS = {
     "tune": Extra(("casadi", "control", "scipy", "threadpoolctl"), "a linear model"),
-    "report": Extra(("matplotlib", "scipy"), "a picture or an explanation"),
-    "study": Extra(("matplotlib", "pyarrow", "scipy"), "a study"),
+    "report": Extra(("matplotlib", "scipy"), "a picture, an explanation or a .mat file"),
+    "study": Extra(("matplotlib", "pyarrow", "scipy"), "a study or a Parquet file"),
     "dask": Extra(("distributed",), "a study on a cluster"),
     "pandas": Extra(("pandas",), "a table of pandas"),
     "card": Extra(CARD, "planning a drawing"),

@@ -197,6 +197,38 @@ OnMachine = Annotated[
 ]
 
 
+Over = Annotated[
+    list[str],
+    typer.Option("--map", metavar="SIGNAL=COLUMN", help="Which column lies over a signal."),
+]
+LayoutFile = Annotated[
+    Path | None,
+    typer.Option("--layout", metavar="FILE.toml", help="Keys of [record_file] for the record."),
+]
+
+
+def record_options(
+    over: list[str], layout: Path | None
+) -> tuple[dict[str, str] | None, dict[str, Any] | None]:
+    """Columns by signals of all ``--map``, and the keys of a ``--layout``; None if not given."""
+    pairs = dict(pair(text) for text in over)
+    given = None if layout is None else tables_of(text_of(layout), layout)
+    if given is not None:
+        given = dict(given.get("record_file", given))
+        pairs = {**given.pop("over", {}), **pairs}
+        for key in ("file", "drive", "resample", "gaps"):
+            given.pop(key, None)
+    return pairs or None, given
+
+
+def pair(text: str) -> tuple[str, str]:
+    """Read ``signal=column``."""
+    signal, equals, column = text.partition("=")
+    if not (signal.strip() and equals and column.strip()):
+        raise InputError(f"--map {text}: SIGNAL=COLUMN wanted")
+    return signal.strip(), column.strip()
+
+
 def loaded(path: Path, machine: str | None, drawing: dict[str, Any] | None = None) -> "Scenario":
     """The scenario that a path means; with a machine, the program there on that machine.
 

@@ -9,7 +9,9 @@ import typer
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     Folder,
+    LayoutFile,
     OnMachine,
+    Over,
     ScenarioPath,
     Set,
     app,
@@ -17,10 +19,17 @@ from motionfmu.cli.common import (
     loaded,
     out,
     progress_bar,
+    record_options,
     report,
     results,
     run_shown,
     settings,
+)
+from motionfmu.cli.record_contour import (
+    RecordChoice,
+    measured_ballbar,
+    measured_contour,
+    measured_path,
 )
 
 if TYPE_CHECKING:
@@ -29,6 +38,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+# CCN 16: one command with three kinds of input, each handed on at once.
 @app.command()
 def contour(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
@@ -41,12 +51,35 @@ def contour(  # noqa: PLR0913  (each is an option of the command)
     path_: Annotated[
         bool, typer.Option("--iso9283", help="The deviation of the tool path, not the contour.")
     ] = False,
+    record_: Annotated[
+        Path | None,
+        typer.Option("--record", metavar="FILE", help="A measured tool, instead of causes."),
+    ] = None,
+    over: Over = [],  # noqa: B006
+    layout: LayoutFile = None,
+    radius: Annotated[
+        float | None, typer.Option(min=1e-3, help="Of a ballbar's record: nominal [mm].")
+    ] = None,
+    feed: Annotated[
+        float | None, typer.Option(min=1e-3, help="Of a ballbar's record [mm/min].")
+    ] = None,
+    plane: Annotated[str, typer.Option(help="Of a ballbar's record: XY, ZX or YZ.")] = "XY",
 ) -> None:
     """Explain the contour error of a scenario: which cause makes how much of it.
 
     A scenario without a contour, or with --iso9283, has the deviation of its tool path explained.
+    With --record the measured tool is analysed against the program, beside a run.
+
+    PATH may be a ballbar's record, of angle and deviation or radius: --radius is its nominal one.
     """
+    from motionfmu.records import is_record_file
+
     given = settings(set_)
+    if is_record_file(path):
+        needed("report")
+        files = [path, *([record_] if record_ else [])]
+        measured_ballbar(files, (radius, feed, plane), (over, layout), folder)
+        return
     scenario = loaded(path, machine)
     body = scenario.document.body
     of_path = path_ or (body.contour is None and body.iso9283 is not None)
@@ -59,6 +92,13 @@ def contour(  # noqa: PLR0913  (each is an option of the command)
         out.print(table)
         return
     needed("report")
+    if record_ is not None:
+        columns, keys = record_options(over, layout)
+        if keys is None and body.record_file is not None:
+            keys = body.record_file.layout
+        options = RecordChoice(record_, columns, keys or {})
+        (measured_path if of_path else measured_contour)(scenario, given, options, folder)
+        return
     (_explain_path if of_path else _explain)(scenario, given, folder)
 
 

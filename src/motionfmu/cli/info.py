@@ -217,6 +217,9 @@ def _scenario(scenario: "Scenario") -> None:
         print(_wrapped(line, "  gain ", "    "))
     steps = [(d.input, f"{_value(d.value)} at {_value(d.at)} s") for d in body.drive]
     _section("steps of inputs", steps)
+    if (record := body.record_file) is not None:
+        _section(f"driven by {record.file}", list(record.drive.items()))
+        _section(f"{record.file} over", list(record.over.items()))
     every = f", of {body.record.every} steps one" if body.record.every > 1 else ""
     _section(f"recorded{every}", [("", ", ".join(body.record.signals))])
     _section("figures", [("", figure.title) for figure in body.figure])

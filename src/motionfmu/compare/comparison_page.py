@@ -10,15 +10,15 @@ from typing import Any
 from motionfmu.analysis.iso9283.evaluation import unit as unit_of_iso9283
 from motionfmu.base.units import spelled
 from motionfmu.compare import plots
-from motionfmu.compare.differences import NOTHING, Checked, port_of
+from motionfmu.compare.differences import Checked, port_of
 from motionfmu.compare.number_pairs import Number
 from motionfmu.compare.pairing import Apart, Pairing
-from motionfmu.compare.words import GONE, change_text, row_of, signed, text_of
+from motionfmu.compare.words import GONE, change_text, row_of, signed
 from motionfmu.report import result_folder
 from motionfmu.report.contour_words import CIRCLE, CONTOUR, in_words
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, judged, table
-from motionfmu.report.numbers import figure, length
+from motionfmu.report.numbers import NOTHING, figure, length, text_of
 from motionfmu.run.checks import parts, tally, together
 from motionfmu.run.result_files import NUMBERS
 

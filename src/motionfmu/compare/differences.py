@@ -7,10 +7,10 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.base.units import spelled
 from motionfmu.compare.side import Side
+from motionfmu.report.numbers import NOTHING
 from motionfmu.scenarios.fmus import Port, ports
 from motionfmu.scenarios.values import start_values
 
-NOTHING = "—"
 LISTED = 8  # so many values of a list are shown
 
 
@@ -49,6 +49,7 @@ def different(a: Side, b: Side) -> list[Different]:
     found += _rows("input ", one["wires"], other["wires"])
     found += _contents("file", one["files"], other["files"])
     found += _settings(a, b)
+    found += _rows("record ", *(r.get("record") or {} for r in (one, other)))
     drives = [{d["input"]: [d["at"], d["value"]] for d in r["drives"]} for r in (one, other)]
     return found + list(_rows("[[drive]] of ", drives[0], drives[1]))
 

@@ -1,30 +1,9 @@
 """Numbers of both runs in words, with their units."""
 
-import math
-
-from motionfmu.compare.differences import NOTHING
 from motionfmu.compare.number_pairs import Number
-from motionfmu.report.numbers import MINUS, figure, length
+from motionfmu.report.numbers import MINUS, NOTHING, text_of
 
 GONE = f"B {MINUS} A"
-
-
-def text_of(value: float | None, unit: str, sign: bool = False) -> str:
-    """A number with its unit: lengths in µm or mm, angles in °, short times in ms."""
-    if value is None:
-        return NOTHING
-    if unit == "m":
-        return length(value * 1e3, sign)
-    if unit == "mm":
-        return length(value, sign)
-    if unit == "rad":
-        return f"{figure(math.degrees(value), sign)}°"
-    if unit == "s" and abs(value) < 1.0:
-        return f"{figure(value * 1e3, sign)} ms"
-    if unit == "mm/s":
-        return f"{figure(value, sign)} {unit}"
-    text = f"{value:{'+' if sign else ''}.5g}".replace("-", MINUS)
-    return f"{text} {unit}" if unit else text
 
 
 def change_text(n: Number) -> str:

@@ -95,9 +95,9 @@ def stimuli(system: System) -> tuple[list[Stimuli], list[str]]:
     lost = []
     for name in names:
         mine = [s for s in system.stimuli if s.end.name == name]
-        end = mine[0].end
+        end, place = mine[0].end, "[record_file]" if mine[0].measured else "[[drive]]"
         if end.port.causality != "input" or end.port.type not in SIGNALS:
-            lost.append(f"[[drive]] {name}: no wire of an SSP leads to a {_what(end)}")
+            lost.append(f"{place} {name}: no wire of an SSP leads to a {_what(end)}")
             continue
         steps = [(s.step * system.step_ns / 1e9, s.values) for s in mine]
         if mine[0].step > 0:
@@ -108,7 +108,7 @@ def stimuli(system: System) -> tuple[list[Stimuli], list[str]]:
         if fresh.takes(end, steps):
             made.append(fresh)
         else:
-            lost.append(f"[[drive]] {name}: {len(steps)} steps are too many for the FMU {FMU}")
+            lost.append(f"{place} {name}: {len(steps)} steps are too many for the FMU {FMU}")
     return made, lost
 
 

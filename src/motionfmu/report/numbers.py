@@ -7,6 +7,7 @@ from motionfmu.base.units import spelled
 MINUS = "\N{MINUS SIGN}"
 # Lengths from here on read better in mm than in µm [mm].
 MILLIMETRES_FROM = 1.0
+NOTHING = "—"  # where there is no number
 
 
 def label(name: str, unit: str | None) -> str:
@@ -51,3 +52,21 @@ def round_up(value: float) -> float:
     power = 10.0 ** math.floor(math.log10(value))
     steps = (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
     return min(m * power for m in steps if m * power >= value * (1.0 - 1e-12))
+
+
+def text_of(value: float | None, unit: str, sign: bool = False) -> str:
+    """A number with its unit: lengths in µm or mm, angles in °, short times in ms."""
+    if value is None:
+        return NOTHING
+    if unit == "m":
+        return length(value * 1e3, sign)
+    if unit == "mm":
+        return length(value, sign)
+    if unit == "rad":
+        return f"{figure(math.degrees(value), sign)}°"
+    if unit == "s" and abs(value) < 1.0:
+        return f"{figure(value * 1e3, sign)} ms"
+    if unit == "mm/s":
+        return f"{figure(value, sign)} {unit}"
+    text = f"{value:{'+' if sign else ''}.5g}".replace("-", MINUS)
+    return f"{text} {unit}" if unit else text

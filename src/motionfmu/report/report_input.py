@@ -6,6 +6,7 @@ from typing import Any, Protocol
 from motionfmu.analysis.iso9283 import Evaluation
 from motionfmu.run.checks import Verdict
 from motionfmu.run.figures import Chart
+from motionfmu.run.record_matches import RecordMatches
 from motionfmu.run.run_plan import RunPlan
 from motionfmu.run.run_record import RunRecord
 
@@ -62,6 +63,13 @@ class ReportInput(RunRecord, Protocol):
 
     def iso9283(self) -> Evaluation:
         """Its figures after ISO 9283."""
+
+    @property
+    def no_record(self) -> str:
+        """Why the record is not over the run; empty if it is or there is none."""
+
+    def record_matches(self) -> RecordMatches:
+        """The scenario's record over the run."""
 
     def overview(self) -> Sequence[Chart]:
         """A figure of each recorded signal."""

@@ -28,7 +28,13 @@ from motionfmu.report.polar_chart import polar_chart
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary, as_written, summary_of
 from motionfmu.report.signal_chart import add_charts, write_charts
-from motionfmu.report.signal_page import add_performance, add_verdict, deviations, plain_text
+from motionfmu.report.signal_page import (
+    add_performance,
+    add_record_over_run,
+    add_verdict,
+    deviations,
+    plain_text,
+)
 from motionfmu.report.signal_words import titled
 from motionfmu.report.time_charts import (
     error_chart,
@@ -141,6 +147,7 @@ def page_text(
         _add_circle(page, f"circle{i}", test)
     add_speed(page, ran)
     _add_time(page, result, contour)
+    add_record_over_run(page, result)
     add_charts(page, charts)
     _add_corners(page, contour)
     path = {

@@ -8,6 +8,7 @@ from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import check_table, expected_table, warning_list
 from motionfmu.report.iso9283_section import add_iso9283
+from motionfmu.report.record_section import add_record
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary
 from motionfmu.report.signal_chart import add_charts
@@ -36,6 +37,17 @@ def add_performance(page: Page, result: ReportInput) -> None:
         page.section("Path performance", escape(result.no_iso9283), "")
     else:
         add_iso9283(page, result.iso9283())
+
+
+def add_record_over_run(page: Page, result: ReportInput) -> None:
+    """Add the record over the run, or why it is not over it, if the scenario has one to lay."""
+    table = result.resolver.document.body.record_file
+    if table is None or not table.over:
+        return
+    if result.no_record:
+        page.section("Record over run", escape(result.no_record), "")
+    else:
+        add_record(page, result.record_matches())
 
 
 def add_verdict(page: Page, result: ReportInput) -> None:
@@ -69,6 +81,7 @@ def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) ->
     add_axes(page, ran.axes)
     if ran.plan is not None:
         add_cycle_time(page, ran.plan)
+    add_record_over_run(page, result)
     shown = charts or result.overview()
     add_charts(page, shown, pictures=bool(charts))
     add_speed(page, ran)

@@ -11,11 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.columns import ROWS
+from motionfmu.run import record_matches
 from motionfmu.run.decimate import Read, reader
-from motionfmu.scenarios import rates
-from motionfmu.scenarios.body import CHECK, Body, Bounds, Pair
+from motionfmu.scenarios import rates, record_signals
+from motionfmu.scenarios.body import CHECK, Bounds, Pair
+from motionfmu.scenarios.system import Resolver
 
-TABLES = ("contour", "iso9283")  # analyses whose figures can be checked, by table
+TABLES = ("contour", "iso9283", "record")  # what has figures that can be checked
 NOTHING = "no checks: nothing was judged"
 # A bound in words: its name, its numbers, the times at which it holds.
 _BOUNDS = re.compile(r"((?:.*? )??(?:>=|<=|in|=|order) )(.*?)((?:, (?:at|in) .*|, \S+ to \S+ s)?)$")
@@ -112,14 +114,15 @@ def beyond(same: Iterable[Judged]) -> float:
     return float(max((v.beyond for v in same), key=lambda x: math.inf if math.isnan(x) else abs(x)))
 
 
-def misplaced(name: str, checks: Sequence[Bounds], body: Body) -> str:
+def misplaced(name: str, checks: Sequence[Bounds], resolver: Resolver) -> str:
     """Why a line of bounds cannot be, apart from the name of its signal; empty if it can."""
+    body = resolver.document.body
     if any(all(getattr(c, bound) is None for bound in BOUNDS) for c in checks):
         return f"{name}: no bound ({', '.join(BOUNDS)})"
     if is_figure(name):
         if any((c.windows, c.at, c.rate) != (None, None, None) for c in checks):
             return f"{name}: a figure has no time, no windows and no rate"
-        return wrong_figure(name, body)
+        return wrong_figure(name, resolver)
     told = next((text for c in checks if (text := _no_time(c, body.stop_limit))), "")
     return f"{name}: {told}" if told else ""
 
@@ -129,9 +132,18 @@ def is_figure(name: str) -> bool:
     return name.partition(".")[0] in TABLES
 
 
-def wrong_figure(name: str, body: Body) -> str:
+def table_of(figure: str) -> str:
+    """The table of a scenario that asks for a figure."""
+    table = figure.partition(".")[0]
+    return record_signals.TABLE if table == record_matches.TABLE else table
+
+
+def wrong_figure(name: str, resolver: Resolver) -> str:
     """Why no run of a scenario can have this figure; empty if a run can."""
     table, _, figure = name.partition(".")
+    if table == record_matches.TABLE:
+        return record_matches.wrong(figure, resolver)
+    body = resolver.document.body
     if getattr(body, table) is None:
         return f"{name}: there is no [{table}] table"
     if table == "contour":

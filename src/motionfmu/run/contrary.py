@@ -53,7 +53,7 @@ def _check_value(
 
 def options(document: Document, case: Contrary) -> dict[str, Any]:
     """Options of `Scenario.run` for a case; a driven input keeps its value for the whole run."""
-    driven = {d.input for d in document.body.drive}
+    driven = document.body.driven
     undriven = {n for n in driven if n in case.set or any(s.startswith(f"{n}[") for s in case.set)}
     return {"set": case.set, "undriven": undriven}
 

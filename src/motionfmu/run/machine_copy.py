@@ -9,7 +9,7 @@ from motionfmu.base.new_folder import new_folder
 from motionfmu.base.units import spelled
 from motionfmu.run.machine_program import Machine
 from motionfmu.run.run_plan import RunPlan
-from motionfmu.run.saved_scenario import read_files
+from motionfmu.run.saved_scenario import read_files, record_file
 from motionfmu.scenarios import package_files
 from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.machine_limits import BOUNDS
@@ -30,6 +30,9 @@ def copy_machine(like: Machine, folder: Path) -> None:
     tables["component"] = {**tables["component"], **foreign}
     files = read_files(plan.resolver, tables.get("set", {}))
     tables["set"] = {**tables.get("set", {}), **{n: f.name for n, f in files.items()}}
+    if "record_file" in tables:
+        files["record_file"] = record_file(plan.resolver)
+        tables["record_file"] = {**tables["record_file"], "file": files["record_file"].name}
     about = document.sources[1].about
     with new_folder(folder) as part:
         for file in files.values():

@@ -38,8 +38,11 @@ def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[s
         place = "scenario" if end.name in written else "default"
         found.append(f"{file}{end.name} = {_value(values)}{unit} ({place}: {_value(before)})")
     found += _steps(options, body)
-    driven = {d.input for d in body.drive}
-    found += [f"{name}: its [[drive]] is left out" for name in sorted(driven & {*options.undriven})]
+    by_steps = {d.input for d in body.drive}
+    left = sorted(body.driven & {*options.undriven})
+    found += [
+        f"{name}: its {'[[drive]]' if name in by_steps else 'record'} is left out" for name in left
+    ]
     return found
 
 

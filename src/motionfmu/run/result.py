@@ -14,9 +14,11 @@ from numpy.typing import NDArray
 from motionfmu.base.columns import ROWS, Columns, forget
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.base.extras import needed
-from motionfmu.run import figures, signals, waveforms
+from motionfmu.records import Record
+from motionfmu.run import figures, record_matches, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge, tally
 from motionfmu.run.figures import Chart
+from motionfmu.run.record_matches import RecordMatches
 from motionfmu.run.run_plan import RunPlan
 from motionfmu.scenarios import values
 from motionfmu.scenarios.body import CHECK, Bounds
@@ -105,6 +107,7 @@ class Result(Mapping[str, NDArray[Any]]):
     known: "PulsePaths | None" = None
     _contour: "ContourResult | NoNumber | None" = None
     _iso9283: "Evaluation | NoNumber | None" = None
+    _matches: "RecordMatches | NoNumber | None" = None
 
     def __post_init__(self) -> None:
         signals.locked(self.time)
@@ -324,6 +327,53 @@ class Result(Mapping[str, NDArray[Any]]):
             raise self._iso9283
         return self._iso9283
 
+    def record_matches(self) -> RecordMatches:
+        """The record of the scenario laid over this run.
+
+        Returns
+        -------
+        RecordMatches
+            ``found`` by signal; its `Match` has both on their common time, difference and lag.
+
+        Raises
+        ------
+        InputError
+            The scenario has no [record_file] table.
+        NoNumber
+            Run and record have no time in common.
+        """
+        if self.resolver.document.body.record_file is None:
+            raise InputError(f"{self.name}: the scenario has no [record_file] table")
+        if self._matches is None:
+            try:
+                self._matches = record_matches.matches(self)
+            except NoNumber as reason:
+                self._matches = reason
+        if isinstance(self._matches, NoNumber):
+            raise self._matches
+        return self._matches
+
+    @property
+    def no_record(self) -> str:
+        """Why the record cannot be laid over this run; else empty."""
+        try:
+            if self.resolver.document.body.record_file is not None:
+                self.record_matches()
+        except NoNumber as reason:
+            return str(reason)
+        return ""
+
+    def record(self) -> Record:
+        """The signals of this run, as a measured record is.
+
+        Returns
+        -------
+        Record
+            The same arrays, with times in whole ns; ``save`` writes it to a file.
+        """
+        ns = np.rint(np.asarray(self.time) * 1e9).astype(np.int64)
+        return Record(self.name, ns, self.signals, self.units)
+
     @property
     def no_iso9283(self) -> str:
         """Why this run has no figures after ISO 9283; else empty."""
@@ -341,7 +391,7 @@ class Result(Mapping[str, NDArray[Any]]):
         ----------
         name : str
             The table that asks for the analysis and the figure's own name: ``contour.error.max``,
-            ``iso9283.AT_P``.
+            ``iso9283.AT_P``, ``record.position.nrmse``.
 
         Raises
         ------
@@ -353,6 +403,10 @@ class Result(Mapping[str, NDArray[Any]]):
         table, _, own = name.partition(".")
         if table not in TABLES or not own:
             raise InputError(f"no figure {name!r}: contour.error.max and iso9283.AT_P are some")
+        if table == record_matches.TABLE:
+            if told := record_matches.wrong(own, self.resolver):
+                raise InputError(told)
+            return self.record_matches().number(own)
         return self.contour().number(own) if table == "contour" else self.iso9283().number(own)
 
     def figures(self) -> list[Chart]:

@@ -10,6 +10,7 @@ import numpy as np
 from motionfmu.analysis.contour.scaled_values import places
 from motionfmu.base.columns import LazyArray, forget
 from motionfmu.base.toml_lines import is_file
+from motionfmu.run import record_matches
 from motionfmu.run.result import Result
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import wires
@@ -57,12 +58,15 @@ def numbers(result: Result) -> dict[str, Any]:
     if body.iso9283 is not None:
         found["iso9283"] = None if result.no_iso9283 else result.iso9283().numbers()
         found["no_iso9283"] = result.no_iso9283
+    if body.record_file is not None:
+        found["record"] = None if result.no_record else result.record_matches().numbers()
+        found["no_record"] = result.no_record
     found["units"] = result.units
     found["figures"] = [figure.model_dump() for figure in body.figure]
     return found | {"run": _made(result)}
 
 
-# CCN 18: a table of what a run depends on, a comprehension for each row.
+# CCN 19: a table of what a run depends on, a comprehension for each row.
 def _made(result: Result) -> dict[str, Any]:
     """All that a run depends on, and in which two runs may differ."""
     document, library = result.scenario.document, result.scenario.library()
@@ -71,7 +75,8 @@ def _made(result: Result) -> dict[str, Any]:
     own = f"{library}.path_file"
     given = {n: list(v) for n, v in sorted(result.parameters.items()) if n != own}
     named = [x for v in given.values() for x in v if isinstance(x, str) and x and is_file(Path(x))]
-    return {
+    record = record_matches.made_of(result.resolver)
+    return ({} if record is None else {"record": record}) | {
         "components": {c: _beside(name, folder) for c, name in body.component.items()},
         "fmus": {
             _beside(name, folder): _digest(fmus.fmu_path(name))

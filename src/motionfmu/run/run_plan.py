@@ -8,7 +8,7 @@ from typing import Any
 
 from motionfmu.base.errors import Faults, InputError
 from motionfmu.run import contrary, figures, waveforms
-from motionfmu.run.checks import is_figure, misplaced
+from motionfmu.run.checks import is_figure, misplaced, table_of
 from motionfmu.scenarios import (
     agreement,
     contour_signals,
@@ -16,6 +16,7 @@ from motionfmu.scenarios import (
     limited_signals,
     machine_limits,
     rates,
+    record_signals,
     recording,
     system,
     tool_signals,
@@ -97,7 +98,7 @@ class RunPlan:
         """Look up what is recorded, drawn and checked."""
         resolver, body = self.resolver, self.document.body
         listed = faults.of(lambda: recording.chosen(resolver, body.record.signals)) or []
-        more = (contour_signals, iso9283_signals, view_signals, tool_signals)
+        more = (contour_signals, iso9283_signals, view_signals, tool_signals, record_signals)
         for wanted in (*more, machine_limits, limited_signals):
             with faults.each():
                 listed += recording.chosen(resolver, wanted.wanted(resolver))
@@ -124,12 +125,12 @@ class RunPlan:
 
     def _checked(self, table: str, name: str, bounds: Sequence[Bounds]) -> list[system.End]:
         """The output that a line of bounds is about; none if that is a figure of an analysis."""
-        if is_figure(name) and self._damaged(name.partition(".")[0]):
+        if is_figure(name) and self._damaged(table_of(name)):
             return []
         found = []
         if not is_figure(name):
             found = [recording.elements(self.resolver, name, table, name)[0]]
-        if told := misplaced(name, bounds, self.document.body):
+        if told := misplaced(name, bounds, self.resolver):
             raise self.document.error(told, table, name)
         return found
 
@@ -186,6 +187,8 @@ class RunPlan:
             return None
         step_ns, steps = times
         driven = faults.of(lambda: values.stimuli(resolver, step_ns)) or []
+        driven += faults.of(lambda: record_signals.stimuli(resolver, times, given)) or []
+        driven.sort(key=lambda s: s.step)
         until = None
         if options.stop is None:
             until = faults.of(lambda: system.until(resolver, step_ns))

@@ -12,7 +12,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.new_folder import new_folder
 from motionfmu.run.program_translation import GCODE
 from motionfmu.run.run_plan import Options, RunPlan
-from motionfmu.scenarios import package_files
+from motionfmu.scenarios import package_files, record_signals
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.toml_text import pair_lines, table_lines
 
@@ -25,6 +25,9 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
     tables.pop("drawing", None)  # it is in the program that was made
     files = read_files(plan.resolver, tables["set"])
     tables["set"] |= {name: file.name for name, file in files.items()}
+    if "record_file" in tables:
+        files["record_file"] = record_file(plan.resolver)
+        tables["record_file"] = {**tables["record_file"], "file": files["record_file"].name}
     with new_folder(folder) as part:
         for file in [*files.values(), *(c for f in files.values() for c in _called(f))]:
             if (part / file.name).exists() and not filecmp.cmp(file, part / file.name, False):
@@ -39,6 +42,14 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
             if isinstance(table, dict | list):
                 lines += table_lines(name, table)
         (part / package_files.SCENARIO).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def record_file(resolver: Resolver) -> Path:
+    """The file of a record that goes with a copy; the folder of a result does not."""
+    file = record_signals.file_of(resolver)
+    if file.is_dir():
+        raise InputError(f"{file}: a result's folder does not go with a copy: save its record")
+    return file
 
 
 def _tables(own: Mapping[str, Any], options: Options) -> dict[str, Any]:

@@ -1,6 +1,6 @@
-"""Tables of a scenario that ask for an analysis or a view of the tool."""
+"""Tables of a scenario that ask for an analysis or a view of the tool, or name a record."""
 
-from typing import Annotated
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -65,3 +65,32 @@ class Waveform(BaseModel):
     window: Pair | None = None
     title: str = ""
     note: str = ""
+
+
+class RecordFile(BaseModel):
+    """A record, how it is laid out, which inputs it drives and which signals it is laid over."""
+
+    model_config = STRICT
+    file: Name
+    columns: dict[Name, Any] = Field(default_factory=dict, max_length=CYCLES_MAX)
+    time: Name | None = None
+    time_unit: Name | None = None
+    rate: float | None = Field(default=None, gt=0)
+    offset: float | Literal["start"] = 0.0
+    delimiter: Name | None = None
+    decimal: Literal[".", ","] | None = None
+    encoding: Name | None = None
+    skip: int = Field(default=0, ge=0)
+    names: list[Name] | None = None
+    duplicates: Literal["refuse", "first", "last", "mean"] = "refuse"
+    missing: list[Name] = Field(default_factory=list, max_length=CYCLES_MAX)
+    resample: Literal["linear", "hold"] = "linear"  # what lies between samples
+    gaps: Literal["refuse", "interpolate"] = "refuse"  # where an input is driven
+    drive: dict[Name, Name] = Field(default_factory=dict, max_length=CYCLES_MAX)
+    over: dict[Name, Name] = Field(default_factory=dict, max_length=CYCLES_MAX)
+
+    @property
+    def layout(self) -> dict[str, Any]:
+        """The options of `motionfmu.record`."""
+        own = {"file", "resample", "gaps", "drive", "over"}
+        return self.model_dump(exclude=own)

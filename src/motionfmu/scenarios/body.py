@@ -8,7 +8,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PlainValidat
 from pydantic_core import PydanticCustomError
 
 from motionfmu.base.toml_lines import KEY_MAX
-from motionfmu.scenarios.analyses import Iso9283, View, Waveform
+from motionfmu.scenarios.analyses import Iso9283, RecordFile, View, Waveform
 
 Value = bool | int | float | str | list[bool] | list[int] | list[float] | list[str]
 Pair = tuple[float, float]
@@ -78,7 +78,7 @@ class Contour(BaseModel):
     pulses: Name
 
 
-class Record(BaseModel):
+class RecordTable(BaseModel):
     """What is recorded: names or patterns of outputs, at every step or every so many."""
 
     model_config = _STRICT
@@ -223,7 +223,8 @@ class Body(BaseModel):
     set: dict[str, Value] = Field(default_factory=dict)
     drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
     leave: Names = Field(default_factory=list)
-    record: Record
+    record: RecordTable
+    record_file: RecordFile | None = None
     contour: Contour | None = None
     iso9283: Iso9283 | None = None
     view: View = View()
@@ -241,6 +242,12 @@ class Body(BaseModel):
         return PLANNED_LEAST if self.limit == "planned" else self.limit or LONGEST
 
     @property
+    def driven(self) -> frozenset[str]:
+        """Inputs that [drive] or a record drives, whole arrays by their names."""
+        given = self.record_file.drive if self.record_file else {}
+        return frozenset((*(d.input for d in self.drive), *(n.partition("[")[0] for n in given)))
+
+    @property
     def asked(self) -> Iterator[tuple[str, str, tuple[Bounds, ...]]]:
         """Each line by which a run is judged: its table, name and bounds."""
         for table in JUDGED:
@@ -255,7 +262,8 @@ MODELS: dict[str, type[BaseModel]] = {
     "expect": Bounds,
     "contrary": Contrary,
     "contour": Contour,
-    "record": Record,
+    "record": RecordTable,
+    "record_file": RecordFile,
     "signals": MachineSignals,
     "drawing": DrawingTable,
     "axis": MachineAxis,

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from motionfmu.base import units
 from motionfmu.base.errors import Faults, InputError, suggestion
@@ -60,6 +61,7 @@ class Stimulus:
     end: End
     step: int
     values: Values
+    measured: bool = False  # by a record
 
 
 @dataclass(frozen=True)
@@ -132,6 +134,7 @@ class Resolver:
 
     def __init__(self, document: Document, faults: Faults | None = None) -> None:
         self.document = document
+        self.known: dict[Any, Any] = {}  # what was found of the file for the last keys
         self.ports: dict[str, Mapping[str, Port]] = {}
         kept = Faults() if faults is None else faults
         for name, fmu in document.body.component.items():

@@ -18,6 +18,7 @@ from motionfmu.scenarios import recording
 from motionfmu.scenarios.body import Bounds
 from motionfmu.scenarios.contour_signals import wanted as of_contour
 from motionfmu.scenarios.iso9283_signals import wanted as of_iso9283
+from motionfmu.scenarios.record_signals import wanted as of_record
 from motionfmu.scenarios.system import End
 
 Array = NDArray[Any]
@@ -67,7 +68,7 @@ class Column:
 def column(scenario: Scenario, name: str) -> Column:
     """The column with a name; an InputError or ValueError if there can be none."""
     if is_figure(name):
-        if told := wrong_figure(name, scenario.document.body):
+        if told := wrong_figure(name, scenario.resolver):
             raise ValueError(told)
         return Column(name)
     signal, _, statistic = name.rpartition(".")
@@ -76,7 +77,8 @@ def column(scenario: Scenario, name: str) -> Column:
         raise ValueError(f"{name}: no component or analysis {component!r}{close}")
     if statistic not in STATISTICS or "." not in signal:
         known = ", ".join(STATISTICS)
-        text = f"SIGNAL.STATISTIC (one of {known}), contour.FIGURE or iso9283.FIGURE wanted"
+        analyses = " or ".join(f"{table}.FIGURE" for table in TABLES)
+        text = f"SIGNAL.STATISTIC (one of {known}), {analyses} wanted"
         hint = suggestion(statistic, STATISTICS) if "." in signal else ""
         raise ValueError(f"{name}: {text}{hint}")
     whole, element = scenario.resolver.split(signal)
@@ -116,7 +118,8 @@ def _checked(scenario: Scenario, table: str, name: str, check: Bounds) -> Iterab
 def signals(scenario: Scenario, columns: Iterable[Column]) -> list[End]:
     """The outputs that a run records, each once: for columns, checks and contour."""
     checked = [n for _, n, _ in scenario.document.body.asked if not is_figure(n)]
-    analysed = [*of_contour(scenario.resolver), *of_iso9283(scenario.resolver)]
+    sources = (of_contour, of_iso9283, of_record)
+    analysed = [name for wanted in sources for name in wanted(scenario.resolver)]
     names = [*analysed, *(scenario.resolver.split(n)[0] for n in checked)]
     ends = [recording.output(scenario.resolver, n, "check", n) for n in names]
     ends += [c.end for c in columns if c.end]

@@ -7,6 +7,7 @@ if TYPE_CHECKING:
     from motionfmu.analysis.contour.error import analyse
     from motionfmu.analysis.contour.path import Path
     from motionfmu.analysis.contour.planned_geometry import read_path
+    from motionfmu.analysis.contour.tool_record import ToolRecord, analyse_record
     from motionfmu.base.errors import NoNumber
 
 __all__ = [
@@ -14,8 +15,10 @@ __all__ = [
     "ContourResult",
     "NoNumber",
     "Path",
+    "ToolRecord",
     "Trace",
     "analyse",
+    "analyse_record",
     "read_path",
 ]
 
@@ -24,9 +27,9 @@ def __getattr__(name: str) -> Any:
     """Import the analysis when it is first used: a scenario's checks want the names alone."""
     if name not in __all__:
         raise AttributeError(f"module 'motionfmu.analysis.contour' has no attribute {name!r}")
-    from motionfmu.analysis.contour import contour_result, error, planned_geometry
+    from motionfmu.analysis.contour import contour_result, error, planned_geometry, tool_record
 
-    places = (error, planned_geometry, contour_result)
+    places = (error, planned_geometry, contour_result, tool_record)
     return next(getattr(place, name) for place in places if hasattr(place, name))
 
 

@@ -78,8 +78,8 @@ def analyse(
     circles, missing = circular_tests(path, (instants, run.actual), tracks, settle, run.run_in)
     corners = find_corners(path, instants, tracks, cutting, window)
     both = cutting & path.cut[command.track.segment]
-    error = _statistics(path, run.time, track, cutting)
-    command_error = _statistics(path, run.time, command.track, both)
+    error = statistics(path, run.time, track, cutting)
+    command_error = statistics(path, run.time, command.track, both)
     progress(1.0)
     return ContourResult(
         run=run,
@@ -96,7 +96,7 @@ def analyse(
     )
 
 
-def _statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:
+def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:
     """Statistics of the distance over chosen samples, one at least."""
     rows = np.flatnonzero(chosen)
     size = track.distance[rows]

@@ -126,7 +126,7 @@ def _of_controller(machine: Machine) -> dict[str, tuple[float, float]]:
     from motionfmu.run.program_reading import reading_on
 
     try:
-        settings: dict[str, Any] = reading_on(str(machine.file))[0]
+        settings: dict[str, Any] = reading_on(str(machine.file), {})[0]
     except InputError:  # it reads no part programs
         return {}
     return {

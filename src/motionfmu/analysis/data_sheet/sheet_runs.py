@@ -1,6 +1,5 @@
 """Runs of a machine from which the figures of its data sheet are taken."""
 
-import contextlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.circles import CircularTest
-from motionfmu.analysis.cycle_time import planned
 from motionfmu.analysis.data_sheet.sheet_axes import SheetAxis
 from motionfmu.analysis.data_sheet.sheet_programs import (
     APPROACHES,
@@ -21,8 +19,8 @@ from motionfmu.analysis.data_sheet.sheet_programs import (
     targets,
 )
 from motionfmu.analysis.positioning import PositioningTest
-from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.run.machine_program import LIMIT, Machine
+from motionfmu.base.errors import NoNumber
+from motionfmu.run.machine_program import Machine
 from motionfmu.run.result import Result
 from motionfmu.run.run_plan import Options
 from motionfmu.run.runner import Scenario
@@ -30,8 +28,6 @@ from motionfmu.scenarios import contour_signals
 from motionfmu.scenarios.values import values_in
 
 Array = NDArray[np.float64]
-# A program that waits for what does not come ends at so many times its planned time, and more [s].
-LONGER, MORE = 1.5, 2.0
 RECORDED = 1e-3  # [s] between two samples that are kept of a positioning run
 # The mean over this time at the end of a rest is read [s], as a laser's: an axis with friction and
 # an integral never quite rests.
@@ -56,13 +52,7 @@ class SheetMachine:
         """A program of this text on the machine."""
         file = self.folder / name
         file.write_text(text, encoding="utf-8")
-        on = self.machine.scenario(file, set=self.set)
-        longest = LIMIT
-        with contextlib.suppress(
-            InputError
-        ):  # no component plans it, or the run tells what is wrong
-            longest = float(math.ceil(LONGER * planned(on, self.set).time + MORE))
-        return self.machine.scenario(file, set=self.set, limit=longest)
+        return self.machine.scenario(file, set=self.set)
 
     def run(self, name: str, text: str, every: float | None = None) -> Result:
         """Run a program, with so long [s] between two samples or as the machine records."""

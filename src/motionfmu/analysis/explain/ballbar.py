@@ -197,10 +197,12 @@ def _um(value: float) -> str:
 def _mismatch(size: float, test: CircularTest, names: tuple[str, str]) -> tuple[str, float, str]:
     assert test.ccw is not None
     slow, fast = names if size > 0.0 else names[::-1]
-    time = 2.0 * abs(size) / test.ccw.speed if test.ccw.speed > 0.0 else 0.0
+    by = ""  # of a ballbar's record the speed may be unknown
+    if test.ccw.speed > 0.0:
+        by = f" by {2e3 * abs(size) / test.ccw.speed:.3g} ms"
     words = (
         f"Mismatch of the axes, {_um(size)}: an oval at 45° that turns with the direction of"
-        f" travel. {slow} lags {fast} by {time * 1e3:.3g} ms: a lower position gain, or more"
+        f" travel. {slow} lags {fast}{by}: a lower position gain, or more"
         " delay; make both lags equal."
     )
     return "mismatch", abs(size), words

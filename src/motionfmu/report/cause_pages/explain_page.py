@@ -62,7 +62,7 @@ def page_text(found: Explanation) -> str:
     )
     page.section("Along the path", note, page.place("along", _curves(found)))
     for i, mark in enumerate(found.signatures):
-        _add_circle(page, f"circle{i}", mark)
+        add_circle(page, f"circle{i}", mark)
     if found.corners:
         note = (
             "Theory: first-order axes with the mean gain, the corner run into at the speed of the"
@@ -174,7 +174,8 @@ def _curves(found: Explanation) -> Diagram:
     return one(*scales, lines, HEIGHT)
 
 
-def _add_circle(page: Page, name: str, mark: Signature) -> None:
+def add_circle(page: Page, name: str, mark: Signature) -> None:
+    """Add a ballbar's picture of a circle, its diagnosis and the quantities of ISO 230-4."""
     plot = page.place(name, polar_chart(mark.test))
     words = "".join(f"<li>{escape(w)}</li>" for w in mark.words())
     rows = [
