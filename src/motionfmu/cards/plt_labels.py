@@ -36,6 +36,7 @@ class Lettering:
     line_back: bool = False  # a line feed of DV goes the other way
     origin: int = 1  # LO
 
+    # CCN 18: an instruction after the other, each with what it refuses.
     def set(self, pair: str, numbers: list[float]) -> str:
         """Carry out SI SR DI DR ES DV LO; returns a fault."""
         least, most = _COUNTS[pair]

@@ -74,7 +74,12 @@ class Plotter:
                 self._told(self.lettering.set(pair, numbers))
                 if pair in _RETURNS_HERE:
                     self.carriage = self.at
-            elif pair in ("LB", "CP"):
+            elif pair == "LB":
+                self.scan.skip(pair)
+                self._letters(pair, [])
+            elif pair == "CP":
+                if len(numbers) not in (0, 2):
+                    self.scan.refuse(f"{len(numbers)} numbers, 0 or 2 wanted")
                 self._letters(pair, numbers)
             elif pair in _FILLS:
                 self._fill(pair, numbers)
@@ -132,10 +137,6 @@ class Plotter:
 
     def _letters(self, pair: str, numbers: list[float]) -> None:
         """LB, CP: the pen goes to where the next letter would be; nothing is drawn."""
-        if pair == "LB":
-            self.scan.skip(pair)
-        elif len(numbers) not in (0, 2):
-            self.scan.refuse(f"{len(numbers)} numbers, 0 or 2 wanted")
         letters, corners = self.lettering, self.frame.p or A4
         if self.polygon is not None or (pair == "LB" and not letters.goes_on):
             return
@@ -148,10 +149,10 @@ class Plotter:
         carriage, (dx, dy) = self.carriage, np.subtract(self.at, self.carriage)
         x = (dx * across[0] + dy * across[1]) / wide**2
         y = (dx * up[0] + dy * up[1]) / high**2
-        if pair == "LB" or not numbers:
-            x, y = behind(self.scan.label if pair == "LB" else b"\r\n", letters, (x, y))
-        else:
+        if pair == "CP" and numbers:
             x, y = x + numbers[0], y + numbers[1]
+        else:
+            x, y = behind(self.scan.label if pair == "LB" else b"\r\n", letters, (x, y))
         at = (
             carriage[0] + x * across[0] + y * up[0],
             carriage[1] + x * across[1] + y * up[1],
