@@ -6,9 +6,7 @@
 and in the last two without it.
 """
 
-import re
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -64,14 +62,9 @@ class Held:
 
 def run(overlap: float, law: dict[str, Any]) -> Held:
     """One load on and off."""
-    text = (HERE / "scenario.toml").read_text()
-    text = text[: text.index("[[figure]]")]
-    text = re.sub(r"at    = .*", f"at = [{ON}, {OFF}]", text)
-    text = re.sub(r"value = .*", f"value = [{FORCE}, 0.0]", text)
-    text = re.sub(r"stop = .*", f"stop = {STOP}", text)
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "scenario.toml").write_text(text)
-        r = motionfmu.load(folder).run(set={"axis.valve_overlap": overlap} | law)
+    load = {"input": "axis.force", "at": [ON, OFF], "value": [FORCE, 0.0]}
+    scenario = motionfmu.load(HERE).changed(stop=STOP, drive=[load])
+    r = scenario.run(set={"axis.valve_overlap": overlap} | law)
     return Held(r.time, r["controller.error"])
 
 

@@ -7,9 +7,7 @@ fast as wanted. The closed form: one edge per timer period keeps the processor's
 timer's routine and its own service are over; those that come meanwhile are lost.
 """
 
-import re
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -63,14 +61,10 @@ def theory(cycles: int, way: tuple[int, ...], speed: np.ndarray) -> np.ndarray:
 
 def held(cycles: int, speed: float) -> motionfmu.Result:
     """Run the axis with the valve held open and a scale that gives about this speed."""
-    text = (HERE / "scenario.toml").read_text()
-    text = re.sub(r"at    = .*\nvalue = .*\n", f"at = [0.0]\nvalue = [{VOLTS}]\n", text)
-    text = text[: text.index("[[figure]]")].replace("stop = 0.9", f"stop = {STOP}")
-    with tempfile.TemporaryDirectory() as folder:
-        (Path(folder) / "scenario.toml").write_text("# One speed.\n" + text)
-        values = {"axis.scale_pitch": pitch(speed)}
-        values |= {f"{n}.timer_cycles": cycles for n in ("written", "repaired")}
-        return motionfmu.load(folder).run(set=values)
+    valve = {"input": "axis.voltage", "at": [0.0], "value": [VOLTS]}
+    values = {"axis.scale_pitch": pitch(speed)}
+    values |= {f"{n}.timer_cycles": cycles for n in ("written", "repaired")}
+    return motionfmu.load(HERE).changed(drive=[valve]).run(stop=STOP, set=values)
 
 
 def pitch(speed: float) -> float:

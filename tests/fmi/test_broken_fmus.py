@@ -103,7 +103,7 @@ def test_a_broken_archive_is_named_with_the_cause(broken, change, raw, what) -> 
     with pytest.raises(motionfmu.InputError) as caught:
         motionfmu.load(ROOT / "scenarios/circle_theory")
     text = str(caught.value)
-    assert f"scenario.toml:9: {folder}/{NAME}.fmi3.fmu: no readable modelDescription.xml" in text
+    assert f"machine.toml:8: {folder}/{NAME}.fmi3.fmu: no readable modelDescription.xml" in text
     assert what in text and "\n" not in text
 
 

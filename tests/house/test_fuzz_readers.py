@@ -124,13 +124,17 @@ def test_a_plants_description_is_read_or_refused(tmp_path: Path) -> None:
 
 
 def test_a_scenario_is_loaded_or_refused(tmp_path: Path) -> None:
+    mine = tmp_path / "mine"
+    mine.mkdir()
     for file in ROOT.glob("scenarios/*/*.*"):
         if file.suffix in (".ngc", ".job", ".jbi", ".points", ".txt"):
-            shutil.copy(file, tmp_path)
+            shutil.copy(file, mine)
+    for folder in (f.parent for f in ROOT.glob("scenarios/*/scenario.toml")):  # to be extended
+        (tmp_path / folder.name).symlink_to(folder)
 
     def body(text: str) -> Any:
-        (tmp_path / "scenario.toml").write_bytes(text.encode(errors="surrogatepass"))
-        found = answer(motionfmu.load, tmp_path)
+        (mine / "scenario.toml").write_bytes(text.encode(errors="surrogatepass"))
+        found = answer(motionfmu.load, mine)
         assert found is None or found.document.body.component
         return found
 

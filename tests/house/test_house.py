@@ -101,12 +101,12 @@ def test_every_part_of_the_package_has_its_place_on_the_way() -> None:
     assert all((PACKAGE / name).is_dir() for name in way())
 
 
-def test_only_what_a_result_shows_of_itself_is_imported_by_name() -> None:
+def test_only_what_shows_an_object_is_imported_by_name() -> None:
     found = {name: told for name, f in modules().items() if (told := by_name(f.read_text()))}
     assert found == {
         "motionfmu": ["f'motionfmu.{name}'"],
         "motionfmu.cli": ["f'{__name__}.{name}'"],
-        "motionfmu.run.result": ["f'motionfmu.report.{module}'"],
+        "motionfmu.base.shown_by": ["f'motionfmu.report.{module}'"],
     }
 
 

@@ -7,7 +7,8 @@ import control
 import numpy as np
 import pytest
 from conftest import ROOT
-from linear_rigs import DEMO, MODES, SMOOTH, THEORY, WIDE, kp_of, theory
+from linear_rigs import DEMO, MODES, SMOOTH, WIDE, kp_of, theory
+from written_out import WHOLE_TEXT
 
 from motionfmu import InputError
 from motionfmu.analysis import linear
@@ -134,7 +135,7 @@ def test_gain_for_sixty_degrees(d: int) -> None:
 @pytest.mark.parametrize("parts", [4, 1, 0.5, 0.25])
 def test_delay_of_the_communication_step(tmp_path: Path, parts: float) -> None:
     """The table of the runner's README: a step of n T makes every sample n T long."""
-    text = (THEORY / "scenario.toml").read_text().replace("step = 1e-4", f"step = {T / parts}")
+    text = WHOLE_TEXT.replace("step = 1e-4", f"step = {T / parts}")
     (tmp_path / "scenario.toml").write_text(text)
     (tmp_path / "circle.ngc").write_text("M30\n")
     axis = linear.model(tmp_path)

@@ -121,8 +121,8 @@ def test_each_command_is_drawn_as_another_reader_draws_it(text: str) -> None:
         ("MK4,4,0,0;IN;PA;SP1;CB1;PU4,4;PD4,5;;!PG;;", [[[4, 4], [4, 5]]]),
         ("\x1b.(\x1b.@100;2:\x1b%0BIN;PD1,1;\x1b%0A rubbish \x1b%-12345X", [[[0, 0], [1, 1]]]),
         ("@PJL ENTER PD7,7\nIN;PD1,1;@ \0\x1a", [[[0, 0], [1, 1]]]),
-        ("LBPD9,9;\x03PD1,1", [[[0, 0], [1, 1]]]),
-        ("DT#;LBPD9,9;\x03#PD1,1;IN;LBx\x03", [[[0, 0], [1, 1]]]),
+        ("LBPD9,9;\x03PD1,1", [[[684, 0], [1, 1]]]),
+        ("DT#;LBPD9,9;\x03#PD1,1;IN;LBx\x03", [[[684, 0], [1, 1]]]),
         ('CO"PD9,9"PD1,1;SMPPD2,2', [[[0, 0], [1, 1], [2, 2]]]),
         ("PD1,1;CO note PD9,9;PD2,2;", [[[0, 0], [1, 1], [2, 2]]]),
         ("PD1,1;CO PD9,9\nPD8,8;PD2,2;CO to the end PD7,7", [[[0, 0], [1, 1], [2, 2]]]),
@@ -326,3 +326,94 @@ def test_nothing_but_input_errors_and_no_hang() -> None:
         except InputError:
             refused += 1
     assert 50 < refused < 480
+
+
+SPACE, LINE = 1.5 * 0.19 * 400, 2.0 * 0.27 * 400  # [plotter units] of a letter of 1.9 x 2.7 mm
+ROOT2 = 2.0**0.5
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("LBabcd#", (4 * SPACE, 0.0)),
+        ("LB#", (0.0, 0.0)),
+        # Carriage return along the line, line feed two heights down; one label goes on as another.
+        ("LBabc\r\nde#", (2 * SPACE, -LINE)),
+        ("LBabc\n#", (3 * SPACE, -LINE)),
+        ("LBabc#LBde#LB\r\n#", (0.0, -LINE)),
+        ("LBab\b#", (SPACE, 0.0)),
+        ("LBab\tc#", (9 * SPACE, 0.0)),
+        ("LB\x01\x0b\x0ea#", (SPACE, 0.0)),
+        # CP: cells to the right and up, without numbers as CR and LF.
+        ("CP3,-2;", (3 * SPACE, -2 * LINE)),
+        ("LBabc#CP;", (0.0, -LINE)),
+        ("LBabc#CP-1,1;LBx\r#", (0.0, LINE)),
+        # Size in centimetres and in per cent of P1 .. P2.
+        ("SI0.4,0.5;LBab\n#", (2 * 1.5 * 160, -2 * 200)),
+        ("SI.4,.5;SI;LBab#", (2 * SPACE, 0.0)),
+        ("IP0,0,8000,4000;SR1,2;LBab\n#", (2 * 1.5 * 80, -2 * 80)),
+        ("SR2,2;IP0,0,8000,4000;SR;LBa#", (1.5 * 60, 0.0)),
+        ("SI-0.19,0.27;LBab#", (-2 * SPACE, 0.0)),
+        ("ES1,0.5;LBab\n#", (4 * SPACE, -1.5 * LINE)),
+        # Direction by run and rise, in per cent of P1 .. P2, and turned with the sheet.
+        ("DI1,1;LBab#", (2 * SPACE / ROOT2, 2 * SPACE / ROOT2)),
+        ("DI1,1;LB\n#", (LINE / ROOT2, -LINE / ROOT2)),
+        ("DI0,-2;LBab\r\n#", (-LINE, 0.0)),
+        ("IP0,0,8000,4000;DR1,2;LBa#", (SPACE / ROOT2, SPACE / ROOT2)),
+        ("RO90;LBab\n#", (LINE, 2 * SPACE)),
+        ("DI0,1;DI;LBa#", (SPACE, 0.0)),
+        # The path of the letters; a line feed is a quarter turn clockwise from it.
+        ("DV1;LO3;LBabc\n#", (-SPACE, -3 * LINE)),
+        ("DV2;LO7;LBab\n#", (-2 * SPACE, LINE)),
+        ("DV3;LBab\n#", (SPACE, 2 * LINE)),
+        ("DV1,1;LO6;LB\n#", (SPACE, 0.0)),
+        # Label origins: behind a label another goes on, or the pen is where it was.
+        ("LO2;LBab#", (2 * SPACE, 0.0)),
+        ("LO5;LBab#", (0.0, 0.0)),
+        ("DV2;LO9;LBab#", (-2 * SPACE, 0.0)),
+        ("DV2;LO9;LBab#LO1;LBab#", (-2 * SPACE, 0.0)),
+        # What moves the pen sets the point to which the carriage returns; DF takes all back.
+        ("LBab#PR0,7;LBc\r#", (2 * SPACE, 7.0)),
+        ("LBab#DI;LBc\r#", (2 * SPACE, 0.0)),
+        ("SI1,1;DI1,1;DV1;ES1;DF;DT#;LBa#", (SPACE, 0.0)),
+        ("PM0;PR9,9;LBabc#PM2;", (0.0, 0.0)),
+    ],
+)
+def test_the_pen_stands_behind_a_label(text: str, place: tuple[float, float]) -> None:
+    """HP's reference: cells of 1.5 widths and 2 heights, carriage return point, DV and LO."""
+    (line,) = drawn(f"IN;DT#;{text}RO0;PR;PD30,40;")
+    assert line == pytest.approx(np.add(place, [[0.0, 0.0], [30.0, 40.0]]), abs=1e-9)
+
+
+def test_a_way_elsewhere_does_not_pass_the_end_of_a_label() -> None:
+    found = plt.parse(b"IN;PU100,0;LBabc\x03PU0,500;PD10,510;LBx\x03PD20,510;").lines
+    ways = [(p.down, np.round(p.points / 0.025, 4).tolist()) for p in found]
+    end = [round(10.0 + SPACE, 4), 510.0]
+    assert ways == [
+        (False, [[0, 0], [100, 0], [0, 500]]),
+        (True, [[0, 500], [10, 510]]),
+        (False, [[10, 510], end]),
+        (True, [end, [20, 510]]),
+    ]
+
+
+def test_letters_of_two_bytes_are_one() -> None:
+    (line,) = drawn("LBäö\x03PR;PD1,0".encode())
+    assert line[0] == pytest.approx([2 * SPACE, 0.0])
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("SI1;", "column 1, byte 0: SI: 1 numbers, 0 or 2 wanted"),
+        ("PU;DI0,0;", "column 4, byte 3: DI: 0, 0 is no direction"),
+        ("DV4;", "DV: 4, 0: a path 0 to 3 and 0 or 1 wanted"),
+        ("LO10;", "LO: 10: 1 to 9, 11 to 19 or 21 wanted"),
+        ("ES1,2,3;", "ES: 3 numbers, 0 or 1 to 2 wanted"),
+        ("CP1;", "CP: 1 numbers, 0 or 2 wanted"),
+    ],
+)
+def test_wrong_letters_are_named(text: str, told: str) -> None:
+    with pytest.raises(InputError) as caught:
+        plt.parse(text.encode())
+    assert told in str(caught.value)

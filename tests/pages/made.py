@@ -3,19 +3,26 @@
 import re
 import shutil
 import time
-import zipfile
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from conftest import FMUS, ROOT
+from conftest import ROOT
 
 import motionfmu
+from motionfmu.compare import Comparison, compare
 from motionfmu.report.run_page import page_text
 from motionfmu.report.run_summary import summary_of
 from motionfmu.report.signal_page import plain_text
 from motionfmu.scenarios import document
 from motionfmu.scenarios.table_sources import ARRAYS, ORIGINS
 from motionfmu.scenarios.toml_text import pair_lines, table_lines
+
+if TYPE_CHECKING:
+    from motionfmu.analysis.linear import Margins
+    from motionfmu.study.tune import Tuned
+    from motionfmu.sweep import Outcome
 
 CIRCLE = ROOT / "scenarios/circle"
 LONG = 40  # letters of a name
@@ -72,30 +79,27 @@ def plain(place: Path, stop: float) -> str:
     return plain_text(result, result.figures(), summary_of(result, None))
 
 
-def compared(result: motionfmu.Result, folder: Path) -> str:
+def comparison(result: motionfmu.Result, folder: Path) -> Comparison:
     """The circle over itself at a higher gain."""
-    from motionfmu.compare import compare
-    from motionfmu.compare.comparison_page import page_text as compare_page
-
     other = motionfmu.load(renamed("fifo_latency", folder)).run(stop=0.8, set={"mcc.p_gain": 250})
-    return compare_page(compare(result, other))
+    return compare(result, other)
 
 
-def margins(folder: Path) -> str:
+def margins(folder: Path) -> "tuple[str, Margins]":
     from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
     from motionfmu.analysis.linear import model
     from motionfmu.report.loop_pages import margin_page
 
     linear = model(renamed("circle", folder), 1, {"machine.motor_speed": 30.0}, {})
-    return margin_page.page_text(linear, study(linear, LoopStudyOptions(None, {}, False, None)))
+    found = study(linear, LoopStudyOptions(None, {}, False, None))
+    return margin_page.page_text(linear, found), found[0].margins
 
 
-def tuned(folder: Path) -> str:
-    from motionfmu.report.loop_pages import tune_page
+def tuned(folder: Path) -> "Tuned":
     from motionfmu.run import load
     from motionfmu.study.tune import problem, tune
 
-    return tune_page.page_text(tune(load(renamed("mismatch_line", folder)), problem({}), {}))
+    return tune(load(renamed("mismatch_line", folder)), problem({}), {})
 
 
 def causes(folder: Path) -> str:
@@ -145,9 +149,8 @@ def plan() -> str:
     return card_page.plan_page(long_name("plate"), found, drawing, figures(found, config).numbers())
 
 
-def swept(folder: Path) -> str:
+def swept(folder: Path) -> "Outcome":
     """A study whose rows are made by hand: a bowl over two gains."""
-    from motionfmu.report.studies.sweep_page import page_text as sweep_text
     from motionfmu.study import worker
     from motionfmu.sweep import Outcome, study
 
@@ -159,7 +162,7 @@ def swept(folder: Path) -> str:
         worker.Row(i, "ok", "", True, (0.01 + sum((x / 200.0 - 1.0) ** 2 for x in point),))
         for i, point in enumerate(chosen.points)
     ]
-    return sweep_text(Outcome(chosen, rows, folder, 0))
+    return Outcome(chosen, rows, folder, 0)
 
 
 def path_causes(folder: Path) -> str:
@@ -172,19 +175,33 @@ def path_causes(folder: Path) -> str:
 
 def documentation() -> str:
     """The page of documentation in an FMU."""
-    with zipfile.ZipFile(FMUS / "mcc.fmi3.fmu") as archive:
-        return archive.read("documentation/index.html").decode()
+    from motionfmu.fmu import documentation, fmu_toml
+
+    folder = ROOT / "fmus/mcc"
+    described = fmu_toml.load(folder / "fmu.toml")
+    readme, icon = (folder / "README.md").read_text(), documentation.icon_of(folder)
+    fragment = documentation.variables(described)
+    return documentation.page(described.name, described.description, readme, fragment, icon)
 
 
-def notebook(result: motionfmu.Result) -> str:
-    """What a notebook shows of a result, on a page of nothing else."""
-    head = '<!DOCTYPE html><meta name="viewport" content="width=device-width">'
-    return f"{head}<body>{result._repr_html_()}</body>"
+def notebook(*shown: Any) -> str:
+    """What a notebook shows of a run, a loop and so on, on a page of nothing else."""
+    head = '<!DOCTYPE html><meta charset="utf-8"><meta name="color-scheme" content="light dark">'
+    head += '<meta name="viewport" content="width=device-width">'
+    return f"{head}<body>{''.join(x._repr_html_() for x in shown)}</body>"
 
 
+@cache
 def made(folder: Path) -> tuple[dict[str, Path], motionfmu.Result]:
-    """Pages by kind, and the run that is on the page `contour`."""
+    """Pages by kind, and the run that is on the page `contour`; made once in a new folder."""
+    from motionfmu.compare.comparison_page import page_text as compare_page
+    from motionfmu.report.loop_pages import tune_page
+    from motionfmu.report.studies.sweep_page import page_text as sweep_text
+
+    folder.mkdir()
     result = contour_run(folder)
+    compared, gains, study = comparison(result, folder), tuned(folder), swept(folder)
+    margin_text, loop = margins(folder)
     kinds: dict[str, Callable[[], str]] = {
         "contour": lambda: contour(result),
         "iso9283": lambda: plain(renamed("plt_plate", folder, "card", "drives", "machine"), 2.5),
@@ -192,17 +209,17 @@ def made(folder: Path) -> tuple[dict[str, Path], motionfmu.Result]:
         "signals": lambda: plain(
             renamed("hydraulic_quadrature", folder, "written", "repaired", "axis"), 0.12
         ),
-        "compare": lambda: compared(result, folder),
-        "margins": lambda: margins(folder),
-        "tune": lambda: tuned(folder),
+        "compare": lambda: compare_page(compared),
+        "margins": lambda: margin_text,
+        "tune": lambda: tune_page.page_text(gains),
         "causes": lambda: causes(folder),
         "path": lambda: path_causes(folder),
-        "sweep": lambda: swept(folder),
+        "sweep": lambda: sweep_text(study),
         "gcode": program,
         "machine": lambda: on_a_machine(1.5),
         "plan": plan,
         "documentation": documentation,
-        "notebook": lambda: notebook(result),
+        "notebook": lambda: notebook(result, loop, gains, compared, study),
     }
     pages: dict[str, Path] = {}
     for kind, make in kinds.items():

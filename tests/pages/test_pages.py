@@ -103,7 +103,7 @@ LOOK = """async () => {
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict[str, Path], motionfmu.Result]:
-    return made(tmp_path_factory.mktemp("pages"))
+    return made(tmp_path_factory.getbasetemp() / "pages")
 
 
 def band_holds_every_sample(page: Any, run: motionfmu.Result) -> None:

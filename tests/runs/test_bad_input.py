@@ -5,20 +5,20 @@ from pathlib import Path
 import pytest
 from conftest import ROOT
 from console import within
+from written_out import WHOLE_TEXT
 
 import motionfmu
 from motionfmu.run.engines import ENGINES
 
-CIRCLE = (ROOT / "scenarios/circle_theory/scenario.toml").read_text()
 PROGRAM = "G21 G17 G90\nG1 X5 F3000\nM30\n"
 
 
 def scenario(folder: Path, old: str = "", new: str = "", program: str = PROGRAM) -> Path:
     """A scenario folder in which `old` stands as `new`."""
-    assert old in CIRCLE
+    assert old in WHOLE_TEXT
     folder = folder / "mine"
     folder.mkdir()
-    text = CIRCLE.replace(old, new, 1) if old else CIRCLE
+    text = WHOLE_TEXT.replace(old, new, 1) if old else WHOLE_TEXT
     (folder / "scenario.toml").write_text(text.replace("stop = 3.0", "stop = 0.1"))
     (folder / "circle.ngc").write_text(program)
     return folder

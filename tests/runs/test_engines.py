@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from few_cases import few
+from written_out import WHOLE_CIRCLE, WHOLE_TEXT
 
 import motionfmu
 from motionfmu.run.engines import ENGINES
@@ -214,12 +215,11 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A scenario outside the project that is held, overridden and aborted while it moves."""
     folder = tmp_path_factory.mktemp("driven") / "here with space"
     folder.mkdir()
-    text = (ROOT / "scenarios/circle_theory/scenario.toml").read_text()
-    text = text.replace("[record]\n", DRIVEN).replace("stop = 3.0", "stop = 1.5")
+    text = WHOLE_TEXT.replace("[record]\n", DRIVEN).replace("stop = 3.0", "stop = 1.5")
     text = text.replace('"mcc.hold", "mcc.abort", "mcc.override", ', "")
     text = text[: text.index("[check]")]
     (folder / "scenario.toml").write_text(text)
-    program = (ROOT / "scenarios/circle_theory/circle.ngc").read_text()
+    program = (WHOLE_CIRCLE / "circle.ngc").read_text()
     (folder / "circle.ngc").write_text(program)
     return folder
 

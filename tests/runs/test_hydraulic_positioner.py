@@ -1,7 +1,7 @@
 """The MSP430 on the hydraulic axis, through the FMUs: the article's figures, load steps, faults."""
 
 import importlib.util
-import re
+import tomllib
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -30,17 +30,10 @@ def run(name: str, stop: float | None = None, **values: Any) -> motionfmu.Result
     return motionfmu.load(FOLDER / name).run(set=named, stop=stop)
 
 
-def changed(name: str, folder: Path, drives: str, **keys: str) -> motionfmu.Scenario:
-    """A scenario with other drives and no figures, its keys `stop` and the like replaced."""
-    text = (FOLDER / name / "scenario.toml").read_text()
-    text = re.sub(r"\[\[drive\]\].*?(?=\n\[)", "", text, flags=re.S)
-    text = re.sub(r"\[\[figure.*", "", text, flags=re.S)
-    text = re.sub(r",\n +", ", ", text)
-    for key, value in keys.items():
-        text, n = re.subn(rf"(?m)^{key}\s*=.*$", f"{key} = {value}", text)
-        assert n == 1, key
-    (folder / "scenario.toml").write_text(text + drives)
-    return motionfmu.load(folder)
+def driven(drives: str, **more: Any) -> motionfmu.Scenario:
+    """The scenario of loads with other drives."""
+    scenario = motionfmu.load(FOLDER / "hydraulic_load")
+    return scenario.changed(drive=tomllib.loads(drives)["drive"], **more)
 
 
 def test_windows_of_a_check() -> None:
@@ -186,14 +179,12 @@ value = [{force}, {after}]
 
 @pytest.mark.parametrize("place", [-0.05, 0.07])
 @pytest.mark.parametrize(("force", "after"), [(700, 0), (-1500, 500), (2500, 0), (-3000, -1000)])
-def test_held_within_a_count_under_any_load(
-    tmp_path: Path, place: float, force: int, after: int
-) -> None:
+def test_held_within_a_count_under_any_load(place: float, force: int, after: int) -> None:
     """Recovered 0.35 s after the step, from less than twice what the oil gives at once."""
     drives = LOADS.format(force=force, after=after)
-    scenario = changed("hydraulic_load", tmp_path, drives, stop="1.25")
+    scenario = driven(drives)
     values = {"axis.start_position": place, "axis.scale_offset": place - COUNT / 2}
-    r = scenario.run(set=values)
+    r = scenario.run(set=values, stop=1.25)
     t, error = r.time, r["controller.error"]
     place_now = (r["axis.table_position"] - place) / COUNT
     assert np.array_equal(r["controller.counter"][-1:], r["controller.edges"][-1:])
@@ -210,15 +201,15 @@ def test_held_within_a_count_under_any_load(
         assert deviation.min() > -2.5  # beyond the target on the way back
 
 
-def test_a_harder_blow_loses_counts(tmp_path: Path) -> None:
+def test_a_harder_blow_loses_counts() -> None:
     """The table rings at F/sqrt(k m): 6 kN are 31000 counts/s, beyond the border of 17500."""
     drives = LOADS.format(force=6000, after=6000)
-    scenario = changed("hydraulic_load", tmp_path, drives, stop="1.0")
-    r = scenario.run()
+    scenario = driven(drives)
+    r = scenario.run(stop=1.0)
     assert np.abs(r["axis.table_speed"]).max() > 17505 * COUNT
     assert r["controller.lost"][-1] + r["controller.turned"][-1] > 0
     assert r["controller.counter"][-1] != r["controller.edges"][-1]
-    fast = scenario.run(set={"controller.timer_cycles": 150})
+    fast = scenario.run(set={"controller.timer_cycles": 150}, stop=1.0)
     assert fast["controller.lost"][-1] == fast["controller.turned"][-1] == 0
     assert fast["controller.counter"][-1] == fast["controller.edges"][-1]
     assert np.abs(fast["controller.error"][fast.time > 0.65]).max() <= 1
@@ -242,17 +233,11 @@ value = [true, false]
 """
 
 
-def faulty(folder: Path, button: str, more: str, **values: Any) -> motionfmu.Result:
+def faulty(button: str, more: str, **values: Any) -> motionfmu.Result:
     """The axis of the load scenario with a button pressed at 0.1 s; the rest is as given."""
-    scenario = changed(
-        "hydraulic_load",
-        folder,
-        FAULTS.format(button=button, more=more),
-        leave='["*.adc", "*.force", "*.home", "*.pb*", "*.target"]',
-        stop="1.0",
-        signals='["controller.*", "axis.table_position", "axis.table_speed"]',
-    )
-    return scenario.run(set={f"controller.{k}": v for k, v in values.items()})
+    drives = FAULTS.format(button=button, more=more)
+    scenario = driven(drives, leave=["*.force"], record=["controller.*"])
+    return scenario.run(set={f"controller.{k}": v for k, v in values.items()}, stop=1.0)
 
 
 def stopped(r: motionfmu.Result, code: int) -> float:
@@ -270,16 +255,16 @@ def stopped(r: motionfmu.Result, code: int) -> float:
 
 
 @pytest.mark.parametrize("target", [15001, -1001, 2147483647, -2147483648])
-def test_a_target_outside_the_stroke(tmp_path: Path, target: int) -> None:
-    r = faulty(tmp_path, "pb2", "", target=target, high_limit=15000)
+def test_a_target_outside_the_stroke(target: int) -> None:
+    r = faulty("pb2", "", target=target, high_limit=15000)
     assert stopped(r, 2) == pytest.approx(0.12, abs=2e-3)
     assert r["controller.homed"].all()
     assert np.abs(r["controller.edges"]).max() <= 1 and not r["controller.track"].any()
 
 
 @pytest.mark.parametrize("target", [15000, -1000])
-def test_a_target_on_the_limit_is_none(tmp_path: Path, target: int) -> None:
-    r = faulty(tmp_path, "pb2", "", target=target, high_limit=15000)
+def test_a_target_on_the_limit_is_none(target: int) -> None:
+    r = faulty("pb2", "", target=target, high_limit=15000)
     assert not r["controller.code"].any() and np.abs(r["controller.track"]).max() > 900
 
 
@@ -292,9 +277,9 @@ value = [true]
 
 
 @pytest.mark.parametrize(("at", "silent"), [(0.0, 0.05), (0.3, 0.05), (0.3, 0.1)])
-def test_a_scale_that_is_unplugged(tmp_path: Path, at: float, silent: float) -> None:
+def test_a_scale_that_is_unplugged(at: float, silent: float) -> None:
     """Before the move or in it: code 4, `scale_time` after the valve is open without an edge."""
-    r = faulty(tmp_path, "pb2", UNPLUG.format(at=at), target=10000, scale_time=silent)
+    r = faulty("pb2", UNPLUG.format(at=at), target=10000, scale_time=silent)
     when = stopped(r, 4)
     assert not r["controller.homed"][-1]
     inside = np.flatnonzero(r["controller.edges"] != r["controller.edges"][-1])
@@ -307,32 +292,32 @@ def test_a_scale_that_is_unplugged(tmp_path: Path, at: float, silent: float) -> 
     assert run_on > 100, "the axis did move, unseen"
 
 
-def test_a_plug_put_in_again_costs_whole_periods_only(tmp_path: Path) -> None:
+def test_a_plug_put_in_again_costs_whole_periods_only() -> None:
     more = UNPLUG.format(at="0.3, 0.45").replace("[true]", "[true, false]")
-    r = faulty(tmp_path, "pb2", more, target=10000, scale_time=0.05)
+    r = faulty("pb2", more, target=10000, scale_time=0.05)
     stopped(r, 4)
     phase, edges = r["axis.table_position"][-1] / (4 * COUNT), r["controller.edges"][-1]
     assert abs((phase + 0.125 - edges / 4) - round(phase + 0.125 - edges / 4)) < 0.26
 
 
-def test_a_blocked_axis_is_the_same_to_the_controller(tmp_path: Path) -> None:
+def test_a_blocked_axis_is_the_same_to_the_controller() -> None:
     """Against the end stop the valve is open and no edge comes."""
     fast = {"speed": 60000.0, "acceleration": 1e6, "error_limit": 32767, "timer_cycles": 100}
-    r = faulty(tmp_path, "pb2", "", target=30000, **fast)
+    r = faulty("pb2", "", target=30000, **fast)
     assert 0.6 < stopped(r, 4) < 0.9
     assert r["axis.table_position"][-1] == pytest.approx(0.1, abs=2e-3)
 
 
 @pytest.mark.parametrize(("home", "code", "way"), [(True, 5, 1), (False, 6, -1)])
-def test_home_switch_stuck_or_never_found(tmp_path: Path, home: bool, code: int, way: int) -> None:
-    r = faulty(tmp_path, "pb1", "", start_homed=False, home=home, home_search=1500)
+def test_home_switch_stuck_or_never_found(home: bool, code: int, way: int) -> None:
+    r = faulty("pb1", "", start_homed=False, home=home, home_search=1500)
     stopped(r, code)
     assert not r["controller.homed"].any()
     assert 1490 < way * r["controller.edges"][-1] < 1560
 
 
-def test_a_following_error_beyond_its_limit(tmp_path: Path) -> None:
-    r = faulty(tmp_path, "pb2", "", target=10000, error_limit=100)
+def test_a_following_error_beyond_its_limit() -> None:
+    r = faulty("pb2", "", target=10000, error_limit=100)
     stopped(r, 3)
     assert r["controller.homed"][-1]
     assert np.abs(r["controller.error"]).max() <= 110

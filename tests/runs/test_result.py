@@ -40,7 +40,7 @@ def test_the_package_shows_what_a_user_needs_and_its_folders() -> None:
 
 
 def test_a_result_is_a_mapping_of_its_signals(result: Result) -> None:
-    assert list(result) == list(result.keys()) == list(result.signals) and len(result) == 18
+    assert list(result) == list(result.keys()) == list(result.signals) and len(result) == 19
     assert "card.stock" in result and "card.stock[6]" in result
     assert "card.stok" not in result and "card.stock[7]" not in result and 3 not in result
     assert all(result[name] is data for name, data in result.items())
@@ -80,7 +80,7 @@ def test_nothing_that_is_handed_out_can_change_the_result(result: Result) -> Non
 
 def test_a_table_has_a_column_an_element_with_its_unit(result: Result) -> None:
     assert result.units["machine.table_position"] == "m" and result.units["card.stock"] == "1"
-    table = result.to_dataframe(["mcc.path_feed", "machine.*", "card.dac[2]", "mcc.done"])
+    table = result.to_dataframe(["mcc.path_feed", "machine.table*", "card.dac[2]", "mcc.done"])
     assert list(table.columns) == ["mcc.path_feed", *SIX, "card.dac[2]", "mcc.done"]
     assert table.index.name == "time [s]" and (table.index == result.time).all()
     for name in table.columns:
@@ -102,9 +102,9 @@ def test_without_pandas_the_message_says_how_to_get_it(
 
 
 def test_a_result_is_one_line(result: Result, short: Result) -> None:
-    told = "<Result circle_theory: all 6 checks hold, 30000 rows of 18 signals, 3 s>"
+    told = "<Result circle_theory: all 6 checks hold, 30000 rows of 19 signals, 3 s>"
     assert repr(result) == told
-    told = "1 of 4 checks FAILED, 2 expected not judged, 1000 rows of 18 signals, 0.1 s"
+    told = "1 of 4 checks FAILED, 2 expected not judged, 1000 rows of 19 signals, 0.1 s"
     assert repr(short) == f"<Result circle_theory: {told}>"
 
 
@@ -153,7 +153,7 @@ def test_a_notebook_shows_verdict_numbers_and_picture(result: Result, short: Res
     view = result._repr_html_()
     tree = ElementTree.fromstring(view)
     text = "\n".join(tree.itertext())
-    assert "all 6 checks hold" in text and "30000 rows of 18 signals" in text
+    assert "all 6 checks hold" in text and "30000 rows of 19 signals" in text
     for check in result.checks:
         assert check.name in text and f"{check.value:.6g}" in text and check.bounds in text
     assert f"{result.contour().error.max * 1e3:.1f} µm" in text

@@ -8,19 +8,18 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from refusals import refusal
+from written_out import WHOLE_CIRCLE, WHOLE_TEXT
 
 import motionfmu
 from motionfmu.base.toml_lines import tables_of
 from motionfmu.run.session import Session
 
-CIRCLE = ROOT / "scenarios/circle_theory"
-TEXT = (CIRCLE / "scenario.toml").read_text()
-TABLES = tables_of(TEXT, "")
+TABLES = tables_of(WHOLE_TEXT, "")
 
 
 @pytest.fixture(scope="module")
 def base() -> motionfmu.Scenario:
-    return motionfmu.load(CIRCLE)
+    return motionfmu.load(WHOLE_CIRCLE)
 
 
 def same(a: motionfmu.Result, b: motionfmu.Result) -> bool:
@@ -30,11 +29,11 @@ def same(a: motionfmu.Result, b: motionfmu.Result) -> bool:
 
 
 def test_tables_run_as_their_file(base: motionfmu.Scenario) -> None:
-    made = motionfmu.scenario(TABLES, name="mine", folder=CIRCLE, about="A circle.")
+    made = motionfmu.scenario(TABLES, name="mine", folder=WHOLE_CIRCLE, about="A circle.")
     assert (made.name, made.document.about) == ("mine", "A circle.")
     assert made.document.body == base.document.body
     assert same(made.run(stop=0.2), base.run(stop=0.2))
-    assert motionfmu.scenario(CIRCLE).name == "circle_theory"
+    assert motionfmu.scenario(WHOLE_CIRCLE).name == "whole_circle"
 
 
 def test_a_change_is_a_scenario_of_its_own(base: motionfmu.Scenario) -> None:
@@ -105,11 +104,13 @@ def test_places_of_what_is_wrong(base: motionfmu.Scenario) -> None:
     ]
     drive = [{"input": "mcc.hold", "at": [0.1], "valu": [True]}]
     assert refusal(base.changed, drive=drive) == [
-        "<circle_theory>:[[drive]] 1 valu: unknown key 'valu'; did you mean 'value'?"
+        "<whole_circle>:[[drive]] 1 valu: unknown key 'valu'; did you mean 'value'?"
     ]
     # what a change makes wrong in the file is told at its line there
     told = refusal(base.changed, component={"machine": "stepper_axes"}, name="other")
-    assert len(told) == 3 and all(t.startswith(f"{CIRCLE}/scenario.toml:") for t in told), told
+    assert len(told) == 3 and all(t.startswith(f"{WHOLE_CIRCLE}/scenario.toml:") for t in told), (
+        told
+    )
     lines = [int(t.split(":")[1]) for t in told]
     assert lines == sorted(lines)
 
@@ -134,7 +135,7 @@ def folder_of(place: Path, name: str, text: str) -> Path:
 
 
 def test_a_file_extends_another(tmp_path: Path, base: motionfmu.Scenario) -> None:
-    shutil.copytree(CIRCLE, tmp_path / "circle")
+    shutil.copytree(WHOLE_CIRCLE, tmp_path / "circle")
     own = (
         '# Stiffer.\nextends = "../circle"\nleave = ["card.io_ldi"]\n\n[set]\n"mcc.p_gain" = 300\n'
     )
@@ -191,3 +192,12 @@ def test_a_value_of_one_element_is_stronger_than_one_of_all() -> None:
         assert scenario.run(stop=0.01, set=given).parameters["mcc.p_gain"] == wanted
         changed = scenario.changed(set={"mcc.p_gain": None}).changed(set=given)
         assert changed.run(stop=0.01).parameters["mcc.p_gain"] == wanted
+
+
+def test_a_machine_and_its_tables_written_out_are_the_same_run() -> None:
+    """A scenario on a machine is to the bit what it is with every line in its own file."""
+    short = motionfmu.load(ROOT / "scenarios/circle_theory").run(stop=0.3)
+    whole = motionfmu.load(WHOLE_CIRCLE).run(stop=0.3)
+    assert set(short.signals) - set(whole.signals) == {"machine.motor_speed"}  # of its limits
+    assert all(x.tobytes() == short[name].tobytes() for name, x in whole.items())
+    assert short.parameters["mcc.active"] == whole.parameters["mcc.active"]

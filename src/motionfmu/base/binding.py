@@ -15,7 +15,10 @@ from motionfmu.base.platforms import here
 PACKAGE = Path(__file__).resolve().parents[1]
 # Clocks of the cards in a second [Hz].
 CLOCK_HZ = 40_000_000
-_SECOND_MAX = 2**62 // CLOCK_HZ
+# Longest time [s] that one call runs, as long as a scenario may be: more than a day.
+_SECONDS_MAX = 100_000
+# Clocks that are run without looking whether Ctrl-C was pressed: some 2 s of work.
+_PIECE = 100 * CLOCK_HZ
 # Most clocks that a setting in seconds may come to.
 _CLOCKS_MAX = 2.0**62
 _MILLISECOND = CLOCK_HZ // 1000
@@ -226,6 +229,12 @@ def _there_are(known: Iterable[str]) -> str:
     return f" (there are: {', '.join(known)})"
 
 
+def _check_length(seconds: float, name: str) -> None:
+    """Refuse what is no length of time, or longer than one call runs."""
+    if not 0 <= real(seconds) <= _SECONDS_MAX:
+        raise InputError(f"{name} = {seconds} s: 0 to {_SECONDS_MAX} s wanted")
+
+
 R = TypeVar("R", bound=Reading)
 
 
@@ -261,7 +270,7 @@ class Station(Generic[R]):
         Parameters
         ----------
         clock : int
-            [25 ns]; nothing happens if it has passed.
+            [25 ns], 100,000 s from now at most; nothing happens if it has passed.
 
         Returns
         -------
@@ -273,9 +282,14 @@ class Station(Generic[R]):
         CardError
             A virtual card takes no frame any more, or a motor is beyond what an encoder can follow.
         """
-        if not isinstance(clock, int | np.integer) or abs(clock) > _CLOCKS_MAX:
+        if not isinstance(clock, int | np.integer):
             raise InputError(f"clock {clock!r}: a whole number of 25 ns wanted")
-        self._advance(ctypes.c_int64(int(clock)))
+        now, last = self.clock, max(int(clock), 0)
+        if last - now > _SECONDS_MAX * CLOCK_HZ:
+            at = now / CLOCK_HZ
+            raise InputError(f"clock {clock}: at most {_SECONDS_MAX} s beyond {at:.9g} s wanted")
+        for until in (*range(now + _PIECE, last, _PIECE), last):
+            self._advance(ctypes.c_int64(until))
         return self.read()
 
     def run(self, seconds: float) -> R:
@@ -284,17 +298,16 @@ class Station(Generic[R]):
         Parameters
         ----------
         seconds : float
-            [s], rounded to 25 ns.
+            [s], rounded to 25 ns; 100,000 at most.
 
         Raises
         ------
         InputError
-            It is no length of time.
+            It is no length of time, or a longer one.
         CardError
             See `run_to`.
         """
-        if not 0 <= real(seconds) <= _SECOND_MAX:
-            raise InputError(f"{seconds} s cannot be run")
+        _check_length(seconds, "seconds")
         return self.run_to(self.clock + round(seconds * CLOCK_HZ))
 
     def run_until_stop(self, limit: float = 60.0) -> R:
@@ -315,8 +328,7 @@ class Station(Generic[R]):
         CardError
             See `run_to`.
         """
-        if not 0 <= real(limit) <= _SECOND_MAX:
-            raise InputError(f"limit = {limit} s cannot be run")
+        _check_length(limit, "limit")
         last = self.clock + round(limit * CLOCK_HZ)
         reading = self.run_to(min(last, self.clock + _MILLISECOND))
         while not getattr(reading, self._at_rest) and reading.clock < last:
@@ -348,9 +360,11 @@ class Station(Generic[R]):
         CardError
             See `run_to`.
         """
-        clocks = round(real(step) * CLOCK_HZ) if 0 < real(step) <= _SECOND_MAX else 0
-        if clocks < 1 or not 0 <= real(seconds) <= _SECOND_MAX:
-            raise InputError(f"step {step} s, {seconds} s: cannot be run")
+        _check_length(seconds, "seconds")
+        _check_length(step, "step")
+        clocks = round(step * CLOCK_HZ)
+        if clocks < 1:
+            raise InputError(f"step = {step} s: 25 ns or more wanted")
         first = self.read()
         if unknown := [n for n in names if not isinstance(n, str) or n not in first.__dict__]:
             raise InputError(unread(text(unknown[0]).decode(), first.__dict__))

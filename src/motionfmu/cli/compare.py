@@ -30,7 +30,6 @@ if TYPE_CHECKING:
 
 Run = Annotated[Path, typer.Argument(help="Folder of a run's result, or a scenario to run.")]
 SIGNALS = 8  # are told on the console
-NUMBERS = (("error.max", "largest contour error"), ("error.rms", "RMS contour error"))
 
 
 @app.command()
@@ -120,7 +119,8 @@ def _tell_record(found: "RecordComparison", folder: Path | None, as_json: bool) 
 
 
 def _tell(found: "Comparison") -> None:
-    from motionfmu.compare.words import GONE, change_text
+    from motionfmu.compare.comparison_view import LARGEST, apart_lines, count_line, verdict_line
+    from motionfmu.compare.words import change_text
     from motionfmu.report.numbers import text_of
     from motionfmu.run.checks import tally
 
@@ -131,34 +131,15 @@ def _tell(found: "Comparison") -> None:
         out.print(f"  {d.what}: {d.a} → {d.b}", markup=False, soft_wrap=True)
     known = {n.name: n for n in found.table("contour")}
     table = bare_table("", "A", "B", "change of size")
-    for name, words in NUMBERS:
+    for name, words in LARGEST:
         if name in known:
             n = known[name]
             table.add_row(words, text_of(n.a, "mm"), text_of(n.b, "mm"), change_text(n))
     if table.row_count:
         out.print(table)
-    apart = sorted(
-        (s for s in found.signals if not s.same), key=lambda s: -_share(s.largest, s.span)
-    )
-    for s in apart[:SIGNALS]:
-        largest = text_of(s.largest, _unit(s.unit), sign=True)
-        out.print(f"  {s.element}: {largest} at {s.at:.6g} s", markup=False, soft_wrap=True)
-    same = len(found.signals) - len(apart)
-    out.print(
-        f"{len(apart)} signals differ ({GONE}), {same} are the same, {len(found.left)} not compared"
-    )
+    for text in apart_lines(found, SIGNALS):
+        out.print(f"  {text}", markup=False, soft_wrap=True)
+    out.print(count_line(found), markup=False, soft_wrap=True)
     for told in found.common.words:
         out.print(told, markup=False, soft_wrap=True)
-    words = "no verdict is worse" if found.ok else f"FAILED in B: {', '.join(found.worse)}"
-    out.print(words, markup=False, soft_wrap=True)
-
-
-def _share(difference: float, span: float) -> float:
-    """Size of a difference, of the range of the signal."""
-    return abs(difference) / span if span else float("inf")
-
-
-def _unit(name: str) -> str:
-    from motionfmu.base.units import spelled
-
-    return spelled(name)
+    out.print(verdict_line(found), markup=False, soft_wrap=True)

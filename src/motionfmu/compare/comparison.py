@@ -6,8 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.extras import needed
 from motionfmu.compare import overlay
 from motionfmu.compare.comparison_page import write_comparison
+from motionfmu.compare.comparison_view import comparison_html, comparison_text
 from motionfmu.compare.pairing import Pairing
 from motionfmu.compare.side import side
 from motionfmu.run import Result, Scenario
@@ -38,6 +40,13 @@ class Comparison(Pairing):
     ok : bool
         Whether there is none of these.
     """
+
+    def __repr__(self) -> str:
+        return comparison_text(self)
+
+    def _repr_html_(self) -> str:
+        needed("report")
+        return comparison_html(self)
 
     def save(self, folder: str | Path) -> Path:
         """Write the page and result.json, whole or not at all.

@@ -1,5 +1,6 @@
 """Two runs on one time axis, their numbers and verdicts."""
 
+import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -47,6 +48,14 @@ class Pairing:
         """The differences of every signal, in the order of A."""
         return [_apart(self[name]) for name in self.names]
 
+    @property
+    def apart(self) -> list[Apart]:
+        """Signals that differ: first what differs by the largest share of its range."""
+        return sorted(
+            (s for s in self.signals if not s.same),
+            key=lambda s: -abs(s.largest) / s.span if s.span else -math.inf,
+        )
+
     @cached_property
     def different(self) -> list[Different]:
         """What was run differently."""
@@ -78,7 +87,7 @@ class Pairing:
 
     def numbers(self) -> dict[str, Any]:
         """The comparison, ready for JSON; units as FMI spells them."""
-        time, apart = self.common.time, self.signals
+        time, signals = self.common.time, self.signals
         return {
             "a": _said(self.a),
             "b": _said(self.b),
@@ -105,7 +114,7 @@ class Pairing:
                 for c in self.checks
             ],
             **{n: [_number(x) for x in self.table(n)] for n in ("contour", "iso9283")},
-            "signals": [vars(s) for s in apart],
+            "signals": [vars(s) for s in signals],
             "not_compared": self.left,
         }
 

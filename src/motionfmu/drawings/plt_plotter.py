@@ -8,6 +8,7 @@ import numpy as np
 from motionfmu.drawings.drawing import Polyline
 from motionfmu.drawings.pen_path import CHORD, PenPath
 from motionfmu.drawings.plt_frame import UserUnits
+from motionfmu.drawings.plt_labels import A4, PAIRS, Lettering, behind
 from motionfmu.drawings.plt_scan import Scanner
 
 UNIT = 0.025  # [mm] of a plotter unit
@@ -45,6 +46,9 @@ class Plotter:
         self.stroke: _PenStroke | None = None
         self.polygon: list[list[tuple[float, float, bool]]] | None = None  # under way
         self.kept: list[list[tuple[float, float, bool]]] = []  # the latest whole one
+        self.lettering = Lettering()
+        self.carriage = (0.0, 0.0)  # [plotter units] where the carriage returns to
+        self.behind_label = False  # the pen has come there by letters alone, and the move to it
         self.entry: tuple[tuple[float, float], bool] = ((0.0, 0.0), False)
 
     def run(self) -> None:
@@ -54,6 +58,17 @@ class Plotter:
                 do(self, numbers)
             elif pair == "PE":
                 self._encoded()
+            elif pair in PAIRS:
+                self._told(self.lettering.set(pair, numbers))
+                if pair in _RETURNS_HERE:
+                    self.carriage = self.at
+            elif pair == "LB":
+                self.scan.skip(pair)
+                self._letters(pair, [])
+            elif pair == "CP":
+                if len(numbers) not in (0, 2):
+                    self.scan.refuse(f"{len(numbers)} numbers, 0 or 2 wanted")
+                self._letters(pair, numbers)
             elif pair in _FILLS:
                 self._fill(pair, numbers)
             elif pair in _NEXT_PAGE:
@@ -96,13 +111,46 @@ class Plotter:
             self.polygon[-1] += [(x, y, down) for x, y in zip(xs, ys, strict=True)]
         else:
             down = down and self.pen != 0
+            if self.behind_label and not down and self.stroke is not None:
+                self.stroke.xs.pop()  # on the way to elsewhere it need not be passed
+                self.stroke.ys.pop()
             if self.stroke is None or self.stroke.down != down:
                 self._flush()
                 self.stroke = _PenStroke(down, [self.at[0]], [self.at[1]], self.scan.first)
                 self.count += 1
             self.stroke.xs.extend(xs)
             self.stroke.ys.extend(ys)
-        self.at = (xs[-1], ys[-1])
+        self.at = self.carriage = (xs[-1], ys[-1])
+        self.behind_label = False
+
+    def _letters(self, pair: str, numbers: list[float]) -> None:
+        """LB, CP: the pen goes to where the next letter would be; nothing is drawn."""
+        letters, corners = self.lettering, self.frame.p or A4
+        if self.polygon is not None or (pair == "LB" and not letters.goes_on):
+            return
+        (wide, high), (ax, ay) = letters.cell(corners), letters.along(corners)
+        if wide == 0.0 or high == 0.0:
+            return
+        a, b, c, d = self.frame.turn
+        across = wide * (a * ax + b * ay), wide * (c * ax + d * ay)
+        up = high * (-a * ay + b * ax), high * (-c * ay + d * ax)
+        carriage, (dx, dy) = self.carriage, np.subtract(self.at, self.carriage)
+        x = (dx * across[0] + dy * across[1]) / wide**2
+        y = (dx * up[0] + dy * up[1]) / high**2
+        if pair == "CP" and numbers:
+            x, y = x + numbers[0], y + numbers[1]
+        else:
+            x, y = behind(self.scan.label if pair == "LB" else b"\r\n", letters, (x, y))
+        at = (
+            carriage[0] + x * across[0] + y * up[0],
+            carriage[1] + x * across[1] + y * up[1],
+        )
+        if at != self.at:
+            self._move([at[0]], [at[1]], False)
+            self.behind_label = True
+        self.carriage = carriage
+        if pair == "CP" and numbers and numbers[1]:  # its line is that of the carriage now
+            self.carriage = carriage[0] + y * up[0], carriage[1] + y * up[1]
 
     def _coordinates(self, numbers: list[float]) -> None:
         """PU PD PA PR with a list."""
@@ -325,12 +373,14 @@ class Plotter:
 
     def _initialize(self, numbers: list[float]) -> None:
         self._defaults(numbers)
-        self.down, self.at = False, (0.0, 0.0)
+        self.down, self.at, self.carriage = False, (0.0, 0.0), (0.0, 0.0)
+        self.behind_label = False
 
     def _defaults(self, numbers: list[float]) -> None:
         self._flush()
         self.scan.wants(numbers, 0, 0)
         self.frame.reset()
+        self.lettering = Lettering()
         self.relative, self.deviation, self.window = False, False, None
         self.polygon, self.kept = None, []
         self.scan.terminator = b"\x03"
@@ -392,6 +442,8 @@ class Plotter:
             self.down = down
 
 
+# Of the pairs that say how letters are, those that set the carriage return point.
+_RETURNS_HERE = ("DI", "DR", "DV", "LO")
 _NEXT_PAGE = ("PG", "AF", "AH", "FR", "BP")
 _FILLS = {
     "FP": None,

@@ -59,6 +59,7 @@ class Scanner:
         self._two_bytes = _TWO_BYTES.search(text) is not None and _is_utf8(text)
         self.pair = ""
         self.terminator = b"\x03"
+        self.label = b""  # the text of LB
         self._skipped: dict[str, list[int]] = {}
 
     def place(self, byte: int) -> tuple[int, int]:
@@ -170,6 +171,9 @@ class Scanner:
             end = text.find(self.terminator, self.next)
             if end < 0:
                 self.refuse(f"the text has no end {self.terminator!r}")
+            # Letters, not bytes: of two bytes in UTF-8 the first counts.
+            written = text[self.next : end]
+            self.label = re.sub(rb"[\x80-\xbf]", b"", written) if self._two_bytes else written
             self.next = end + len(self.terminator)
         elif pair == "DT":
             mark = text[self.next : self.next + 1]

@@ -21,21 +21,29 @@ _HEADINGS = {
     "output": "Outputs",
     "local": "Local variables",
 }
+# Its colours are those of the report's pages, which stand further down the way of the data.
 _STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; color: #1d2733; max-width: 75rem; margin: 2rem auto;
-  padding: 0 1rem; overflow-wrap: break-word }
-header { display: flex; gap: 1.5rem; align-items: center; border-bottom: 2px solid #0b6e99 }
+:root { color-scheme: light dark; --ink: #1b2733; --muted: #5b6b7a; --line: #d5dee5;
+  --accent: #0b6e99; --panel: #fff; --shade: #f1f5f8 }
+@media (prefers-color-scheme: dark) {
+  :root { --ink: #e8eef4; --muted: #93a3b2; --line: #33424f; --accent: #56a8f5; --panel: #0d141b;
+    --shade: #1a2631 }
+  header svg { background: #e8eef4; border-radius: 8px }
+}
+body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--panel);
+  max-width: 75rem; margin: 2rem auto; padding: 0 1rem; overflow-wrap: break-word }
+header { display: flex; gap: 1.5rem; align-items: center; border-bottom: 2px solid var(--accent) }
 header svg { width: 7rem; height: 7rem; flex: none; margin-bottom: 1rem }
-h1 { margin: 0 } h2 { margin-top: 2.5rem; color: #0b6e99 } header p { margin: .3rem 0 1rem }
-code, pre { font: 14px/1.45 ui-monospace, monospace; background: #f1f5f8; border-radius: 3px }
+h1 { margin: 0 } h2 { margin-top: 2.5rem; color: var(--accent) } header p { margin: .3rem 0 1rem }
+code, pre { font: 14px/1.45 ui-monospace, monospace; background: var(--shade); border-radius: 3px }
 code { padding: 0 .2em } pre { padding: .7rem 1rem; overflow-x: auto } pre code { padding: 0 }
 table { border-collapse: collapse; width: 100%; font-size: 14px; display: block; overflow-x: auto }
 th, td { text-align: left; vertical-align: top; padding: .25rem .7rem .25rem 0;
-  border-bottom: 1px solid #d5dee5 }
+  border-bottom: 1px solid var(--line) }
 td:first-child { font-family: ui-monospace, monospace; white-space: nowrap }
 td.n { white-space: nowrap } td:last-child { width: 100%; min-width: 16rem }
-nav a { margin-right: 1rem } a { color: #0b6e99 }
-footer { margin: 3rem 0; color: #5a6b78; font-size: 14px }
+nav a { margin-right: 1rem } a { color: var(--accent) }
+footer { margin: 3rem 0; color: var(--muted); font-size: 14px }
 """
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LinearSegmentedColormap, LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from matplotlib.ticker import (
@@ -23,6 +23,7 @@ from matplotlib.ticker import (
 )
 from mpl_toolkits.mplot3d.art3d import Line3DCollection
 
+from motionfmu.report.dark_figure import COLORS
 from motionfmu.report.diagram import (
     EQUAL,
     POLAR,
@@ -43,7 +44,7 @@ from motionfmu.report.diagram import (
     named_mark,
 )
 from motionfmu.report.samples import Samples
-from motionfmu.report.style import GRID, HEAT, INK, LIGHT, MUTED
+from motionfmu.report.style import GRID, INK, LIGHT, MUTED
 from motionfmu.run.decimate import keep_peaks, keep_steps
 
 WIDTH, DPI = 9.0, 130  # [inch] of a column of subplots, and points of an inch
@@ -62,7 +63,6 @@ BUCKETS = 1200  # a curve has at most twice as many points: more than a picture 
 DASHES: dict[str, Any] = {"solid": "-", "dash": "--", "dot": (0, (1.2, 1.8))}
 SYMBOLS = {"circle": "o", "ring": "o", "cross": "P", "x": "x", "star": "*", "diamond": "D"}
 BAR = 0.8  # part of the room of a group of bars that they take
-COLORS = LinearSegmentedColormap.from_list("heat", HEAT)
 LOOK: dict[Any, Any] = {
     "font.family": "sans-serif",
     "font.sans-serif": ["Inter", "Segoe UI", "Helvetica Neue", "Arial", "DejaVu Sans"],

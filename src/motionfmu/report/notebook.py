@@ -1,7 +1,5 @@
-"""The figures and the notebook view of a result in Python."""
+"""The figures and the notebook view of a result."""
 
-import base64
-import io
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any
@@ -16,6 +14,15 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.units import spelled
 from motionfmu.report.error_path import draw
 from motionfmu.report.matplotlib_figure import picture
+from motionfmu.report.notebook_view import (
+    PATH_INCHES,
+    PATH_WIDTH,
+    NotebookFigure,
+    beside,
+    cells,
+    images,
+    view,
+)
 from motionfmu.report.numbers import figure, label, length
 from motionfmu.report.path_chart import path_chart, path_titles
 from motionfmu.report.signal_chart import signal_chart
@@ -27,38 +34,7 @@ from motionfmu.run.signals import elements
 
 # Checks that the view shows; those that failed come first.
 CHECKS_SHOWN = 15
-# Width [pixel] of the view's picture, of a path and of a figure; the file has twice as many.
-PATH_WIDTH, WIDTH = 400, 680
-PATH_INCHES = 5.2
 NOTHING = "the run records no signal"
-# Text takes the colour of the page that it stands on; a picture has its own white one.
-STYLE = """
-.motionfmu { font: 13px/1.45 Inter, "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
-.motionfmu p { margin: 0 0 8px; }
-.motionfmu .head b { font-size: 16px; }
-.motionfmu .sub { opacity: .7; }
-.motionfmu .row { display: flex; flex-wrap: wrap; gap: 12px 28px; align-items: flex-start; }
-.motionfmu .row > div { min-width: 0; max-width: 100%; }
-.motionfmu .scroll { overflow-x: auto; }
-.motionfmu img { background: #fff; border-radius: 6px; max-width: 100%; margin: 0; }
-.motionfmu table { border-collapse: collapse; margin: 0 0 12px; font-size: 13px; }
-.motionfmu th, .motionfmu td { text-align: left; padding: 2px 14px 2px 0; border: 0;
-  border-bottom: 1px solid rgba(128, 128, 128, .3); background: none; vertical-align: top; }
-.motionfmu th { font-weight: 600; opacity: .7; }
-.motionfmu .n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.motionfmu .ok { color: #2a9d5c; font-weight: 600; }
-.motionfmu .failed { color: #e5533d; font-weight: 600; }
-.motionfmu summary { cursor: pointer; opacity: .7; }
-"""
-
-
-class NotebookFigure(Figure):
-    """A figure that a notebook shows, also one in which nothing has loaded pyplot."""
-
-    def _repr_png_(self) -> bytes:
-        file = io.BytesIO()
-        self.savefig(file, format="png", dpi=2 * WIDTH / self.get_figwidth())
-        return file.getvalue()
 
 
 def plot(
@@ -144,28 +120,12 @@ def html(result: Result) -> str:
     reasons = dict.fromkeys([*(v.reason for v in checks), result.no_contour])
     told = "".join(f'<p class="sub">{escape(r)}</p>' for r in reasons if r)
     left = _checks(checks) + _contour(result) + told
-    return (
-        f'<div class="motionfmu"><style>{STYLE}</style>'
-        f'<p class="head"><b>{escape(result.name)}</b>{verdict}'
-        f' <span class="sub">{escape(result.size)}</span></p><p>{escape(result.about)}</p>'
-        f"{_overrides(result)}"
-        f'<div class="row"><div>{left}</div>{_picture(result)}</div>'
-        f"{_warnings(result)}{_signals(result)}</div>"
+    name, size = escape(result.name), escape(result.size)
+    return view(
+        f'<b>{name}</b>{verdict} <span class="sub">{size}</span>',
+        f"<p>{escape(result.about)}</p>{_overrides(result)}",
+        beside(left, _picture(result)) + _warnings(result) + _signals(result),
     )
-
-
-def _table(heads: Sequence[str], rows: Iterable[Sequence[str]], numeric: Sequence[int] = ()) -> str:
-    """A table of ready HTML; numeric columns stand to the right."""
-
-    def line(tag: str, cells: Sequence[str]) -> str:
-        kinds = [' class="n"' if i in numeric else "" for i in range(len(cells))]
-        parts = (f"<{tag}{k}>{c}</{tag}>" for k, c in zip(kinds, cells, strict=True))
-        return f"<tr>{''.join(parts)}</tr>"
-
-    body = "".join(line("td", row) for row in rows)
-    head = line("th", heads)
-    table = f"<table><thead>{head}</thead><tbody>{body}</tbody></table>"
-    return f'<div class="scroll">{table}</div>'
 
 
 _MARKS = {
@@ -191,7 +151,7 @@ def _checks(checks: Sequence[Verdict]) -> str:
     ]
     rest = len(listed) - len(rows)
     more = f'<p class="sub">and {rest} more in <code>result.checks</code></p>' if rest else ""
-    return _table(("", "Check", "Found", "Asked", "Difference"), rows, (2, 4)) + more
+    return cells(("", "Check", "Found", "Asked", "Difference"), rows, (2, 4)) + more
 
 
 def _contour(result: Result) -> str:
@@ -204,23 +164,19 @@ def _contour(result: Result) -> str:
         ("Command error", length(command.max), length(command.rms), length(command.p95)),
     ]
     lag = f'<p class="sub">servo lag {figure(contour.lag * 1e3)} ms</p>'
-    return _table(("", "Max", "RMS", "95 %"), rows, (1, 2, 3)) + lag
+    return cells(("", "Max", "RMS", "95 %"), rows, (1, 2, 3)) + lag
 
 
 def _picture(result: Result) -> str:
     if not len(result):
         return ""
-    file, width = io.BytesIO(), WIDTH
-    if _has_contour(result):
-        # The picture fits beside the checks; the numbers of the error stand below them.
-        width, drawn = PATH_WIDTH, draw(result.contour())
-        title = f"Contour error {drawn.magnify:,.0f} times as large"
-        shown = picture(title, "", path_chart(drawn), width=PATH_INCHES)
-    else:
-        shown = _first(result)
-    shown.savefig(file, format="png", dpi=2 * width / shown.get_figwidth())
-    data = base64.b64encode(file.getvalue()).decode()
-    return f'<img width="{width}" alt="{escape(result.name)}" src="data:image/png;base64,{data}"/>'
+    if not _has_contour(result):
+        return images(_first(result), result.name)
+    # The picture fits beside the checks; the numbers of the error stand below them.
+    drawn = draw(result.contour())
+    title = f"Contour error {drawn.magnify:,.0f} times as large"
+    shown = picture(title, "", path_chart(drawn), width=PATH_INCHES)
+    return images(shown, result.name, PATH_WIDTH)
 
 
 def _overrides(result: Result) -> str:
@@ -244,4 +200,4 @@ def _signals(result: Result) -> str:
         rows.append((escape(name), shape, escape(spelled(port.unit)), escape(port.doc)))
     heads = ("Signal", "Elements", "Unit", "Is")
     count = f"{len(rows)} signal{'s' * (len(rows) != 1)}"
-    return f"<details><summary>{count}</summary>{_table(heads, rows, (1,))}</details>"
+    return f"<details><summary>{count}</summary>{cells(heads, rows, (1,))}</details>"

@@ -24,7 +24,9 @@ def check(resolver: system.Resolver, named: bool = True) -> None:
         table = f"contrary.{number}"
         with faults.each():
             if case.off in offs[:number]:
-                raise document.error(f"off = {case.off!r} is there twice", table, "off")
+                first = document.place(f"contrary.{offs.index(case.off)}")
+                text = f"off = {case.off!r} is there twice, first at {first}"
+                raise document.error(text, table, "off")
         for name in case.fails if named else ():
             with faults.each():
                 if name not in asked:

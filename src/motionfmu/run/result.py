@@ -4,7 +4,6 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +12,7 @@ from numpy.typing import NDArray
 
 from motionfmu.base.columns import ROWS, Columns, forget
 from motionfmu.base.errors import InputError, NoNumber
-from motionfmu.base.extras import needed
+from motionfmu.base.shown_by import drawn, report
 from motionfmu.records import Record
 from motionfmu.run import figures, record_matches, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge, tally
@@ -43,13 +42,6 @@ def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
             after = first + int(zero[-1]) + 1
             return float(time[after]) if after < len(x) else None
     return None
-
-
-def _report(module: str) -> Any:
-    """A module of the report, which draws a result; it is imported when it is first needed."""
-    if module == "notebook":
-        needed("report")
-    return import_module(f"motionfmu.report.{module}")
 
 
 @dataclass(eq=False, repr=False)
@@ -135,7 +127,7 @@ class Result(Mapping[str, NDArray[Any]]):
         return f"<Result {self.name}: {self.judgement}, {self.size}>"
 
     def _repr_html_(self) -> str:
-        return str(_report("notebook").html(self))
+        return str(drawn("notebook").html(self))
 
     @property
     def size(self) -> str:
@@ -207,7 +199,7 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             There is no such signal (an `UnknownSignal`), or the window is not within the run.
         """
-        figure: Figure = _report("notebook").plot(self, names, window)
+        figure: Figure = drawn("notebook").plot(self, names, window)
         return figure
 
     def save(
@@ -236,7 +228,7 @@ class Result(Mapping[str, NDArray[Any]]):
         InputError
             The folder holds something else, or cannot be written.
         """
-        outcome = _report("result_folder")
+        outcome = report("result_folder")
         shown: Path = outcome.save(self, Path(folder), outcome.Kept(csv, signals, pictures))
         return shown
 

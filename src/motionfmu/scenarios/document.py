@@ -83,6 +83,10 @@ class Document:
         """Make the error for a key; where it stands as in `Lines.of`, in a list for an item."""
         return InputError(f"{_place(self.sources, table, key, item)}: {text}")
 
+    def place(self, table: str) -> str:
+        """File and line of a table, or of a row of an array: ``contrary.0``."""
+        return _place(self.sources, table, "")
+
     def refuse(self, lines: list[str]) -> None:
         """Raise an InputError with all faults in the order of their lines, if there are any."""
         Faults(ordered(lines, (s.name for s in self.sources))).tell()

@@ -157,6 +157,8 @@ class Resolver:
             text = f"{name}: no component {component!r}{suggestion(component, self.ports)}"
             if is_pattern(name):
                 text = f"{name}: no component that fits has this variable"
+                if any(matches(c, component) and variable in p for c, p in self.ports.items()):
+                    text = f"{name}: a pattern goes in [set], [check] and [expect] only"
             raise self.document.error(text, table, key, name)
         if variable not in self.ports[component]:
             fmu = self.document.body.component[component]

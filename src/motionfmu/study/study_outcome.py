@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.shown_by import drawn
 from motionfmu.base.units import spelled
 from motionfmu.study.study_axes import Normal, Value
 from motionfmu.study.study_definition import Study
@@ -66,6 +67,33 @@ class Outcome:
     rows: list[Row] = field(repr=False)
     folder: Path
     resumed: int
+
+    def __repr__(self) -> str:
+        return "\n  ".join(
+            (f"Study {self.study.name}", *self.summary, f"rows and report in {self.folder}")
+        )
+
+    def _repr_html_(self) -> str:
+        return str(drawn("studies.sweep_view").sweep_html(self))
+
+    @property
+    def summary(self) -> list[str]:
+        """Runs, checks, and the best run with its cost, in words."""
+        rows, study, best = self.rows, self.study, self.best
+        how = study.sampling if study.sampling == "grid" else f"{study.sampling}, seed {study.seed}"
+        lines = [f"{len(rows)} runs ({how}), {self.errors} with an error"]
+        if any(row.checks is not None for row in rows):
+            held = sum(row.checks is True for row in rows)
+            lines.append(f"checks hold in {held} of {len(rows)} runs")
+        if best is not None:
+            units = {c.name: spelled(c.unit) for c in study.columns}
+            value = f"{self.cost[best]:.6g} {units[study.shown]}".strip()
+            at = zip(study.axes, study.points[best], strict=True)
+            texts = (f"{x.name} = {_shown(v)} {spelled(x.unit)}".rstrip() for x, v in at)
+            lines += [f"smallest {study.shown}: {value} in run {best}", f"at {', '.join(texts)}"]
+            if edge := self.at_the_edge:
+                lines.append(f"at the edge of the study: {'; '.join(edge)}")
+        return lines
 
     def axis(self, name: str) -> list[Value]:
         """Values of an axis.
@@ -135,3 +163,7 @@ class Outcome:
     def errors(self) -> int:
         """Number of rows that are not ok."""
         return sum(row.status != OK for row in self.rows)
+
+
+def _shown(value: Value) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

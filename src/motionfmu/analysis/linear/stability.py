@@ -1,13 +1,15 @@
 """Stability margins of a loop: gain, phase, delay, disk, sensitivity, bandwidth."""
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.shown_by import drawn
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -56,6 +58,8 @@ class Margins:
         All crossings of -180 degrees and of magnitude 1.
     omega_gain, omega_phase, omega_sensitivity : float
         Where these margins are [rad/s].
+    loop : StateSpace or TransferFunction
+        The open loop; a notebook shows its Bode diagram.
     """
 
     stable: bool
@@ -74,6 +78,35 @@ class Margins:
     omega_gain: float
     omega_phase: float
     omega_sensitivity: float
+    loop: System = field(compare=False)
+
+    def __repr__(self) -> str:
+        gain = "unlimited" if math.isinf(self.gain) else f"{20.0 * math.log10(self.gain):.4g} dB"
+        gain += f" (x {self.gain:.4g}){_at(self.omega_gain)}" if math.isfinite(self.gain) else ""
+        gain += f", down to x {self.gain_down:.4g}" if self.gain_down else ""
+        phase, delay = f"{self.phase:.4g}°", f"{self.delay * 1e3:.4g} ms"
+        if math.isinf(self.phase):
+            phase = delay = "unlimited"
+        lines = (
+            f"gain        {gain}",
+            f"phase       {phase}{_at(self.omega_phase)}",
+            f"delay       {delay}",
+            f"disk        {self.disk:.4g}: gain x {self.disk_gain:.4g},"
+            f" phase {self.disk_phase:.4g}°",
+            f"peaks       |S| {self.sensitivity:.4g}{_at(self.omega_sensitivity)},"
+            f" |T| {self.complementary:.4g}",
+            f"bandwidth   {self.bandwidth / (2.0 * math.pi):.4g} Hz",
+        )
+        word = "stable" if self.stable else "UNSTABLE"
+        return f"Margins of a loop, {word} when closed\n" + "\n".join(f"  {t}" for t in lines)
+
+    def _repr_html_(self) -> str:
+        return str(drawn("loop_pages.loop_views").margins_html(self))
+
+
+def _at(omega: float) -> str:
+    """Where a margin is, if it is anywhere."""
+    return f" at {omega / (2.0 * math.pi):.4g} Hz" if math.isfinite(omega) else ""
 
 
 def response(system: System, omega: Array) -> Complex:
@@ -168,6 +201,7 @@ def margins(loop: System) -> Margins:
         omega_gain=up.omega if up else float("nan"),
         omega_phase=least.omega if least else float("nan"),
         omega_sensitivity=w_s,
+        loop=loop,
     )
 
 

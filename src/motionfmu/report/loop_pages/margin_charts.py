@@ -6,9 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.analysis.freq.loop_study import LoopStudy
+from motionfmu.analysis.freq.response import Response
 from motionfmu.analysis.linear.closed_step import chart_length, closed_step
-from motionfmu.analysis.linear.stability import closed_poles, grid, response
+from motionfmu.analysis.linear.stability import Margins, closed_poles, grid, response
 from motionfmu.report.diagram import (
     DASH,
     DOT,
@@ -46,17 +46,17 @@ def _decibel(values: NDArray[Any]) -> Array:
     return found
 
 
-def bode(study: LoopStudy) -> Diagram:
+def bode(found: Margins, measured: Response | None = None) -> Diagram:
     """Magnitude and phase of the open loop, with what was measured."""
-    omega = grid(study.loop, _POINTS)
-    values = response(study.loop, omega)
+    omega = grid(found.loop, _POINTS)
+    values = response(found.loop, omega)
     hertz, size = omega / (2.0 * math.pi), _decibel(values)
     angle = np.degrees(np.unwrap(np.angle(values)))
     angle -= 360.0 * round((angle[np.argmin(np.abs(size))] + 180.0) / 360.0)
     sizes: list[Mark] = [LineMark(hertz, size, "linear model", BLUE, WIDTH)]
     angles: list[Mark] = [LineMark(hertz, angle, "linear model", BLUE, WIDTH)]
-    if study.measured is not None:
-        w, y = study.measured.omega, study.measured.values[:, 0]
+    if measured is not None:
+        w, y = measured.omega, measured.values[:, 0]
         near = np.interp(w, omega, angle)
         lag = np.degrees(np.angle(y))
         lag += 360.0 * np.round((near - lag) / 360.0)
@@ -69,7 +69,7 @@ def bode(study: LoopStudy) -> Diagram:
     reach = float(max(hertz[0], first[0]) if first.size else hertz[0]), float(hertz[-1])
     sizes.append(LevelMark(0.0, dash=DASH))
     angles.append(LevelMark(-180.0, dash=DASH))
-    for crossing, color in ((study.margins.omega_phase, GREEN), (study.margins.omega_gain, RED)):
+    for crossing, color in ((found.omega_phase, GREEN), (found.omega_gain, RED)):
         if math.isfinite(crossing):
             mark = LevelMark(crossing / (2.0 * math.pi), color=color, upright=True)
             sizes.append(mark)
@@ -81,12 +81,12 @@ def bode(study: LoopStudy) -> Diagram:
     return Diagram((Scale("Frequency", "Hz", reach, log=True),), rows)
 
 
-def nyquist(study: LoopStudy) -> Diagram:
+def nyquist(found: Margins) -> Diagram:
     """The open loop about -1, with the disk that it keeps out of."""
-    values = response(study.loop, grid(study.loop, 3 * _POINTS))
-    half = study.margins.disk / 2.0
+    values = response(found.loop, grid(found.loop, 3 * _POINTS))
+    half = found.disk / 2.0
     marks: list[Mark] = [CircleMark(0.0, 0.0, 1.0, dash=DOT)]
-    if study.margins.stable and half < 1.0:
+    if found.stable and half < 1.0:
         a, b = -(1.0 + half) / (1.0 - half), -(1.0 - half) / (1.0 + half)
         marks.append(CircleMark((a + b) / 2.0, 0.0, (b - a) / 2.0, RED, filled=True))
     half_rate = "0 to half the sampling rate"
@@ -101,11 +101,11 @@ def nyquist(study: LoopStudy) -> Diagram:
     return one(real, imaginary, marks, _PLANE, EQUAL)
 
 
-def locus(study: LoopStudy) -> Diagram:
+def locus(found: Margins) -> Diagram:
     """Poles of the closed loop over a factor on the wire."""
-    top = study.margins.gain if math.isfinite(study.margins.gain) else 10.0
+    top = found.gain if math.isfinite(found.gain) else 10.0
     factors = np.concatenate([[0.0], np.geomspace(1e-3, 2.0, _GAINS) * top])
-    poles = [closed_poles(study.loop, g) for g in factors]
+    poles = [closed_poles(found.loop, g) for g in factors]
     flat = np.concatenate(poles)
     told = [
         f"factor {g:.4g}\n{z.real:.4f}, {z.imag:.4f}"
@@ -117,10 +117,10 @@ def locus(study: LoopStudy) -> Diagram:
         CircleMark(0.0, 0.0, 1.0, INK),
         PointMark(flat.real, flat.imag, name, MUTED, size=3.0, hover=told),
         _poles(poles[0], "factor 0", INK, "x"),
-        _poles(closed_poles(study.loop), "as it is", BLUE, "circle"),
+        _poles(closed_poles(found.loop), "as it is", BLUE, "circle"),
     ]
-    if math.isfinite(study.margins.gain):
-        rings = closed_poles(study.loop, top)
+    if math.isfinite(found.gain):
+        rings = closed_poles(found.loop, top)
         marks.append(_poles(rings, f"limit, factor {top:.4g}", RED, "diamond"))
     slow = flat[(np.abs(flat) > 0.5) & (np.abs(flat) < 1.3)]
     left = min(float(slow.real.min(initial=0.8)), 0.8) - 0.05
@@ -133,26 +133,26 @@ def _poles(poles: NDArray[Any], name: str, color: str, symbol: str) -> PointMark
     return PointMark(poles.real, poles.imag, name, color, symbol, 8.0)
 
 
-def sensitivity(study: LoopStudy) -> Diagram:
+def sensitivity(found: Margins) -> Diagram:
     """Magnitude of 1/(1 + L) and L/(1 + L)."""
-    omega = grid(study.loop, _POINTS)
-    values = response(study.loop, omega)
+    omega = grid(found.loop, _POINTS)
+    values = response(found.loop, omega)
     hertz = omega / (2.0 * math.pi)
     marks: list[Mark] = [
         LineMark(hertz, _decibel(1.0 / (1.0 + values)), "S = 1/(1 + L)", BLUE, WIDTH),
         LineMark(hertz, _decibel(values / (1.0 + values)), "T = L/(1 + L)", GREEN, WIDTH),
         LevelMark(0.0, dash=DASH),
     ]
-    top = 20.0 * math.log10(max(study.margins.sensitivity, study.margins.complementary))
-    low = study.margins.bandwidth or omega[-1]
+    top = 20.0 * math.log10(max(found.sensitivity, found.complementary))
+    low = found.bandwidth or omega[-1]
     reach = float(max(hertz[0], low / (2e2 * math.pi))), float(hertz[-1])
     size = Scale("Magnitude", "dB", (-50.0, max(6.0, top + 4.0)))
     return one(Scale("Frequency", "Hz", reach, log=True), size, marks, _LOW)
 
 
-def step(study: LoopStudy) -> Diagram:
+def step(found: Margins) -> Diagram:
     """Response of L/(1 + L) to a step."""
-    time, values = closed_step(study.loop, chart_length(study.loop, study.margins))
+    time, values = closed_step(found.loop, chart_length(found.loop, found))
     keep = max(1, len(time) // _STEP_POINTS)
     time, values = time[::keep] * 1e3, np.clip(np.nan_to_num(values[::keep], nan=0.0), -3.0, 5.0)
     curve = SamplesMark(Samples(time, values, steps=keep == 1), "L/(1 + L)", BLUE, WIDTH)

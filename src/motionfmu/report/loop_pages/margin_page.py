@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from html import escape
 from typing import Any
 
@@ -12,11 +12,12 @@ from motionfmu.analysis.freq.loop_study import LoopStudy
 from motionfmu.analysis.linear import AxisModel, LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines, in_words
 from motionfmu.analysis.linear.loops import Limit
+from motionfmu.analysis.linear.stability import Margins
 from motionfmu.analysis.linear.tuning_parts import held, worst
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, overrides, table
 from motionfmu.report.loop_pages.margin_charts import bode, locus, nyquist, sensitivity, step
-from motionfmu.report.numbers import figure
+from motionfmu.report.numbers import MINUS, figure
 from motionfmu.report.signal_words import words_of
 
 FOOTER = (
@@ -64,7 +65,9 @@ def numbers(axis: AxisModel, studies: Sequence[LoopStudy]) -> dict[str, Any]:
             "cut": list(s.cut),
             "period": s.loop.dt,
             "states": list(s.loop.state_labels),
-            "margins": asdict(s.margins),
+            "margins": {
+                k: v for k, v in asdict(replace(s.margins, loop=None)).items() if k != "loop"
+            },
             "gain": s.gain or f"factor on the wire to {s.at}",
             "position_gains": [asdict(g) for g in _gains(axis, s)],
             "largest_gain": asdict(s.linear),
@@ -116,27 +119,25 @@ def _unlimited(value: float, text: str) -> str:
     return text if math.isfinite(value) else "unlimited"
 
 
-def _add(page: Page, study: LoopStudy, name: str, gains: Sequence[LoopGain]) -> None:
-    m = study.margins
+def margin_rows(m: Margins) -> list[tuple[str, str, str]]:
+    """What each margin is, its value, and where it is or what it comes to; as HTML."""
     decibel = 20.0 * math.log10(m.gain) if 0.0 < m.gain < math.inf else math.inf
-    rows = [
+    period, periods = m.loop.dt if m.loop.isdtime(strict=True) else 0.0, ""
+    if period and math.isfinite(m.delay):
+        periods = f"{figure(m.delay / period)} periods of {figure(period * 1e6)} µs"
+    disk = f"gain by {figure(m.disk_gain)} either way and phase ±{figure(m.disk_phase)}°"
+    return [
         ("Gain margin", _unlimited(m.gain, f"{figure(decibel)} dB"), _hertz(m.omega_gain)),
         ("Phase margin", _unlimited(m.phase, f"{figure(m.phase)}°"), _hertz(m.omega_phase)),
-        (
-            "Delay margin",
-            _unlimited(m.delay, f"{figure(m.delay * 1e3)} ms"),
-            f"{figure(m.delay / study.loop.dt)} periods of {figure(study.loop.dt * 1e6)} µs"
-            if math.isfinite(m.delay)
-            else "",
-        ),
-        (
-            "Disk margin",
-            figure(m.disk),
-            f"gain by {figure(m.disk_gain)} either way and phase ±{figure(m.disk_phase)}°",
-        ),
+        ("Delay margin", _unlimited(m.delay, f"{figure(m.delay * 1e3)} ms"), periods),
+        ("Disk margin", figure(m.disk), disk),
         ("Sensitivity peak", figure(m.sensitivity), _hertz(m.omega_sensitivity)),
-        ("Bandwidth", f"{figure(m.bandwidth / (2.0 * math.pi))} Hz", "closed loop, &minus;3 dB"),
+        ("Bandwidth", f"{figure(m.bandwidth / (2.0 * math.pi))} Hz", f"closed loop, {MINUS}3 dB"),
     ]
+
+
+def _add(page: Page, study: LoopStudy, name: str, gains: Sequence[LoopGain]) -> None:
+    m, rows = study.margins, margin_rows(study.margins)
     for gain in gains:
         told = in_lines([gain])[0].partition(" (")[0]
         rows.append(("Position gain Kp", in_words(gain.kp), escape(told)))
@@ -150,16 +151,19 @@ def _add(page: Page, study: LoopStudy, name: str, gains: Sequence[LoopGain]) -> 
     states = ", ".join(study.loop.state_labels)
     note += f". {study.loop.nstates} states: {escape(states)}."
     page.section(f"Loop at {escape(study.at)}", note, boxes + _limits(study, gains))
-    left = page.place(f"{name}_bode", bode(study))
+    left = page.place(f"{name}_bode", bode(study.margins, study.measured))
     note = "Green: where |L| crosses 1; red: where the phase crosses &minus;180°."
     page.section("Bode diagram", note + _deviation(study), left)
-    two = page.place(f"{name}_nyquist", nyquist(study)), page.place(f"{name}_locus", locus(study))
+    two = (
+        page.place(f"{name}_nyquist", nyquist(study.margins)),
+        page.place(f"{name}_locus", locus(study.margins)),
+    )
     titles = "Nyquist diagram, and the disk that L keeps out of", "Poles over a factor on the loop"
     cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))
     page.sections.append(f'<section><div class="two">{cells}</div></section>')
     two = (
-        page.place(f"{name}_step", step(study), cursors=f"{name}_step"),
-        page.place(f"{name}_s", sensitivity(study)),
+        page.place(f"{name}_step", step(study.margins), cursors=f"{name}_step"),
+        page.place(f"{name}_s", sensitivity(study.margins)),
     )
     titles = "Step response of the closed loop", "Sensitivity"
     cells = "".join(f"<div><h3>{t}</h3>{p}</div>" for t, p in zip(titles, two, strict=True))

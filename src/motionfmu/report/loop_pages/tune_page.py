@@ -46,7 +46,7 @@ def page_text(tuned: Tuned) -> str:
     page.section(
         tuned.study.path.what.capitalize(),
         note,
-        _runs(tuned) + page.place("error", _errors(tuned), True),
+        _runs(tuned) + page.place("error", errors(tuned), True),
     )
     page.section("Margins and limits", _limits_note(tuned), _limits(tuned))
     note = "Position after a small step of the command, linear model, nominal plant."
@@ -129,7 +129,8 @@ def _runs(tuned: Tuned) -> str:
     return table(heads, rows, 2)
 
 
-def _errors(tuned: Tuned) -> Diagram:
+def errors(tuned: Tuned) -> Diagram:
+    """The error of the runs before and after over time."""
     runs: Sequence[tuple[str, TuningRun, str]] = (
         ("before", tuned.before[0], BEFORE),
         ("after", tuned.after[0], AFTER),

@@ -67,7 +67,7 @@ def page_text(outcome: "Outcome") -> str:
         page.section(escape(cost_label(outcome)), f"{WORDS[way]} {_told_best(outcome)}", content)
         if outcome.best is not None:
             note = "Smallest cost first; checks: those of the scenario."
-            page.section("Best runs", note, _best(outcome))
+            page.section("Best runs", note, table(*best_rows(outcome), numeric=2))
     if outcome.errors:
         page.section("Errors", "Runs that gave no row, by message.", _told(outcome, False))
     if any(row.status == "ok" and row.message for row in outcome.rows):
@@ -109,7 +109,8 @@ def _cards(outcome: "Outcome") -> str:
     return cards(shown)
 
 
-def _best(outcome: "Outcome") -> str:
+def best_rows(outcome: "Outcome") -> tuple[list[str], list[list[str]]]:
+    """Heads and rows of the table of the best runs, as HTML."""
     study = outcome.study
     known = np.flatnonzero(np.isfinite(cost_of(outcome)))
     order = known[np.argsort(cost_of(outcome)[known], kind="stable")][:BEST_SHOWN]
@@ -126,7 +127,7 @@ def _best(outcome: "Outcome") -> str:
         body.append([str(row.run), mark, *map(_number, numbers)])
     units = [label(a.name, a.unit) for a in study.axes]
     units += [label(study.columns[k].name, study.columns[k].unit) for k in first]
-    return table(["Run", "Checks", *map(escape, units)], body, numeric=2)
+    return ["Run", "Checks", *map(escape, units)], body
 
 
 def _told(outcome: "Outcome", ok: bool) -> str:

@@ -1,5 +1,6 @@
 """The result of a tuning."""
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 from motionfmu.analysis.linear import LoopGain, gain_of
 from motionfmu.analysis.linear.gains import in_lines
 from motionfmu.base.memo import Memo
+from motionfmu.base.shown_by import drawn
 from motionfmu.run import Result
 from motionfmu.study.tune.curve import margin
 from motionfmu.study.tune.path_error import PathError, RunPath
@@ -74,6 +76,32 @@ class Tuned:
     # It is computed once for the gains file, the page and the numbers.
     _margins: Memo[list[LoopMargins]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
     _position_gains: Memo[list[LoopGain]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
+
+    def __repr__(self) -> str:
+        name, what = self.study.scenario.name, self.study.path.what
+        before = self.present
+        lines = [
+            f"{n} = {_shown(v)} (before {_shown(before[n])})" for n, v in self.settings.items()
+        ]
+        for had, has in zip(self.before, self.after, strict=True):
+            both = (
+                f"{r.fmus.rms * 1e3:.4g} µm, largest {r.fmus.max * 1e3:.4g} µm" for r in (had, has)
+            )
+            lines.append(f"{what}, {plant_text(has.plant)}: RMS {' → '.join(both)}")
+        lines += [f"stopped by {text}" for text in self.stopped_by]
+        return f"Tuned gains of {name}\n" + "\n".join(f"  {t}" for t in lines)
+
+    def _repr_html_(self) -> str:
+        return str(drawn("loop_pages.loop_views").tuned_html(self))
+
+    @property
+    def present(self) -> dict[str, Any]:
+        """The settings before the tuning, by the same names."""
+        found = settings(self.study, self.study.present)
+        if self.trial:
+            value = self.study.base.parameter(self.trial.name)
+            found[self.trial.name] = value[0] if len(value) == 1 else list(value)
+        return found
 
     @property
     def settings(self) -> dict[str, Any]:
@@ -232,6 +260,13 @@ class Tuned:
                 for side, runs in (("before", self.before), ("after", self.after))
             },
         }
+
+
+def _shown(value: float | Sequence[float]) -> str:
+    """A value, or those of the axes."""
+    if isinstance(value, Sequence):
+        return f"[{', '.join(f'{x:.6g}' for x in value)}]"
+    return f"{value:.6g}"
 
 
 def _finite(values: Array) -> list[float | None]:
