@@ -11,9 +11,11 @@ from few_cases import few
 
 import motionfmu
 from motionfmu.analysis.cycle_time import driven, planned, what_if
+from motionfmu.cards import load
 from motionfmu.run import Options, Session
 from motionfmu.run.axis_figures import axis_figures
 from motionfmu.run.controller_plan import bounded
+from motionfmu.scenarios.package_files import MACHINES
 
 # F6000 with ramps of 0.1 s: 100 mm/s, 1000 mm/s2; rapids 500 mm/s.
 BY_HAND = {
@@ -200,3 +202,21 @@ def test_waits_of_a_robot_are_told():
     waits = np.isin(status, (2, 3, 5)).sum() * plan.frame
     assert told["waiting"] == pytest.approx(waits) and waits > 3.0
     assert told["corner"] > 1.0 and told["jerk"] > 0.1
+
+
+def test_what_limits_a_job_of_a_network_card(tmp_path):
+    """A line of 100 mm between rests: the ramps of a profile with limited jerk, by closed form."""
+    (tmp_path / "line.plt").write_text("IN;SP1;PU0,0;PD4000,0;PU;")
+    scenario = motionfmu.machine("engraver").scenario(tmp_path / "line.plt")
+    plan = planned(scenario)
+    told = {(s.cause, s.axis): s.time for s in plan.shares()}
+    motion = load(MACHINES / "engraver/card.toml")
+    x, free = motion.axes[0], 1.0 - motion.motion.reserve
+    a, j, feed = free * x.acceleration_max, free * x.jerk_max, motion.motion.feed
+    ramp = feed / a + a / j  # from rest to the feed
+    assert plan.rows["place"][-1, 0] == pytest.approx(100.0)
+    assert told["feed", ""] == pytest.approx((100.0 - feed * ramp) / feed, rel=0.02)
+    assert told["jerk", "X"] == pytest.approx(2 * 2 * a / j, rel=0.1)
+    assert told["acceleration", "X"] == pytest.approx(2 * (feed / a - a / j), rel=0.1)
+    assert told["dwell", ""] > 0.0 and ("speed", "X") not in told
+    assert sum(told.values()) == pytest.approx(plan.time, abs=1e-9)

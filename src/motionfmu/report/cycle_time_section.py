@@ -55,7 +55,8 @@ def add_cycle_time(page: Page, plan: CommandedMotion, lifted: Sequence[Lifted] =
     waits = "Waits for an operator, an input, a probe or the position of an axis are "
     waits += "in it." if plan.driven else "not in it."
     note = f"What keeps the program from being faster, at each instant of its motion. {waits}"
-    if not plan.driven and not lifted:
+    lines = bool(plan.rows["line"].any())
+    if lines and not plan.driven and not lifted:
         note += " <code>motionfmu gcode</code> says what a higher limit would save."
     content = table(("limited by", "", "s", "%"), rows, numeric=2)
     content += page.place("limited", path_by_cause(plan))
@@ -70,9 +71,9 @@ def add_cycle_time(page: Page, plan: CommandedMotion, lifted: Sequence[Lifted] =
         for b in plan.slowest
     ]
     note = "Lines that take longest beyond the time at their programmed feed; dwells lose none."
-    page.section(
-        "Slowest lines", note, table(("line", "limited by", "s", "lost [s]"), blocks, numeric=2)
-    )
+    if lines:
+        content = table(("line", "limited by", "s", "lost [s]"), blocks, numeric=2)
+        page.section("Slowest lines", note, content)
     if lifted:
         note = "The cycle time if this limit alone were a quarter higher."
         rows = [
@@ -103,6 +104,8 @@ def path_by_cause(plan: CommandedMotion) -> Diagram:
         told: list[str] = []
         if len(rows) <= TOLD:
             words = [f"line {r['line']}, {r['speed'] * 60.0:.4g} mm/min" for r in rows[kept]]
+            if not rows["line"].any():
+                words = [f"{r['speed']:.4g} mm/s" for r in rows[kept]]
             told = list(np.insert(np.array(words, object), gaps, ""))
         lines.append(path_lines(points, name=name, color=COLORS[name], width=2.2, hover=told))
     return path_diagram("XYZ"[:width], lines, HEIGHT)

@@ -21,7 +21,7 @@ from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import Document
 
 GCODE = (".ngc", ".nc", ".tap", ".gcode")  # endings of part programs
-JOB = ".mcj"
+JOB, ROWS = ".mcj", ".npy"
 CHORD = 1e-3  # [mm] a chord is off an arc of a part program by no more, where a card draws it
 
 
@@ -96,6 +96,7 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
     needed("card")
     from motionfmu.cards import job, load
     from motionfmu.cards.plan import plan, write
+    from motionfmu.cards.plan_rows import plan_rows
 
     name = str(document.body.signals.config)
     place = document.beside(name)
@@ -115,8 +116,18 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
             raise InputError(f"{file}: {told}")
         planned = plan(drawing, config, options)
         notes = (drawing.told,) if drawing.notes else ()
-        file = _made(f"{file.stem}{JOB}", lambda made: write(planned.job, made), planned.job)
+
+        def make(target: Path) -> None:
+            write(planned.job, target)
+            np.save(beside(target), plan_rows(planned, config))
+
+        file = _made(f"{file.stem}{JOB}", make, planned.job, ROWS)
     return MachineProgram(file, values, job.read(file).time, notes)
+
+
+def beside(job: str | Path) -> Path:
+    """Where the planned motion of a job made here is kept."""
+    return Path(job).with_suffix(ROWS)
 
 
 def _drawing_of(file: Path) -> Drawing:

@@ -3,21 +3,10 @@
 import numpy as np
 
 from motionfmu.analysis.cycle_time.program_plan import CommandedMotion
+from motionfmu.base.motion_rows import ROW
 from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios import limited_signals as told
 
-ROW = np.dtype(
-    [
-        ("time", float),
-        ("place", float, 6),
-        ("speed", float),
-        ("feed", float),
-        ("line", np.int32),
-        ("command", np.int32),
-        ("cause", np.int32),
-        ("axis", np.int32),
-    ]
-)
 FIELDS = {"speed": told.SPEED, "feed": told.FEED, "line": told.LINE, "axis": told.AXIS}
 
 

@@ -8,21 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.motion_rows import CAUSES, NUMBERS
 from motionfmu.run import Scenario
 from motionfmu.run.controller_plan import plan_rows
+from motionfmu.run.program_translation import beside
 
-# What limits the motion, by the numbers of src/motion/trajectory/limited.h.
-CAUSES = {
-    1: "feed",
-    2: "speed",
-    3: "acceleration",
-    4: "jerk",
-    5: "corner",
-    6: "exact stop",
-    7: "dwell",
-    8: "waiting",
-}
-DWELL = 7
+DWELL = NUMBERS["dwell"]
 SLOWEST = 10
 
 
@@ -169,6 +160,18 @@ def planned(scenario: Scenario, set: Mapping[str, Any] | None = None) -> Command
     InputError
         No controller of the scenario plans programs, or it refuses one.
     """
-    rows = plan_rows(scenario, set or {})
+    rows = _rows_of_job(scenario, set or {})
+    if rows is None:
+        rows = plan_rows(scenario, set or {})
     axes = tuple(axis.name for axis in scenario.document.controller_axes)
     return CommandedMotion(float(rows["time"][0]) if len(rows) else 0.0, rows, axes)
+
+
+def _rows_of_job(scenario: Scenario, set: Mapping[str, Any]) -> NDArray[Any] | None:
+    """What the planner of a network card's job has left beside it; None of any other."""
+    body = scenario.document.body
+    job = str(set.get(str(body.signals.program), body.set.get(str(body.signals.program), "")))
+    if body.signals.config is None or not job or not beside(job).is_file():
+        return None
+    rows: NDArray[Any] = np.load(beside(job))
+    return rows
