@@ -17,7 +17,8 @@ from motionfmu.scenarios.machine_limits import AxisLimit
 
 MACHINES = ROOT / "src/motionfmu/machines"
 # The program that stands beside each machine that takes one.
-PROGRAMS = {file.parent.name: file for file in MACHINES.glob("*/example.*")}
+EXAMPLES = [file for file in MACHINES.glob("*/example.*") if file.suffix != ".points"]
+PROGRAMS = {file.parent.name: file for file in EXAMPLES}
 WITHOUT = {n for n in package_files.machines() if not motionfmu.machine(n).takes_programs}
 
 

@@ -1,6 +1,5 @@
 """Outputs of a controller that tell, while it moves, what keeps its program from being faster."""
 
-from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import Resolver
 
 BY, AXIS, FEED, SPEED, LINE, PLACE = (
@@ -16,10 +15,7 @@ BY, AXIS, FEED, SPEED, LINE, PLACE = (
 def controller(resolver: Resolver) -> str | None:
     """The first component that has these outputs."""
     names = {BY, AXIS, FEED, SPEED, LINE, PLACE}
-    for component, fmu in resolver.document.body.component.items():
-        if fmus.is_ours(fmu) and names <= fmus.ports(fmu).keys():
-            return component
-    return None
+    return next((name for name, ports in resolver.ports.items() if names <= ports.keys()), None)
 
 
 def wanted(resolver: Resolver) -> list[str]:
