@@ -1,0 +1,46 @@
+"""From a measured record of an axis to the parameters of its plant."""
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from motionfmu.identify.axis_record import AxisRecord
+    from motionfmu.identify.ground import IdentifyOptions
+    from motionfmu.identify.identification import Identified, identify
+    from motionfmu.identify.record_run import RecordRun, record_run
+    from motionfmu.identify.recorded_loop import ColumnUse
+
+_PLACES = {
+    "AxisRecord": "axis_record",
+    "ColumnUse": "recorded_loop",
+    "Identified": "identification",
+    "IdentifyOptions": "ground",
+    "RecordRun": "record_run",
+    "identify": "identification",
+    "record_run": "record_run",
+}
+__all__ = [
+    "AxisRecord",
+    "ColumnUse",
+    "Identified",
+    "IdentifyOptions",
+    "RecordRun",
+    "identify",
+    "record_run",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what identifies when it is first used, as it needs the extra `tune`."""
+    if name not in __all__:
+        raise AttributeError(f"module 'motionfmu.identify' has no attribute {name!r}")
+    from importlib import import_module
+
+    from motionfmu.base.extras import needed
+
+    needed("tune")
+    return getattr(import_module(f"motionfmu.identify.{_PLACES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """Names of `__all__`, though they are not imported yet."""
+    return __all__
