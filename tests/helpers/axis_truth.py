@@ -12,6 +12,7 @@ from motionfmu.identify import AxisRecord, ColumnUse
 Array = NDArray[np.float64]
 STEP, PERIOD = 1e-4, 1e-3  # [s] communication step; period of the drive and of the record
 OFF = [False] * 5
+JITTER = 2.0  # noise of a position [counts]
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,7 @@ def moves(rng: np.random.Generator, stop: float, speed: float, acceleration: flo
 
 
 def simulated(truth: AxisTruth, command: Array, rng: np.random.Generator, noise: float) -> AxisRecord:
-    """The record of a run of the FMUs: positions in counts, torque with noise (share of its RMS)."""
+    """The record of a run of the FMUs: noise in counts, of the torque as a share of its RMS."""
     v = truth.values
     lead, turn = v["machine.lead"], v["drives.pulses_per_turn"]
     pulses = np.round(command / lead * turn).astype(int)
@@ -89,7 +90,8 @@ def simulated(truth: AxisTruth, command: Array, rng: np.random.Generator, noise:
     phase = np.asarray(ran["machine.motor_phase"])[:, 0][np.minimum(rows, len(ran.time) - 1)]
     torque = np.asarray(ran["drives.torque"])[:, 0][np.minimum(rows, len(ran.time) - 1)]
     counts = v["drives.encoder_counts"]
-    position = np.floor(phase / 2500.0 * counts) / counts * lead
+    phase = phase / 2500.0 * counts + JITTER * rng.standard_normal(len(phase))  # counts
+    position = np.floor(phase) / counts * lead
     torque = torque + noise * float(np.sqrt(np.mean(torque**2))) * rng.standard_normal(len(torque))
     return AxisRecord(
         PERIOD * np.arange(len(command)),

@@ -196,7 +196,7 @@ def ground(
     rates = PlantRates(loop.ode, every, movable(known, asked, loop.ode))
     data = recorded(loop, record, options.columns, ratios)
     position, raw = _position(loop, data, every, ratios)
-    motion = LoopMotion(loop, rates, 1, options.compiled)
+    motion = LoopMotion(loop, rates, options.compiled)
     per = ratios[f"{loop.component}.{every[position]}"]
     fed = [np.repeat(raw * ratios[f"{loop.component}.{n}"] / per, data.every) for n in loop.fed]
     points = len(data.driven)
@@ -226,7 +226,7 @@ def ground(
     at = np.arange(ends, data.samples - ends, max(1, data.samples // _POINTS))
     at = at[np.abs(speed[at]) > _MOVING * np.abs(speed[at]).max(initial=0.0)]
     way = _way(loop, rates, (drive, position), float(np.abs(speed).max()))
-    found = Ground(
+    return Ground(
         loop=loop,
         data=data,
         check=check,
@@ -246,7 +246,6 @@ def ground(
         gains_taken=bool(check and check.taken and options.controller),
         still=bool(np.ptp(smooth[0]) <= 4.0 * grain),
     )
-    return replace(found, motion=motion.stepping(_steps(found)))
 
 
 def _is_input(scenario: Scenario, signal: str) -> bool:
@@ -338,12 +337,3 @@ def _force(loop: AxisLoop, data: RecordedLoop, drive: int, of: tuple[Array, Arra
     j = points % laws.cycle
     asked = np.einsum("kj,kj->k", laws.take[j, drive], memory[points])
     return np.asarray(asked + np.einsum("kj,kj->k", laws.through[j, drive], seen[points]))
-
-
-def _steps(of: Ground) -> int:
-    """Integration steps in a communication step."""
-    every = np.linspace(0, of.data.samples - 1, _LOOKS).astype(np.int64)
-    free = of.free(())
-    x = of.follow(free, free.start, every).x
-    u = np.repeat(of.loop.u[:, None], len(every), axis=1)
-    return of.rates.steps(of.loop.step, of.rates.fastest(x, u, of.loop.p))

@@ -28,6 +28,9 @@ _UNTOLD, _LITTLE = 0.3, 0.05
 _WORTH = 0.98
 # Steps of least squares for start values.
 _NEWTON = 6
+# Directions of start values that inverse dynamics tell with less than this share of the clearest
+# one stay as they are: the rest of a law at low speeds.
+_CLEAR = 1e-3
 # Share of a law's signal above which the scenario's controller is not that of the record.
 _STRANGE = 0.1
 
@@ -259,7 +262,7 @@ def _start(own: Ground, free: FreeParameters) -> tuple[Array, Array]:
         rest = own.force[own.points] - found.drive
         scale = np.maximum(np.linalg.norm(found.slopes, axis=0), 1e-300)
         u, s, v = np.linalg.svd(found.slopes / scale, full_matrices=False)
-        inverse = np.where(s > 1e-9 * s[0], 1.0 / np.maximum(s, 1e-300), 0.0)
+        inverse = np.where(s > _CLEAR * s[0], 1.0 / np.maximum(s, 1e-300), 0.0)
         step = v.T @ (inverse * (u.T @ rest)) / scale
         new = np.clip(values + step, free.low, free.high)
         deviations = np.sqrt(np.sum((v.T * inverse) ** 2, axis=1) * np.mean(rest**2)) / scale

@@ -24,6 +24,10 @@ _LOOP = Path(__file__).with_name("shooting_loop.c")
 _FAST = "-O3"
 # Cycles after which the laws have taken in where they begin.
 _REST = 3
+# Fastest rate [1/s] of a plant whose motion is looked at: beyond it a value is wrong.
+_FASTEST = 5e5
+# Numbers of integration steps in a communication step.
+_COUNTS = sorted({2**n for n in range(40)} | {3 * 2**n for n in range(40)})
 
 
 @dataclass(frozen=True)
@@ -63,9 +67,9 @@ class LoopMotion:
     """Motions of one loop; directions are the elements of the start, then the free quantities."""
 
     def __init__(
-        self, loop: AxisLoop, rates: PlantRates, sub_steps: int, compiled: bool = True
+        self, loop: AxisLoop, rates: PlantRates, compiled: bool = True
     ) -> None:
-        self.loop, self.rates, self.sub_steps = loop, rates, sub_steps
+        self.loop, self.rates, self.sub_steps = loop, rates, 1
         shown = list(rates.outputs)
         self._fed = np.array([shown.index(n) for n in loop.fed], dtype=np.int64)
         cc = compiler() if compiled else None
@@ -75,12 +79,6 @@ class LoopMotion:
         """The same with other laws around the plant."""
         other = copy.copy(self)
         other.loop = loop
-        return other
-
-    def stepping(self, sub_steps: int) -> "LoopMotion":
-        """The same with another number of integration steps in a communication step."""
-        other = copy.copy(self)
-        other.sub_steps = sub_steps
         return other
 
     @property
@@ -96,6 +94,13 @@ class LoopMotion:
         `driven` has a row of driven inputs for each communication point; `values` are p, u that
         stay, and the derivatives of moved parameters and of inputs to the free quantities.
         """
+        p, u = values[0], np.repeat(values[1][:, None], len(start.x), axis=1)
+        fastest = self.rates.fastest(start.x.T, u, p)
+        if not fastest < _FASTEST:
+            return self._nothing(start, pieces, values)
+        needed = self.rates.steps(self.loop.step, fastest)
+        # of few numbers, so that a search mostly sees one function
+        self.sub_steps = next(k for k in _COUNTS if k >= needed)
         every = self._compiled if self._library is not None else self._mapped
         return every(start, pieces, driven, values)
 
@@ -124,6 +129,18 @@ class LoopMotion:
             shown[k] = laws.show[j] @ w[k] + laws.direct[j] @ v
             w[k + 1] = laws.keep[j] @ w[k] + laws.read[j] @ v
         return w, shown
+
+    def _nothing(self, start: Start, pieces: Pieces, values: tuple[Array, ...]) -> Moved:
+        """A motion that is no number."""
+        directions = self.width + values[2].shape[1]
+        shown = self.rates.width[4] + len(self.loop.shown)
+        rows = int(pieces.samples.sum())
+        return Moved(
+            Start(np.full_like(start.x, np.nan), np.full_like(start.w, np.nan)),
+            np.full((len(start.x), self.width, directions), np.nan),
+            np.full((rows, shown), np.nan),
+            np.full((rows, shown, directions), np.nan),
+        )
 
     def _compiled(
         self, start: Start, pieces: Pieces, driven: Array, values: tuple[Array, Array, Array, Array]

@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.linear.pointwise import Quick
 from motionfmu.fmu.modelica.ode import Ode
 
 Array = NDArray[np.float64]
@@ -63,6 +64,7 @@ class PlantRates:
             )
         self.rates, self.rate_places = parts["rates"]
         self.shows, self.show_places = parts["shows"]
+        self.start = Quick("start", [ode.p], [ode.start])
         self.width = ode.x.numel(), ode.u.numel(), ode.p.numel(), len(self.moved), len(self.outputs)
         self._mapped = functools.cache(lambda name, n: getattr(self, name).map(n))
 
@@ -86,13 +88,10 @@ class PlantRates:
 
     def fastest(self, x: Array, u: Array, p: Array) -> float:
         """Largest |eigenvalue| [1/s] of the rates at points and at rest beside them."""
-        still = x.copy()
-        still[:, 0] = np.array(ca.Function("start", [self.ode.p], [self.ode.start])(p)).ravel()
-        for points in (x, still):
-            slopes = self.dense("rates", self.at("rates", points, u, p))[0]
-            slopes = slopes[np.isfinite(slopes).all(axis=(1, 2))]
-            found = np.abs(np.linalg.eigvals(slopes)).max(initial=0.0)
-        return float(found)
+        points, inputs = np.column_stack([x, self.start(p)[0].ravel()]), np.column_stack([u, u[:, :1]])
+        slopes = self.dense("rates", self.at("rates", points, inputs, p))[0]
+        slopes = slopes[np.isfinite(slopes).all(axis=(1, 2))]
+        return float(np.abs(np.linalg.eigvals(slopes)).max(initial=0.0))
 
     def steps(self, span: float, fastest: float) -> int:
         """Integration steps within a time [s] for a fastest rate [1/s]."""

@@ -17,9 +17,11 @@ from motionfmu.identify.loop_motion import LoopMotion, Moved, Pieces, Start
 
 Array = NDArray[np.float64]
 # Most steps of Gauss-Newton, and the least share of one.
-_STEPS, _SHORTEST = 25, 1.0 / 64.0
+_STEPS, _SHORTEST = 15, 1.0 / 64.0
 # It has ended when no quantity moves by more than this share of its standard deviation.
 _SETTLED = 0.02
+# Or when the sum of squares, in units of the residuals' variance, falls by less.
+_FALLEN = 0.05
 # A gap of this share of a state's range counts as much as a residual of one standard deviation.
 _GAP = 1e-5
 # The start of a stretch is known to this share of the state's range.
@@ -177,8 +179,8 @@ class Shooting:
                 return guess, now, step, True  # no way down is left
             moved = np.abs(tried.free - guess.free)
             guess, now = tried, there
-            fallen = merit - better < 1e-7 * merit
-            if share == 1.0 and ((moved <= _SETTLED * deviations).all() or fallen):
+            fallen = merit - better < _FALLEN
+            if fallen or (share == 1.0 and (moved <= _SETTLED * deviations).all()):
                 return guess, now, step + 1, True
         return guess, now, _STEPS, False
 
@@ -192,6 +194,8 @@ class Shooting:
         free = len(prior) - len(guess.free)
         low, high = self.bounds
         fixed, change = np.zeros(len(prior), dtype=bool), np.zeros(len(prior))
+        if not np.isfinite(matrix).all():  # a motion that runs away tells no way
+            return change, np.full(len(guess.free), np.inf)
         for _ in range(len(guess.free) + 1):
             left = np.flatnonzero(~fixed)
             b = (right - matrix[:, fixed] @ change[fixed])[left] / scale[left]
