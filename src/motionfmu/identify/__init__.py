@@ -6,7 +6,7 @@ if TYPE_CHECKING:
     from motionfmu.identify.axis_record import AxisRecord
     from motionfmu.identify.ground import IdentifyOptions
     from motionfmu.identify.identification import Identified, identify
-    from motionfmu.identify.record_run import RecordRun, record_run
+    from motionfmu.identify.record_run import RecordRun, run_of_record
     from motionfmu.identify.recorded_loop import ColumnUse
 
 _PLACES = {
@@ -16,7 +16,7 @@ _PLACES = {
     "IdentifyOptions": "ground",
     "RecordRun": "record_run",
     "identify": "identification",
-    "record_run": "record_run",
+    "run_of_record": "record_run",
 }
 __all__ = [
     "AxisRecord",
@@ -25,7 +25,7 @@ __all__ = [
     "IdentifyOptions",
     "RecordRun",
     "identify",
-    "record_run",
+    "run_of_record",
 ]
 
 

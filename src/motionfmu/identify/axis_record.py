@@ -1,7 +1,9 @@
 """A record of one axis as numbers: time and columns."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +14,7 @@ Array = NDArray[np.float64]
 # Share of the sampling interval by which instants may lie off an even grid.
 _UNEVEN = 1e-3
 _FEWEST = 20
+_HEAD = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?")
 
 
 @dataclass(frozen=True)
@@ -63,3 +66,36 @@ class AxisRecord:
     def interval(self) -> float:
         """Time between two samples [s]."""
         return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
+
+
+def read_csv(path: Path) -> AxisRecord:
+    """Read commas under one line of names with units in brackets; the column of seconds is time."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: {getattr(error, 'strerror', None) or error}") from None
+    if not lines:
+        raise InputError(f"{path}: the file is empty")
+    heads = [_HEAD.fullmatch(cell.strip()) for cell in lines[0].split(",")]
+    names = [h[1].strip() if h else "" for h in heads]
+    units = [(h[2] or "") if h else "" for h in heads]
+    rows = []
+    for number, line in enumerate(lines[1:], 2):
+        cells = line.split(",")
+        if not line.strip():
+            continue
+        if len(cells) != len(names):
+            raise InputError(f"{path}:{number}: {len(cells)} values, {len(names)} columns wanted")
+        for name, cell in zip(names, cells, strict=True):
+            try:
+                float(cell)
+            except ValueError:
+                raise InputError(f"{path}:{number}: {name} = {cell.strip()!r}: no number") from None
+        rows.append([float(c) for c in cells])
+    if "time" not in names:
+        raise InputError(f"{path}:1: no column time; there are: {', '.join(names)}")
+    table = np.array(rows, dtype=np.float64).reshape(-1, len(names)).T
+    every = dict(zip(names, table, strict=True))
+    time = every.pop("time")
+    of = {n: u for n, u in zip(names, units, strict=True) if n != "time"}
+    return AxisRecord(time, every, of, path.name)

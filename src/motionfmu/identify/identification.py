@@ -17,7 +17,7 @@ from motionfmu.identify.friction_curve import FrictionCurve, friction_curve
 from motionfmu.identify.ground import Ground, IdentifyOptions, ground
 from motionfmu.identify.recorded_loop import RecordedLoop
 from motionfmu.identify.shooting import Fitted, Guess
-from motionfmu.identify.spread import Spread, spread
+from motionfmu.identify.spread import Spread, autocorrelation, spread
 from motionfmu.run import Scenario
 
 Array = NDArray[np.float64]
@@ -28,6 +28,8 @@ _UNTOLD, _LITTLE = 0.3, 0.05
 _WORTH = 0.98
 # Steps of least squares for start values.
 _NEWTON = 6
+# Distances of samples at which residuals are looked at for what is left in them.
+_DISTANCES = 100
 # Directions of start values that inverse dynamics tell with less than this share of the clearest
 # one stay as they are: the rest of a law at low speeds.
 _CLEAR = 1e-3
@@ -120,7 +122,27 @@ class Identified:
     notes: tuple[str, ...]
     ground: Ground
     given: Mapping[str, Any]
+    kept_share: float
     seconds: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def residuals(self) -> dict[str, float]:
+        """Share of a fit's residual that white noise would not have, by signal.
+
+        The share of the first autocorrelations beyond what 95 % of those of white noise are: 0.05 for
+        white noise, 1 where a law is missing.
+
+        Returns
+        -------
+        dict
+        """
+        found = {}
+        for k, name in enumerate(self.signals):
+            rest = self.measured[:, k] - self.simulated[:, k]
+            most = min(_DISTANCES, len(rest) // 4)
+            c = autocorrelation(rest, most)[1:]
+            found[name] = float(np.mean(np.abs(c) > 1.96 / math.sqrt(len(rest))))
+        return found
 
     def value(self, name: str) -> Parameter:
         """The quantity of a name, ``component.variable`` or the variable alone."""
@@ -217,6 +239,7 @@ def identify(
         seconds=dict(zip(("start", "law", "fit"), parts, strict=True)),
         ground=own,
         given=given,
+        kept_share=options.keep,
     )
 
 

@@ -50,7 +50,7 @@ class RecordRun:
     largest: Mapping[str, float]
 
 
-def record_run(
+def run_of_record(
     found: Identified,
     set: Mapping[str, Any] | None = None,
     progress: Callable[[float], None] = lambda share: None,
