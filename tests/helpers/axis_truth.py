@@ -66,7 +66,9 @@ def moves(rng: np.random.Generator, stop: float, speed: float, acceleration: flo
     return np.concatenate([[0.0], np.cumsum(whole) * PERIOD])
 
 
-def simulated(truth: AxisTruth, command: Array, rng: np.random.Generator, noise: float) -> AxisRecord:
+def simulated(
+    truth: AxisTruth, command: Array, rng: np.random.Generator, noise: float
+) -> AxisRecord:
     """The record of a run of the FMUs: noise in counts, of the torque as a share of its RMS."""
     v = truth.values
     lead, turn = v["machine.lead"], v["drives.pulses_per_turn"]
@@ -108,8 +110,10 @@ COLUMNS = {
 }
 
 
-def drawn(seed: int) -> tuple[AxisTruth, np.random.Generator, tuple[float, float]]:
-    """A machine at random, and the speed [m/s] and acceleration [m/s2] that suit it."""
+def drawn(
+    seed: int, gap: bool = False
+) -> tuple[AxisTruth, np.random.Generator, tuple[float, float]]:
+    """A machine at random, maybe with backlash, and its speed [m/s] and acceleration [m/s2]."""
     rng = np.random.default_rng([34, seed])
     mass, lead = 5.0 * 100.0 ** rng.random(), float(rng.choice([0.002, 0.005, 0.01, 0.02]))
     share = lead / (2.0 * np.pi)
@@ -137,7 +141,7 @@ def drawn(seed: int) -> tuple[AxisTruth, np.random.Generator, tuple[float, float
         "machine.table_viscous": viscous,
         "machine.table_viscous_asymmetry": float(rng.choice([0.0, rng.uniform(-0.4, 0.4)])),
         "machine.table_rest_speed": 1e-3 * speed,
-        "machine.backlash": float(rng.choice([0.0, 1e-5 * rng.random()])),
+        "machine.backlash": gap * float(rng.choice([0.0, 1e-5 * rng.random()])),
         "machine.force": float(rng.choice([0.0, rng.uniform(-0.2, 0.2)])) * weight,
         "drives.encoder_counts": int(rng.choice([100_000, 1_000_000])),
         "drives.pulses_per_turn": 1_000_000,

@@ -42,7 +42,8 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
         ),
     ] = [],  # noqa: B006
     free: Annotated[
-        list[str], typer.Option(metavar="NAME", help="What is free, instead of what the plant says.")
+        list[str],
+        typer.Option(metavar="NAME", help="What is free, instead of what the plant says."),
     ] = [],  # noqa: B006
     fix: Annotated[
         list[str], typer.Option(metavar="NAME", help="What stays as the scenario has it.")
@@ -128,5 +129,7 @@ def _tell(found: "Identified", run: "RecordRun | None") -> None:
         out.print(note, markup=False, soft_wrap=True)
     words = ", ".join(found.laws) or "none"
     print(f"extensions of the friction law: {words}")
-    for name, share in run.differences.items() if run else ():
+    if run is None:
+        return
+    for name, share in run.differences.items():
         print(f"FMUs beside the record from {run.settled:g} s on: {name} {100 * share:.3g} %")

@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 # of the sampling rate: above the motion of machines, below the noise of their encoders.
 _LOW_PASS, _OF_RATE = 60.0, 1.0 / 16.0
 # Points of the inverse dynamics, and the periods of the low pass left out at both ends.
-_POINTS, _ENDS = 1500, 3.0
+_POINTS, _ENDS = 800, 3.0
 # Speeds below this share of the largest tell of rest, not of friction in motion.
 _MOVING = 0.02
 # Pieces of multiple shooting [s], and the fewest samples of one.

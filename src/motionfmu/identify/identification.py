@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.identify import rigid_motion
 from motionfmu.identify.axis_record import AxisRecord
 from motionfmu.identify.controller_check import ControllerCheck
@@ -129,8 +130,8 @@ class Identified:
     def residuals(self) -> dict[str, float]:
         """Share of a fit's residual that white noise would not have, by signal.
 
-        The share of the first autocorrelations beyond what 95 % of those of white noise are: 0.05 for
-        white noise, 1 where a law is missing.
+        The share of the first autocorrelations beyond what 95 % of those of white noise are: 0.05
+        for white noise, 1 where a law is missing.
 
         Returns
         -------
@@ -255,6 +256,11 @@ def _extended(
     own: Ground, names: Sequence[str], laws: Sequence[str], options: IdentifyOptions
 ) -> list[str]:
     """Quantities that are free with extensions of the law."""
+    for law in laws:
+        if law not in own.known.law:
+            known = ", ".join(own.known.law) or "none"
+            told = suggestion(law, own.known.law) or f"; there are: {known}"
+            raise InputError(f"--law {law}: {own.loop.fmu} has no such law of friction{told}")
     if not names:
         return []
     more = [n for law in laws for n in own.known.law[law].free]
@@ -320,9 +326,11 @@ def _told(own: Ground, names: Sequence[str]) -> tuple[list[str], dict[str, str]]
         values = _start(own, free)[0]
         problem, starts = own.shooting(free, (own.first, own.data.samples - 1), values)
         now = problem.linear(Guess(values, starts))
-        if not np.isfinite(now.rest).all():
+        if not now.sound:
             values = free.start
             now = problem.linear(Guess(values, starts))
+        if not now.sound:
+            return [], dict.fromkeys(names, "no motion of the plant is near the record")
         sizes = np.sqrt(np.mean(now.rest**2, axis=0) + problem.stretch.floor**2)
         fit = Fitted(Guess(values, starts), now, sizes, 0, False, problem.prior(now, len(values)))
         known = spread(fit)
@@ -358,6 +366,9 @@ def _fitted(
         fit = problem.fit(Guess(values, starts))
         if not left:
             return free, fit, None, why
+        if not fit.linear.sound:  # extensions of the law stand last
+            why[left.pop()] = "no motion of the plant is near the record with it"
+            continue
         known = spread(fit)
         share = known.deviations / np.maximum(_sizes(own, free, fit.guess.free), 1e-300)
         worst = int(np.argmax(np.where(np.isfinite(share), share, np.inf)))

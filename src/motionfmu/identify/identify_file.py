@@ -54,7 +54,9 @@ def options(tables: Mapping[str, Any], place: str) -> IdentifyOptions:
     signals = [u.signal for u in uses.values()]
     for name, use in uses.items():
         if signals.count(use.signal) > 1:
-            raise InputError(f"{place}: columns.{name} = {use.signal!r}: two columns are that signal")
+            raise InputError(
+                f"{place}: columns.{name} = {use.signal!r}: two columns are that signal"
+            )
     more = {k: getattr(asked, k) for k in ("axis", "free", "fix", "laws", "keep", "controller")}
     return IdentifyOptions(uses, **more)
 

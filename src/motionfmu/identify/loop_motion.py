@@ -66,9 +66,7 @@ class Moved:
 class LoopMotion:
     """Motions of one loop; directions are the elements of the start, then the free quantities."""
 
-    def __init__(
-        self, loop: AxisLoop, rates: PlantRates, compiled: bool = True
-    ) -> None:
+    def __init__(self, loop: AxisLoop, rates: PlantRates, compiled: bool = True) -> None:
         self.loop, self.rates, self.sub_steps = loop, rates, 1
         shown = list(rates.outputs)
         self._fed = np.array([shown.index(n) for n in loop.fed], dtype=np.int64)

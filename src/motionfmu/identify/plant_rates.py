@@ -88,7 +88,10 @@ class PlantRates:
 
     def fastest(self, x: Array, u: Array, p: Array) -> float:
         """Largest |eigenvalue| [1/s] of the rates at points and at rest beside them."""
-        points, inputs = np.column_stack([x, self.start(p)[0].ravel()]), np.column_stack([u, u[:, :1]])
+        points, inputs = (
+            np.column_stack([x, self.start(p)[0].ravel()]),
+            np.column_stack([u, u[:, :1]]),
+        )
         slopes = self.dense("rates", self.at("rates", points, inputs, p))[0]
         slopes = slopes[np.isfinite(slopes).all(axis=(1, 2))]
         return float(np.abs(np.linalg.eigvals(slopes)).max(initial=0.0))

@@ -17,9 +17,11 @@ from motionfmu.identify.plant_rates import PlantRates
 
 Array = NDArray[np.float64]
 # Newton's steps; the motion is found when they are so small, as a share of the largest value.
-_STEPS, _SMALL = 40, 1e-10
+_STEPS, _SMALL = 12, 1e-9
 # Singular values below this share of the largest are none.
 _NONE = 1e-9
+# Share of a row by which a matrix is moved off being singular, as in a gap.
+_HAIR = 1e-14
 # Moves of a state that close a gap, in its unit.
 _MOVES = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1)
 
@@ -100,13 +102,14 @@ def follow(
     `plan` is the way, the driving input and the position's output; `values` are those of
     `LoopMotion.run`.
     """
-    along, drive, position = plan
+    along = plan[0]
     sides = (1.0, -1.0) if along.gap.any() else (0.0,)
     found = [_newton(rates, motion, plan, (values, side)) for side in sides]
-    z, rest, slope, moved = found[0]
+    z, _, slope, moved = found[0]
     if len(found) > 1:  # the side of a gap on which the parts touch
         other = found[1]
-        better = np.linalg.norm(other[1], axis=0) < np.linalg.norm(rest, axis=0)
+        lengths = [np.linalg.norm(f[1], axis=0) for f in found]
+        better = np.where(np.isfinite(lengths[0]), lengths[0], np.inf) > lengths[1]
         z = np.where(better, other[0], z)
         slope = np.where(better[:, None, None], other[2], slope)
         moved = np.where(better[:, None, None], other[3], moved)
@@ -139,7 +142,9 @@ def _newton(
         slope[:, :n_x, :n_x], slope[:, :n_x, n_x] = f_x, f_u[:, :, drive]
         slope[:, n_x, :n_x], slope[:, n_x, n_x] = h_x[:, position], h_u[:, position, drive]
         for k in np.flatnonzero(~slope.any(axis=(0, 2))):
-            slope[:, k, k] = 1.0  # a state that nothing moves, as that of a lag that is switched off
+            slope[:, k, k] = (
+                1.0  # a state that nothing moves, as that of a lag that is switched off
+            )
         rest = np.vstack([found[0] - wanted, shown[0][position : position + 1] - s])
         change = _solved(slope, rest.T[:, :, None])[:, :, 0].T
         sizes = np.maximum(sizes, np.abs(z).max(axis=1))
@@ -151,11 +156,9 @@ def _newton(
 
 
 def _solved(matrices: Array, right: Array) -> Array:
-    """Solutions of many systems; the shortest one where a system has no single one."""
-    try:
-        return np.linalg.solve(matrices, right)
-    except np.linalg.LinAlgError:
-        return np.asarray(np.linalg.pinv(matrices) @ right)
+    """Solutions of many systems; of a system that has no single one a long one, not an error."""
+    size = np.abs(matrices).max(axis=2)[:, :, None]
+    return np.linalg.solve(matrices + _HAIR * size * np.eye(matrices.shape[1]), right)
 
 
 def smooth(values: Sequence[Array], interval: float, cutoff: float) -> list[Array]:

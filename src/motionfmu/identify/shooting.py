@@ -29,6 +29,8 @@ _START = 0.1
 # The sizes of residuals count as found when they change by less than this share.
 _SIZES, _ROUNDS = 0.05, 4
 _TINY = 1e-12
+# A slope above this is that of a motion that runs away.
+_AWAY = 1e100
 # Eigenvalues of the scaled information matrix below this share of the largest are none.
 _NONE = 1e-13
 
@@ -64,6 +66,12 @@ class Linear:
     follow: Array  # (pieces, n_z, n_all) how they move with the unknowns
     slopes: Array  # (samples, n_compared, n_all) of the outputs to the unknowns
     shifted: Array  # (samples, n_compared) rest less what the gaps make of it
+
+    @property
+    def sound(self) -> bool:
+        """Whether nothing in it runs away."""
+        most = np.abs(self.slopes).max(initial=0.0)
+        return bool(most < _AWAY and np.isfinite(self.rest).all() and np.isfinite(most))
 
 
 @dataclass(frozen=True)

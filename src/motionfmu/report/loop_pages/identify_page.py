@@ -12,6 +12,7 @@ from motionfmu.identify.record_run import RecordRun
 from motionfmu.report.diagram import (
     Diagram,
     LineMark,
+    Mark,
     PointMark,
     SamplesMark,
     Scale,
@@ -46,14 +47,14 @@ def identify_page(found: Identified, run: RecordRun | None) -> str:
         page.section("To be known", "", "".join(f"<p>{escape(n)}</p>" for n in found.notes))
     if run is not None:
         note = (
-            f"Both from the beginning; figures from {run.settled:g} s on, because FMUs begin at rest"
-            " and where the command is."
+            f"Both from the beginning; figures from {run.settled:g} s on, because FMUs begin at"
+            " rest and where the command is."
         )
         page.section("The FMUs laid over the record", note, _laid_over(page, found, run))
     if len(found.curve.speed):
         note = (
-            "Drive at uniform motion, by inverse dynamics: means of the record over ranges of speed,"
-            " and the law found."
+            "Drive at uniform motion, by inverse dynamics: means of the record over ranges of"
+            " speed, and the law found."
         )
         page.section("Friction", note, page.place("friction", _friction(found)))
     if found.tried:
@@ -105,9 +106,7 @@ def _pair(title: str, of: str, time: Array, pair: tuple[Array, Array]) -> Diagra
     factor = 1e3 * factor if of == "m" else factor
     curves = [
         SamplesMark(Samples(time, values * factor), label, color, _WIDTH)
-        for values, label, color in zip(
-            pair, ("record", "FMUs"), (RECORD, FOUND), strict=True
-        )
+        for values, label, color in zip(pair, ("record", "FMUs"), (RECORD, FOUND), strict=True)
     ]
     ends = ends_of([c.samples.values for c in curves])
     return one(Scale("Time", "s"), Scale(title, name, ends), curves, _HEIGHT)
@@ -140,7 +139,7 @@ def _friction(found: Identified) -> Diagram:
         f"{v:.4g} {name}: {d:.4g} ± {s:.2g}"
         for v, d, s in zip(speed, curve.drive, curve.scatter, strict=True)
     ]
-    marks = [
+    marks: list[Mark] = [
         PointMark(speed, curve.drive, "record", RECORD, size=7.0, hover=hover),
         LineMark(
             np.insert(speed, np.searchsorted(speed, 0.0), np.nan),
