@@ -9,15 +9,6 @@ if TYPE_CHECKING:
     from motionfmu.identify.record_run import RecordRun, run_of_record
     from motionfmu.identify.recorded_loop import ColumnUse
 
-_PLACES = {
-    "AxisRecord": "axis_record",
-    "ColumnUse": "recorded_loop",
-    "Identified": "identification",
-    "IdentifyOptions": "ground",
-    "RecordRun": "record_run",
-    "identify": "identification",
-    "run_of_record": "record_run",
-}
 __all__ = [
     "AxisRecord",
     "ColumnUse",
@@ -33,12 +24,13 @@ def __getattr__(name: str) -> Any:
     """Import what identifies when it is first used, as it needs the extra `tune`."""
     if name not in __all__:
         raise AttributeError(f"module 'motionfmu.identify' has no attribute {name!r}")
-    from importlib import import_module
-
     from motionfmu.base.extras import needed
 
     needed("tune")
-    return getattr(import_module(f"motionfmu.identify.{_PLACES[name]}"), name)
+    from motionfmu.identify import axis_record, ground, identification, record_run, recorded_loop
+
+    places = (axis_record, ground, identification, record_run, recorded_loop)
+    return next(getattr(place, name) for place in places if hasattr(place, name))
 
 
 def __dir__() -> list[str]:

@@ -74,6 +74,7 @@ class AxisLoop:
         return self.scenario.document.body.component[self.component]
 
 
+# CCN 21: most of it sorts ports and wires into what is driven, fed and shown, by comprehensions.
 def axis_loop(
     scenario: Scenario,
     axis: int,
@@ -85,34 +86,23 @@ def axis_loop(
     made = parts(scenario, axis, {}, set_, None)
     component, ode = _plant(scenario, made, driven, compared)
     blocks = {c: b for c, b in made.blocks.items() if isinstance(b, Sampled)}
-    every = {*(_known(scenario, made, n, "input") for n in driven)}
-    wires = {t: s for t, s in made.wires().items() if t not in every}
-    seen: list[Port] = [_port(n) for n in driven]
+    seen = [_known(scenario, made, n, "input") for n in driven]
+    for n in compared:
+        _known(scenario, made, n, "output")
+    wires = {t: s for t, s in made.wires().items() if t not in seen}
     feeds = {t: s for t, s in wires.items() if t[0] in blocks and s[0] == component}
     fed = list(dict.fromkeys(s[1] for s in feeds.values()))
     inputs = [d.name for d in ode.inputs]
-    ends: dict[int, Port] = {}  # of the plant's inputs: where each comes from
-    for t, s in wires.items():
-        if t[0] == component:
-            ends[inputs.index(t[1])] = s
-    for port in seen:
-        if port[0] == component:
-            ends[inputs.index(port[1])] = port
+    ends = _ends(component, inputs, wires, seen)
     shown = [n for n in compared if _port(n)[0] != component]
-    for n in compared:
-        _known(scenario, made, n, "output")
+    inner = {t: s for t, s in wires.items() if t[0] in blocks and s[0] in blocks}
     laws = _laws(
-        (blocks, {t: s for t, s in wires.items() if t[0] in blocks and s[0] in blocks}),
+        (blocks, inner),
         made.system.step_ns,
         (seen, fed, feeds, component),
-        ({k: ends[k] for k in sorted(ends)}, len(inputs), [_port(n) for n in shown]),
+        (ends, len(inputs), [_port(n) for n in shown]),
     )
     own = made.values[component]
-    grain = {}
-    for c, b in blocks.items():
-        for name, size in b.grain.items():
-            source = feeds.get((c, name))
-            grain[f"{component}.{source[1]}" if source else f"{c}.{name}"] = size
     return AxisLoop(
         scenario=scenario,
         axis=axis,
@@ -123,12 +113,30 @@ def axis_loop(
         fed=tuple(fed),
         shown=tuple(shown),
         laws=laws,
-        wired=tuple(sorted(ends)),
+        wired=tuple(ends),
         p=np.array([float(own[d.name]) for d in ode.parameters]),
-        u=np.array([0.0 if k in ends else float(own[d.name]) for k, d in enumerate(ode.inputs)]),
+        u=np.array([0.0 if k in ends else float(own[n]) for k, n in enumerate(inputs)]),
         values=made.values,
-        grain=grain,
+        grain=_grains(blocks, feeds),
     )
+
+
+def _ends(
+    plant: str, inputs: Sequence[str], wires: Mapping[Port, Port], driven: Sequence[Port]
+) -> dict[int, Port]:
+    """Where each input of the plant comes from, by its place: a law, the plant, or the record."""
+    found = {inputs.index(t[1]): s for t, s in wires.items() if t[0] == plant}
+    found |= {inputs.index(port[1]): port for port in driven if port[0] == plant}
+    return {k: found[k] for k in sorted(found)}
+
+
+def _grains(blocks: Mapping[str, Sampled], feeds: Mapping[Port, Port]) -> dict[str, float]:
+    """Rounding steps of what the laws read, under the name of its source."""
+    return {
+        ".".join(feeds.get((c, name), (c, name))): size
+        for c, b in blocks.items()
+        for name, size in b.grain.items()
+    }
 
 
 def _port(name: str) -> Port:
@@ -178,6 +186,7 @@ def _known(scenario: Scenario, made: Parts, name: str, kind: str) -> Port:
     return c, variable
 
 
+# CCN 23: one matrix row for each of memory, plant inputs and what is shown, in one order.
 def _laws(
     net: tuple[Mapping[str, Sampled], Mapping[Port, Port]],
     step_ns: int,

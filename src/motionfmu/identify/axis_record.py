@@ -68,6 +68,7 @@ class AxisRecord:
         return float((self.time[-1] - self.time[0]) / (len(self.time) - 1))
 
 
+# CCN 19: each thing that may be wrong in a line has its own message.
 def read_csv(path: Path) -> AxisRecord:
     """Read commas under one line of names with units in brackets; the column of seconds is time."""
     try:

@@ -87,6 +87,8 @@ def controller_check(
             break
         left = rest - slopes @ step
         spread = np.linalg.inv(slopes.T @ slopes) * np.mean(left**2)
+        if (factors + step <= 0.0).any():  # a record that tells nothing of the gains
+            break
         factors, deviations = factors + step, np.sqrt(np.diag(spread))
         fitted = float(np.linalg.norm(rows - at(factors))) / whole
         if np.abs(step).max() < _NUDGE:

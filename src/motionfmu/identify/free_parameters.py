@@ -92,6 +92,7 @@ class FreeParameters:
         return found | {n: float(u[inputs.index(n)]) for n in self.names if n in inputs}
 
 
+# CCN 21: a parameter, an input, and what follows either, in the order of the names.
 def free_parameters(
     ode: Ode,
     names: Sequence[str],

@@ -13,23 +13,13 @@ _BINS, _FEWEST = 24, 4
 
 @dataclass(frozen=True)
 class FrictionCurve:
-    """Drive less what accelerates the axis, over speed; bins of each direction.
+    """Drive less what accelerates the axis, over speed; bins of each direction."""
 
-    Attributes
-    ----------
-    speed, drive, scatter : arrays of shape (n,)
-        Mean speed of a bin, mean drive and its standard deviation there.
-    law : array of shape (n,)
-        What the law found gives at these speeds.
-    units : tuple of str
-        Of speed and drive.
-    """
-
-    speed: Array
-    drive: Array
-    scatter: Array
-    law: Array
-    units: tuple[str, str]
+    speed: Array  # (n,) mean of a bin
+    drive: Array  # (n,) mean
+    scatter: Array  # (n,) standard deviation of the drive
+    law: Array  # (n,) what the law found gives there
+    units: tuple[str, str]  # of speed and drive
 
 
 def friction_curve(speed: Array, drive: Array, law: Array, units: tuple[str, str]) -> FrictionCurve:

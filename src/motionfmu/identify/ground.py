@@ -20,7 +20,7 @@ from motionfmu.identify.free_parameters import (
     free_parameters,
     movable,
 )
-from motionfmu.identify.loop_motion import LoopMotion, Pieces, Start
+from motionfmu.identify.loop_motion import LoopMotion, Pieces, PieceStart
 from motionfmu.identify.plant_rates import PlantRates
 from motionfmu.identify.recorded_loop import ColumnUse, RecordedLoop, ratio_of_inputs, recorded
 from motionfmu.identify.rigid_motion import Followed, Way
@@ -159,7 +159,7 @@ class Ground:
 
     def shooting(
         self, free: FreeParameters, span: tuple[int, int], values: Array
-    ) -> tuple[Shooting, Start]:
+    ) -> tuple[Shooting, PieceStart]:
         """The problem of a span of samples, and starts of its pieces that follow the record."""
         stretch, starts = self.stretch(*span)
         some = np.linspace(0, self.data.samples - 1, _LOOKS * 5).astype(np.int64)
@@ -168,9 +168,10 @@ class Ground:
         ranges = np.concatenate([np.ptp(x, axis=1), np.ptp(self.memory, axis=0)])
         bounds = free.low, free.high
         problem = Shooting(self.motion, stretch, free.values, bounds, ranges)
-        return problem, Start(x[:, : len(starts)].T.copy(), w.copy())
+        return problem, PieceStart(x[:, : len(starts)].T.copy(), w.copy())
 
 
+# CCN 22: one record's way from its columns to what all fits share, each part made of the last.
 def ground(
     scenario: Scenario,
     record: AxisRecord,
@@ -276,6 +277,7 @@ def _way(loop: AxisLoop, rates: PlantRates, of: tuple[int, int], speed: float) -
     return rigid_motion.way(rates, drive, position, (moving, loop.u, loop.p))
 
 
+# CCN 19: candidates are tried in turn until one moves freely.
 def _ratios(loop: AxisLoop, drive: int) -> dict[str, float]:
     """Signals per metre, or per radian, of the axis in a slow motion."""
     real = [d.name for d in loop.ode.outputs if d.type == "Real"]

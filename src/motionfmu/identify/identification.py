@@ -128,7 +128,7 @@ class Identified:
 
     @property
     def residuals(self) -> dict[str, float]:
-        """Share of a fit's residual that white noise would not have, by signal.
+        """How far residuals are from white noise, by signal.
 
         The share of the first autocorrelations beyond what 95 % of those of white noise are: 0.05
         for white noise, 1 where a law is missing.
@@ -146,7 +146,22 @@ class Identified:
         return found
 
     def value(self, name: str) -> Parameter:
-        """The quantity of a name, ``component.variable`` or the variable alone."""
+        """One quantity.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``, or the variable alone.
+
+        Returns
+        -------
+        Parameter
+
+        Raises
+        ------
+        KeyError
+            There is none of this name.
+        """
         for p in self.parameters:
             if name in (p.name, p.name.partition(".")[2]):
                 return p

@@ -14,7 +14,7 @@ from motionfmu.identify.recorded_loop import ColumnUse
 FILE = "identify.toml"
 
 
-class _Column(BaseModel):
+class _UseTable(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
     signal: str
     scale: float | None = None
@@ -23,7 +23,7 @@ class _Column(BaseModel):
 
 class _Asked(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
-    columns: dict[str, str | _Column] = Field(default_factory=dict)
+    columns: dict[str, str | _UseTable] = Field(default_factory=dict)
     axis: int = Field(default=1, ge=1)
     free: list[str] | None = None
     fix: list[str] = Field(default_factory=list)

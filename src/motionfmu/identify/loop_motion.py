@@ -20,7 +20,7 @@ from motionfmu.identify.axis_loop import AxisLoop
 from motionfmu.identify.plant_rates import Places, PlantRates
 
 Array = NDArray[np.float64]
-_LOOP = Path(__file__).with_name("shooting_loop.c")
+_LOOP = Path(__file__).parent / "native" / "shooting_loop.c"
 _FAST = "-O3"
 # Cycles after which the laws have taken in where they begin.
 _REST = 3
@@ -46,7 +46,7 @@ class Pieces:
 
 
 @dataclass(frozen=True)
-class Start:
+class PieceStart:
     """State of all pieces at their beginning or end."""
 
     x: Array  # (pieces, n_x) of the plant
@@ -57,7 +57,7 @@ class Start:
 class Moved:
     """What a motion gave."""
 
-    end: Start
+    end: PieceStart
     ends: Array  # (pieces, n_x + n_w, directions): derivatives of the ends, x then w
     y: Array  # (samples, n_y + n_shown): outputs of the plant, then of the laws
     slopes: Array  # (samples, n_y + n_shown, directions)
@@ -85,7 +85,11 @@ class LoopMotion:
         return self.rates.width[0] + len(self.loop.laws.memory)
 
     def run(
-        self, start: Start, pieces: Pieces, driven: Array, values: tuple[Array, Array, Array, Array]
+        self,
+        start: PieceStart,
+        pieces: Pieces,
+        driven: Array,
+        values: tuple[Array, Array, Array, Array],
     ) -> Moved:
         """Move all pieces.
 
@@ -115,7 +119,7 @@ class LoopMotion:
                 w[0] = laws.keep[j] @ w[0] + laws.read[j] @ seen[0]
         if self._library is not None and n_w:
             nothing = np.zeros((0, 0))
-            axis = _Axis(self, (self.loop.p, self.loop.u, nothing, nothing))
+            axis = _LoopAxis(self, (self.loop.p, self.loop.u, nothing, nothing))
             axis.directions = axis.first = 0
             given = np.ascontiguousarray(seen)
             self._library.loop_laws(
@@ -128,23 +132,27 @@ class LoopMotion:
             w[k + 1] = laws.keep[j] @ w[k] + laws.read[j] @ v
         return w, shown
 
-    def _nothing(self, start: Start, pieces: Pieces, values: tuple[Array, ...]) -> Moved:
+    def _nothing(self, start: PieceStart, pieces: Pieces, values: tuple[Array, ...]) -> Moved:
         """A motion that is no number."""
         directions = self.width + values[2].shape[1]
         shown = self.rates.width[4] + len(self.loop.shown)
         rows = int(pieces.samples.sum())
         return Moved(
-            Start(np.full_like(start.x, np.nan), np.full_like(start.w, np.nan)),
+            PieceStart(np.full_like(start.x, np.nan), np.full_like(start.w, np.nan)),
             np.full((len(start.x), self.width, directions), np.nan),
             np.full((rows, shown), np.nan),
             np.full((rows, shown, directions), np.nan),
         )
 
     def _compiled(
-        self, start: Start, pieces: Pieces, driven: Array, values: tuple[Array, Array, Array, Array]
+        self,
+        start: PieceStart,
+        pieces: Pieces,
+        driven: Array,
+        values: tuple[Array, Array, Array, Array],
     ) -> Moved:
         assert self._library is not None
-        axis = _Axis(self, values)
+        axis = _LoopAxis(self, values)
         n, count = axis.directions, len(pieces.begin)
         x, w = start.x.copy(), start.w.copy()
         n_x, n_w = x.shape[1], w.shape[1]
@@ -169,10 +177,14 @@ class LoopMotion:
             own,
             _pointer(room),
         )
-        return Moved(Start(x, w), np.concatenate([s_x, s_w], axis=1), y, s_y)
+        return Moved(PieceStart(x, w), np.concatenate([s_x, s_w], axis=1), y, s_y)
 
     def _mapped(
-        self, start: Start, pieces: Pieces, driven: Array, values: tuple[Array, Array, Array, Array]
+        self,
+        start: PieceStart,
+        pieces: Pieces,
+        driven: Array,
+        values: tuple[Array, Array, Array, Array],
     ) -> Moved:
         p, u0, dp, du = values
         loop, laws = self.loop, self.loop.laws
@@ -224,7 +236,7 @@ class LoopMotion:
             done = np.flatnonzero(pieces.length == k + 1)
             last_x[:, done], last_w[:, done] = x[:, done], w[:, done]
             ends[done], slopes[done] = s_x[done], s_w[done]
-        return Moved(Start(last_x.T, last_w.T), np.concatenate([ends, slopes], axis=1), y, s_y)
+        return Moved(PieceStart(last_x.T, last_w.T), np.concatenate([ends, slopes], axis=1), y, s_y)
 
     def _step(
         self, of: tuple[Array, Array], u: tuple[Array, Array], p: tuple[Array, Array], h: float
@@ -302,7 +314,7 @@ _ARRAYS = ("p", "u", "dp", "du", "fed")
 _LAWS = ("keep", "read", "take", "through", "show", "direct")
 
 
-class _Axis(ctypes.Structure):
+class _LoopAxis(ctypes.Structure):
     """``struct axis`` of shooting_loop.c, of one loop and its values."""
 
     _fields_ = [

@@ -19,11 +19,21 @@ _WHOLE = 1e-3
 
 @dataclass(frozen=True)
 class ColumnUse:
-    """What a column is in the scenario; without a scale units say how it is converted."""
+    """What a column of a record is in the scenario.
 
-    signal: str  # component.variable: an input that it drives, or an output it is compared with
-    scale: float | None = None  # of the signal's unit per unit of the column
-    offset: float = 0.0  # in the signal's unit
+    Parameters
+    ----------
+    signal : str
+        ``component.variable``: an input that the column drives, or an output to compare.
+    scale : float, optional
+        Of the signal's unit per unit of the column; units say it if it is not given.
+    offset : float
+        Added, in the signal's unit.
+    """
+
+    signal: str
+    scale: float | None = None
+    offset: float = 0.0
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.identify.loop_motion import LoopMotion, Moved, Pieces, Start
+from motionfmu.identify.loop_motion import LoopMotion, Moved, Pieces, PieceStart
 
 Array = NDArray[np.float64]
 # Most steps of Gauss-Newton, and the least share of one.
@@ -52,7 +52,7 @@ class Guess:
     """Values of the free quantities, and the starts of all pieces."""
 
     free: Array  # (n_free,)
-    start: Start
+    start: PieceStart
 
 
 @dataclass(frozen=True)
@@ -228,4 +228,4 @@ class Shooting:
         n = guess.start.x.shape[1]
         x, w = guess.start.x + share * starts[:, :n], guess.start.w + share * starts[:, n:]
         free = guess.free + share * change[len(change) - len(guess.free) :]
-        return replace(guess, free=np.clip(free, *self.bounds), start=Start(x, w))
+        return replace(guess, free=np.clip(free, *self.bounds), start=PieceStart(x, w))

@@ -37,14 +37,14 @@ struct axis {
 
 /* Room for the work of one piece. */
 struct room {
-    double *u, *s_u;         /* plant inputs and their derivatives */
-    double *v, *s_v;         /* what the laws see */
-    double *y, *s_y;         /* outputs of the plant */
-    double *k, *s_k;         /* four rates and their derivatives */
-    double *at, *s_at;       /* where a rate is taken */
-    double *next, *s_next;   /* W a communication step later */
-    double *elements[3];     /* of the derivatives of the plant */
-    double *casadi;          /* CasADi's own */
+    double *u, *s_u;       /* plant inputs and their derivatives */
+    double *v, *s_v;       /* what the laws see */
+    double *y, *s_y;       /* outputs of the plant */
+    double *k, *s_k;       /* four rates and their derivatives */
+    double *at, *s_at;     /* where a rate is taken */
+    double *next, *s_next; /* W a communication step later */
+    double *elements[3];   /* of the derivatives of the plant */
+    double *casadi;        /* CasADi's own */
 };
 
 /* to += factor from, n long. */
@@ -165,13 +165,15 @@ static long long furnish(const struct axis *a, long long casadi, double *all, st
     for (int k = 0; k < 3; k++) {
         most[k] = a->rates[k].count > a->shows[k].count ? a->rates[k].count : a->shows[k].count;
     }
-    double **parts[16] = { &r->u, &r->s_u, &r->v, &r->s_v, &r->y, &r->s_y, &r->k, &r->s_k,
-                           &r->at, &r->s_at, &r->next, &r->s_next,
+    double **parts[16] = { &r->u,           &r->s_u,         &r->v,           &r->s_v,
+                           &r->y,           &r->s_y,         &r->k,           &r->s_k,
+                           &r->at,          &r->s_at,        &r->next,        &r->s_next,
                            &r->elements[0], &r->elements[1], &r->elements[2], &r->casadi };
     const long long shown = a->n_y + a->n_shown;
-    const long long widths[16] = { a->n_u, a->n_u * n, a->n_v, a->n_v * n, shown, shown * n,
-                                   4 * a->n_x, 4 * a->n_x * n, a->n_x, a->n_x * n,
-                                   a->n_w, a->n_w * n, most[0], most[1], most[2], casadi };
+    const long long widths[16] = { a->n_u,  a->n_u * n, a->n_v,     a->n_v * n,
+                                   shown,   shown * n,  4 * a->n_x, 4 * a->n_x * n,
+                                   a->n_x,  a->n_x * n, a->n_w,     a->n_w * n,
+                                   most[0], most[1],    most[2],    casadi };
     for (int k = 0; k < 16; k++) {
         sizes[k] = widths[k] + 1;
         if (all) {
@@ -190,12 +192,12 @@ __attribute__((visibility("default"))) long long loop_room(const struct axis *a,
 
 /* Pieces of the record: piece i begins at communication point begin[i] and has length[i] steps. x,
  * w and their derivatives are the starts and become the ends. Every `every`th point of a piece from
- * its first on is a sample: outputs of the plant there, and those of the laws `late` steps later, go
+ * its first on is a sample: outputs of the plant there, of the laws `late` steps later, go
  * to y and s_y, one piece behind the other. */
 __attribute__((visibility("default"))) void
 loop_run(const struct axis *a, long long pieces, const long long *begin, const long long *length,
-         long long every, long long late, const double *driven, double *x, double *s_x, double *w, double *s_w,
-         double *y, double *s_y, long long casadi, double *all)
+         long long every, long long late, const double *driven, double *x, double *s_x, double *w,
+         double *s_w, double *y, double *s_y, long long casadi, double *all)
 {
     struct room r;
     furnish(a, casadi, all, &r);
@@ -229,15 +231,16 @@ loop_run(const struct axis *a, long long pieces, const long long *begin, const l
 }
 
 /* The laws alone along a record of what they see: their memory and what they show at all points. */
-__attribute__((visibility("default"))) void
-loop_laws(const struct axis *a, long long points, const double *seen, double *w, double *shown)
+__attribute__((visibility("default"))) void loop_laws(const struct axis *a, long long points,
+                                                      const double *seen, double *w, double *shown)
 {
     for (long long k = 0; k < points; k++, w += a->n_w, seen += a->n_v, shown += a->n_shown) {
         const long long j = k % a->cycle;
         memset(shown, 0, (size_t)a->n_shown * sizeof *w);
         memset(w + a->n_w, 0, (size_t)a->n_w * sizeof *w);
         product(a, a->show + j * a->n_shown * a->n_w, a->n_shown, a->n_w, w, NULL, shown, NULL);
-        product(a, a->direct + j * a->n_shown * a->n_v, a->n_shown, a->n_v, seen, NULL, shown, NULL);
+        product(a, a->direct + j * a->n_shown * a->n_v, a->n_shown, a->n_v, seen, NULL, shown,
+                NULL);
         product(a, a->keep + j * a->n_w * a->n_w, a->n_w, a->n_w, w, NULL, w + a->n_w, NULL);
         product(a, a->read + j * a->n_w * a->n_v, a->n_w, a->n_v, seen, NULL, w + a->n_w, NULL);
     }
