@@ -39,10 +39,13 @@ static struct drive_config config(const struct vars *v, int i)
     };
 }
 
-static void publish(struct vars *v, const struct model *m)
+/* Show the outputs of the latest sample: of all channels, or of those that are prompt. */
+static void publish(struct vars *v, const struct model *m, bool all)
 {
     for (int i = 0; i < CHANNELS; i++) {
         const struct drive_output *o = &m->next[i];
+        if (!all && !v->prompt[i])
+            continue;
         v->torque[i] = o->torque;
         v->speed[i] = o->speed;
         v->speed_command[i] = o->speed_command;
@@ -61,7 +64,7 @@ static int model_start(struct fmu *f)
     if (!fmu_is_period(ticks))
         return fmu_fail(f, "period = %.17g s: not a whole number of %d ns", v->period, FMU_TICK_NS);
     *m = (struct model){ .period = (int64_t)round(ticks) * FMU_TICK_NS };
-    publish(v, m);
+    publish(v, m, true);
     return 0;
 }
 
@@ -92,17 +95,18 @@ static int sample(struct fmu *f)
 }
 
 /* Inputs are read at the instants in [t0, t1); the outputs show the result from the next instant
- * on. */
+ * on, those of a prompt channel from t1 on. */
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
     for (; m->instant < t1; m->instant += m->period) {
         if (m->instant > t0)
-            publish(&f->s.v, m);
+            publish(&f->s.v, m, true);
         if (sample(f))
             return -1;
+        publish(&f->s.v, m, false);
     }
     if (m->instant == t1)
-        publish(&f->s.v, m);
+        publish(&f->s.v, m, true);
     return 0;
 }

@@ -26,6 +26,10 @@ model BallScrewAxis
   parameter Real table_stribeck_speed(unit = "m/s", min = 1e-9) = 2e-3
     "Table side: speed at which half of static - coulomb is left";
   parameter Real table_viscous(unit = "N.s/m", min = 0) = 200 "Table side: friction per speed";
+  parameter Real table_coulomb_asymmetry(unit = "1", min = -1, max = 1) = 0
+    "Table side: share of coulomb and static more forwards, less backwards";
+  parameter Real table_viscous_asymmetry(unit = "1", min = -1, max = 1) = 0
+    "Table side: share of viscous more forwards, less backwards";
   parameter Real table_rest_speed(unit = "m/s", min = 1e-9) = 2e-5
     "Table side: speed that counts as rest";
   parameter Integer encoder_lines(min = 1) = 2500 "Line periods of the motor encoder per turn";
@@ -61,6 +65,7 @@ protected
     "Compliance of screw, bearings and nut";
   Slide table(mass = table_mass, coulomb = table_coulomb, static = table_static,
     stribeck_speed = table_stribeck_speed, viscous = table_viscous, rest_speed = table_rest_speed,
+    coulomb_asymmetry = table_coulomb_asymmetry, viscous_asymmetry = table_viscous_asymmetry,
     start_position = start_position) "Table";
   LeadError error(slope = lead_error_slope, amplitude = lead_error_amplitude,
     period = lead_error_period) "Error of the screw";

@@ -6,6 +6,10 @@ model Slide "Table on its guide: a mass with friction"
   parameter Real stribeck_speed(unit = "m/s", min = 0) = 1e-3
     "Speed at which half of the excess is left";
   parameter Real viscous(unit = "N.s/m", min = 0) = 0 "Friction per speed";
+  parameter Real coulomb_asymmetry(unit = "1", min = -1, max = 1) = 0
+    "Friction but the viscous one: share more forwards, less backwards";
+  parameter Real viscous_asymmetry(unit = "1", min = -1, max = 1) = 0
+    "Friction per speed: share more forwards, less backwards";
   parameter Real rest_speed(unit = "m/s", min = 0) = 2e-5 "Speed that counts as rest, see friction";
   parameter Real start_position(unit = "m") = 0 "Position at the start";
   input Real load(unit = "N") "Force on the table from outside";
@@ -16,5 +20,6 @@ equation
   flange.s = position;
   der(position) = speed;
   mass*der(speed) = load + flange.f
-    - friction(speed, coulomb, static, stribeck_speed, viscous, rest_speed);
+    - directedFriction(speed, coulomb, static, stribeck_speed, viscous, rest_speed,
+      coulomb_asymmetry, viscous_asymmetry);
 end Slide;

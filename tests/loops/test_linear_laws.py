@@ -24,7 +24,7 @@ STEPS = 60
 def used(said: law.Law) -> set[str]:
     """Variables that any formula names."""
     tables = (said.let, said.state, said.output, said.early, said.direct, said.constant, said.grain)
-    texts = [said.period, said.cycle, *said.refuse, *said.worst]
+    texts = [said.period, said.cycle, said.prompt, *said.refuse, *said.worst]
     texts += [t for table in (*tables, said.speed) for t in table.values()]
     return names_in(texts)
 

@@ -28,6 +28,7 @@ class Law(BaseModel):
     period: str  # sampling period [s]
     cycle: str = "1"  # instants after which the law begins again
     inputs: list[str]  # ports that move
+    prompt: str = "0"  # if it holds, outputs are early ones
     commands: list[str] = Field(default_factory=list)
     let: dict[str, str] = Field(default_factory=dict)
     state: dict[str, str] = Field(default_factory=dict)
@@ -107,12 +108,13 @@ def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None
         raise ValueError(f"cycle: {law.cycle!r} is {count:g}, a whole number is wanted")
     made = [_instant(law, given, (k, round(count))) for k in range(round(count))]
     nothing = _LawNames(law, given, {})
+    late = not number(law, given, law.prompt)
     return Sampled(
         inputs=tuple(law.inputs),
         commands=tuple(law.commands),
         states=tuple(law.state),
-        outputs=tuple(law.output),
-        early=tuple(law.early),
+        outputs=tuple(law.output) if late else (),
+        early=tuple(law.early) if late else (*law.output, *law.early),
         direct=tuple(law.direct),
         grid_ns=nanoseconds(law.period, number(law, given, law.period)),
         laws=tuple(m for m, _ in made),

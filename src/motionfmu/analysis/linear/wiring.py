@@ -107,7 +107,7 @@ def period_map(net: Net, entries: list[Port], exits: list[Port]) -> PeriodMap:
         injected[entry] = injected.get(entry, 0.0) + row
     first = None
     for start in range(0, period, net.step_ns):
-        fed, shows = _exchange(net, work, queue, injected)
+        fed, shows = exchange(net, work, queue, injected)
         first = first if first is not None else np.vstack([shows[port] for port in exits])
         for component, block in net.blocks.items():
             span = start, start + net.step_ns
@@ -140,7 +140,7 @@ def _kind(net: Net) -> np.dtype[Any]:
     return np.result_type(float, *laws)
 
 
-def _exchange(
+def exchange(
     net: Net, work: dict[str, Matrix], queue: dict[Port, list[Matrix]], injected: dict[Port, Matrix]
 ) -> tuple[dict[str, Matrix], dict[Port, Matrix]]:
     """Inputs of all blocks and values of all ports at a communication point."""

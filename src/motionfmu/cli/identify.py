@@ -1,0 +1,135 @@
+"""The console command that identifies an axis from a record."""
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from motionfmu.base.extras import needed
+from motionfmu.cli.common import (
+    FAILED,
+    Folder,
+    OnMachine,
+    ScenarioPath,
+    Set,
+    app,
+    bare_table,
+    loaded,
+    out,
+    progress_bar,
+    report,
+    results,
+    settings,
+)
+
+if TYPE_CHECKING:
+    from motionfmu.identify import AxisRecord, Identified, IdentifyOptions, RecordRun
+    from motionfmu.run import Scenario
+
+
+@app.command()
+def identify(  # noqa: PLR0913  (each is an option of the command)
+    path: ScenarioPath,
+    record: Annotated[Path, typer.Option(help="CSV: time [s] and columns with units.")],
+    machine: OnMachine = None,
+    axis: Annotated[int | None, typer.Option(help="Axis of the scenario, from 1.")] = None,
+    column: Annotated[
+        list[str],
+        typer.Option(
+            metavar="COLUMN=COMP.VAR[*SCALE]",
+            help="What a column is: an input that it drives, an output it is compared with.",
+        ),
+    ] = [],  # noqa: B006
+    free: Annotated[
+        list[str],
+        typer.Option(metavar="NAME", help="What is free, instead of what the plant says."),
+    ] = [],  # noqa: B006
+    fix: Annotated[
+        list[str], typer.Option(metavar="NAME", help="What stays as the scenario has it.")
+    ] = [],  # noqa: B006
+    law: Annotated[
+        list[str],
+        typer.Option(metavar="NAME", help="Extend friction so, not as validation chooses."),
+    ] = [],  # noqa: B006
+    file: Annotated[
+        Path | None, typer.Option("--problem", help="Options; else identify.toml beside the PATH.")
+    ] = None,
+    as_given: Annotated[
+        bool, typer.Option("--controller-as-given", help="Take no gains from the record.")
+    ] = False,
+    set_: Set = [],  # noqa: B006
+    folder: Folder = None,
+) -> None:
+    """Find an axis' mass and friction from a record; write found.toml and a report."""
+    needed("tune")
+    from motionfmu.identify import axis_record, identify_file
+    from motionfmu.report import result_folder
+
+    scenario = loaded(path, machine)
+    beside = (scenario.document.file if machine is None else path).parent / identify_file.FILE
+    place = file or (beside if beside.is_file() else None)
+    tables = identify_file.read(place) if place else {}
+    if column:
+        tables["columns"] = {**tables.get("columns", {}), **dict(map(identify_file.column, column))}
+    tables |= {"axis": axis} if axis is not None else {}
+    tables |= {k: v for k, v in (("free", free), ("fix", fix), ("laws", law)) if v}
+    tables |= {"controller": False} if as_given else {}
+    options = identify_file.options(tables, str(place or "--column"))
+    measured = axis_record.read_csv(record)
+    target = result_folder.usable(folder or results(scenario.name, "identify"))
+    found, run = _identify(scenario, measured, options, settings(set_))
+    _write(target, found, run)
+    _tell(found, run)
+    print(f"values: {target / 'found.toml'}")
+    report(target / "report.html")
+    if not any(p.told for p in found.parameters):
+        raise typer.Exit(FAILED)
+
+
+def _identify(
+    scenario: "Scenario", record: "AxisRecord", options: "IdentifyOptions", given: dict[str, Any]
+) -> "tuple[Identified, RecordRun | None]":
+    """Identify and run, with a progress bar, which shows on a terminal only."""
+    from motionfmu.identify import identify, run_of_record
+
+    with progress_bar() as bar:
+        task = bar.add_task(scenario.name, total=1.0)
+
+        def show(what: str, share: float) -> None:
+            bar.update(task, description=f"{scenario.name}: {what}", completed=share)
+
+        found = identify(scenario, record, options, given, show)
+        show("the FMUs", 0.9)
+        run = run_of_record(found) if found.ground.loop.driven else None
+        return found, run
+
+
+def _write(target: Path, found: "Identified", run: "RecordRun | None") -> None:
+    from motionfmu.identify.found_values import found_numbers, found_toml
+    from motionfmu.report import result_folder
+    from motionfmu.report.loop_pages.identify_page import identify_page
+
+    with result_folder.whole(target) as part:
+        (part / "report.html").write_text(identify_page(found, run), encoding="utf-8")
+        (part / "found.toml").write_text(found_toml(found), encoding="utf-8")
+        text = json.dumps(found_numbers(found, run), indent=1, allow_nan=False)
+        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
+
+
+def _tell(found: "Identified", run: "RecordRun | None") -> None:
+    from motionfmu.identify.found_values import value_text
+
+    table = bare_table("quantity", "before", "found", "unit")
+    for p in found.parameters:
+        shown = value_text(p) if p.told else f"cannot be told: {p.why}"
+        table.add_row(p.name, f"{p.before:.6g}", shown, p.unit)
+    out.print(table)
+    for note in found.notes:
+        out.print(note, markup=False, soft_wrap=True)
+    words = ", ".join(found.laws) or "none"
+    print(f"extensions of the friction law: {words}")
+    if run is None:
+        return
+    for name, share in run.differences.items():
+        print(f"FMUs beside the record from {run.settled:g} s on: {name} {100 * share:.3g} %")
