@@ -41,6 +41,8 @@ _PIECE, _FEWEST = 0.1, 20
 _LOOKS = 40
 # Share of the largest speed at which the directions of a motion are taken.
 _PART = 0.3
+# An axis that moves by no more than so many grains, or deviations of the noise, stands still.
+_STILL = 30.0
 # A residual that rounding to a grain leaves.
 _ROUNDED = 1.0 / np.sqrt(12.0)
 # Share of a signal's range that a residual is not below, for a record that is exact.
@@ -245,7 +247,7 @@ def ground(
         late=check.lag if check else 0,
         ratios=ratios,
         gains_taken=bool(check and check.taken and options.controller),
-        still=bool(np.ptp(smooth[0]) <= 4.0 * grain),
+        still=bool(np.ptp(smooth[0]) <= _STILL * max(grain, float(np.std(raw - smooth[0])))),
     )
 
 

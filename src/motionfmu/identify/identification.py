@@ -3,7 +3,7 @@
 import math
 import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 # A quantity whose standard deviation is above this share of itself cannot be told by the record;
 # one that makes less than the second share of the drive counts as that.
 _UNTOLD, _LITTLE = 0.3, 0.05
+# From here on it says nothing of it.
+_BLANK = 0.9
+_NEVER = 1e-100
 # A law must explain what was kept back so much better to be taken.
 _WORTH = 0.98
 # Steps of least squares for start values.
@@ -208,27 +211,31 @@ def identify(
     given = dict(set or {})
     progress("controller and start values", 0.0)
     own = ground(scenario, record, options, (given, {}))
-    names, why = _told(own, _names(own, options))
+    laws = tuple(options.laws or ())
+    wanted = _names(own, options)
+    told, why = _told(own, _extended(own, wanted, laws, options))
+    names = [n for n in wanted if n in told]
+    asked = replace(options, fix=(*options.fix, *why))
     marks.append(clock.perf_counter())
     tried: list[Validation] = []
-    chosen, laws = None, tuple(options.laws or ())
+    chosen = None
     if names:
-        chosen = _validated(own, (names, laws), options, None)
+        chosen = _validated(own, (names, laws), asked, None)
         tried.append(chosen)
         for other in _others(scenario, own, given):
             progress("drive", 0.2)
             there = ground(scenario, record, options, (given, other))
-            look = _validated(there, (names, laws), options, tried[0])
+            look = _validated(there, (names, laws), asked, tried[0])
             tried.append(look)
             if look.score < _WORTH * chosen.score:
                 own, chosen = there, look
-        if options.laws is None:
-            chosen = _law(own, (names, options), (tried, chosen), progress)
+        if options.laws is None and not why:  # else an extension would stand for what is untold
+            chosen = _law(own, (names, asked), (tried, chosen), progress)
             laws = chosen.laws
     marks.append(clock.perf_counter())
     progress("all of the record", 0.7)
     span = own.first, own.data.samples - 1
-    free, fitted, known, more = _fitted(own, _extended(own, names, laws, options), span)
+    free, fitted, known, more = _fitted(own, _extended(own, names, laws, asked), span)
     marks.append(clock.perf_counter())
     parts = np.diff(marks).tolist()
     measured, simulated = _stretch_signals(own, fitted, span)
@@ -318,53 +325,52 @@ def _start(own: Ground, free: FreeParameters) -> tuple[Array, Array]:
 
 
 def _sizes(own: Ground, free: FreeParameters, values: Array) -> Array:
-    """What counts as the size of each quantity: itself, and at least a little of the drive."""
+    """What counts as the size of each quantity: itself, or what the scenario believes of it.
+
+    Where that is 0, what makes a little of the drive, but no more than its limit.
+    """
+    sizes = np.maximum(np.abs(values), np.abs(free.start))
     if not len(values) or not len(own.points):
-        return np.abs(values)
+        return np.maximum(sizes, _NEVER)
     slopes = own.follow(free, values, own.points).slopes
     drive = float(np.sqrt(np.mean(own.force[own.points] ** 2)))
-    share = np.sqrt(np.mean(slopes**2, axis=0))
-    little = np.where(share > 0.0, _LITTLE * drive / np.maximum(share, 1e-300), 0.0)
-    return np.asarray(np.maximum(np.abs(values), little))
+    share = np.maximum(np.sqrt(np.mean(slopes**2, axis=0)), _NEVER)
+    most = np.where(np.isfinite(free.high), np.abs(free.high), np.inf)
+    little = np.minimum(_LITTLE * drive / share, most)
+    return np.asarray(np.where(free.start == 0.0, np.maximum(sizes, little), sizes))
 
 
 def _told(own: Ground, names: Sequence[str]) -> tuple[list[str], dict[str, str]]:
     """Names that the record can tell at all, and why not of the others.
 
     By the information matrix of the closed loop about the start values: its slopes are those of a
-    simulated motion, so noise of the record is no news.
+    simulated motion, so noise of the record is no news. Each is believed beforehand to within its
+    size, so one that acts as another one does is not told because that one is left alone.
     """
-    left = list(names)
-    why: dict[str, str] = {}
-    while left:
-        free = own.free(left)
-        values = _start(own, free)[0]
+    if own.still:
+        return [], dict.fromkeys(names, "the axis does not move")
+    if not names:
+        return [], {}
+    free = own.free(names)
+    for values in (_start(own, free)[0], free.start):
         problem, starts = own.shooting(free, (own.first, own.data.samples - 1), values)
         now = problem.linear(Guess(values, starts))
-        if not now.sound:
-            values = free.start
-            now = problem.linear(Guess(values, starts))
-        if not now.sound:
-            return [], dict.fromkeys(names, "no motion of the plant is near the record")
-        sizes = np.sqrt(np.mean(now.rest**2, axis=0) + problem.stretch.floor**2)
-        fit = Fitted(Guess(values, starts), now, sizes, 0, False, problem.prior(now, len(values)))
-        known = spread(fit)
-        share = known.white / np.maximum(_sizes(own, free, values), 1e-300)
-        share = np.where(np.isfinite(share), share, np.inf)
-        worst = int(np.argmax(share))
-        if own.still:
-            return [], dict.fromkeys(left, "the axis does not move")
-        if share[worst] <= _UNTOLD:
+        if now.sound:
             break
-        bad = [n for n, s in zip(left, share.tolist(), strict=True) if s > _UNTOLD]
-        why |= {n: _reason(s) for n, s in zip(left, share.tolist(), strict=True) if s > _UNTOLD}
-        left = [n for n in left if n not in bad]
-    return left, why
+    else:
+        return [], dict.fromkeys(names, "no motion of the plant is near the record")
+    sizes = np.sqrt(np.mean(now.rest**2, axis=0) + problem.stretch.floor**2)
+    fit = Fitted(Guess(values, starts), now, sizes, 0, False, problem.prior(now, len(values)))
+    size = _sizes(own, free, values)
+    known = spread(fit).information * np.outer(size, size) + np.eye(len(size))
+    share = np.sqrt(np.diag(np.linalg.inv(known)))
+    rows = list(zip(names, share.tolist(), strict=True))
+    return [n for n, s in rows if s <= _UNTOLD], {n: _reason(s) for n, s in rows if s > _UNTOLD}
 
 
 def _reason(share: float) -> str:
-    if share > 100.0:
-        return "the record says nothing of it"
+    if share > _BLANK:
+        return "the record says nothing of it, or nothing that another quantity would not"
     return f"its standard deviation is {100.0 * share:.0f} % of its size"
 
 
@@ -385,7 +391,7 @@ def _fitted(
             why[left.pop()] = "no motion of the plant is near the record with it"
             continue
         known = spread(fit)
-        share = known.deviations / np.maximum(_sizes(own, free, fit.guess.free), 1e-300)
+        share = known.deviations / np.maximum(_sizes(own, free, fit.guess.free), 1e-100)
         worst = int(np.argmax(np.where(np.isfinite(share), share, np.inf)))
         if share[worst] <= _UNTOLD:
             return free, fit, known, why

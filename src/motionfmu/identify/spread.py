@@ -30,6 +30,7 @@ class Spread:
     white: Array  # (free,) as they were for white residuals
     correlation: Array  # (free, free)
     condition: float  # of the information matrix, each quantity scaled to 1
+    information: Array  # (free, free) inverse of the covariance, were residuals white
     lag: int  # samples up to which residuals count as one another's
 
 
@@ -69,6 +70,7 @@ def spread(fitted: Fitted) -> Spread:
         white=np.sqrt(plain) / scale,
         correlation=cover / np.outer(root, root),
         condition=float(s[-1] / s[0]) if s[0] > 0.0 else np.inf,
+        information=reduced,
         lag=lag,
     )
 
