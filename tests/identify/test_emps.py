@@ -13,7 +13,7 @@ from conftest import ROOT
 
 import motionfmu
 from motionfmu.identify import ColumnUse, IdentifyOptions, identify, run_of_record
-from motionfmu.identify.axis_record import read_csv
+from motionfmu.identify.axis_record import of_record
 
 RECORD = Path(os.environ.get("MOTIONFMU_EMPS", ROOT.parent / "shared/data/axis-record.csv"))
 pytestmark = [
@@ -80,7 +80,7 @@ def columns():
 
 def test_published_values_are_found_where_the_published_law_is_asked_for(scenario, columns):
     asked = IdentifyOptions(columns, laws=["offset"])
-    found = identify(scenario, read_csv(RECORD), asked)
+    found = identify(scenario, of_record(motionfmu.record(RECORD)), asked)
     mass = found.value("table_mass").value + INERTIA / SHARE**2
     assert mass == pytest.approx(MASS, rel=0.01)
     assert found.value("table_coulomb").value == pytest.approx(COULOMB, rel=0.04)
@@ -89,7 +89,7 @@ def test_published_values_are_found_where_the_published_law_is_asked_for(scenari
 
 
 def test_fmus_with_the_law_that_validation_chooses_repeat_the_record(scenario, columns):
-    found = identify(scenario, read_csv(RECORD), IdentifyOptions(columns))
+    found = identify(scenario, of_record(motionfmu.record(RECORD)), IdentifyOptions(columns))
     # slopes of 169 and 239 N s/m forwards and backwards, by least squares on the record
     assert "direction" in found.laws
     assert found.value("table_viscous_asymmetry").value == pytest.approx(-0.17, abs=0.03)

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 @app.command()
 def identify(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
-    record: Annotated[Path, typer.Option(help="CSV: time [s] and columns with units.")],
+    record: Annotated[
+        Path, typer.Option(help="A measured record: CSV, Parquet, .mat, a result folder.")
+    ],
     machine: OnMachine = None,
     axis: Annotated[int | None, typer.Option(help="Axis of the scenario, from 1.")] = None,
     column: Annotated[
@@ -63,6 +65,7 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
 ) -> None:
     """Find an axis' mass and friction from a record; write found.toml and a report."""
     needed("tune")
+    from motionfmu import records
     from motionfmu.identify import axis_record, identify_file
     from motionfmu.report import result_folder
 
@@ -76,7 +79,7 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     tables |= {k: v for k, v in (("free", free), ("fix", fix), ("laws", law)) if v}
     tables |= {"controller": False} if as_given else {}
     options = identify_file.options(tables, str(place or "--column"))
-    measured = axis_record.read_csv(record)
+    measured = axis_record.of_record(records.record(record))
     target = result_folder.usable(folder or results(scenario.name, "identify"))
     found, run = _identify(scenario, measured, options, settings(set_))
     _write(target, found, run)
