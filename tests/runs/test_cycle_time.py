@@ -159,7 +159,7 @@ def test_runs_end_at_the_planned_limit(tmp_path):
     assert result.stopped == "limit 600 s, mcc.done never came"
     slow = on_table(tmp_path, "G1 X50 F60\n" + "X0\nX50\n" * 8)
     with Session(slow, ["mcc.p_gain"]) as session:
-        assert session.run({}).stopped.startswith("mcc.done at 851.7")
+        assert session.run({}).stopped.startswith("mcc.done at 851.69")
 
 
 def test_figures_of_an_axis_that_turns_are_in_degrees(tmp_path):

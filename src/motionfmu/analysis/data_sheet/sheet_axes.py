@@ -69,17 +69,18 @@ class SheetAxis:
         assert self.travel is not None
         values = result[self.travel.signal.name]
         own = values if self.travel.element is None else values[:, self.travel.element]
-        return np.asarray(own, float) * _factor(self.travel, self.rotary)
+        unit = self.travel.signal.port.unit or "1"
+        return np.asarray(own, float) * _factor(self.travel, unit, self.rotary)
 
 
-def _factor(travel: AxisLimit, rotary: bool) -> float:
-    """From the unit of the position's signal to mm, or to degrees."""
-    unit = units.parse(travel.unit)
+def _factor(travel: AxisLimit, name: str, rotary: bool) -> float:
+    """From a unit of the position to mm, or to degrees."""
+    unit = units.parse(name)
     if unit.exponents == units.parse("m").exponents:  # 1 mm stands for 1° where a row has lengths
         return float(unit.factor / units.parse("mm").factor)
     if rotary:
         return math.degrees(unit.factor)
-    raise InputError(f"{travel.signal.name} [{travel.unit}] is no position")
+    raise InputError(f"{travel.signal.name} [{name}] is no position")
 
 
 def sheet_axes(machine: Machine, limits: list[AxisLimit]) -> list[SheetAxis]:
@@ -92,7 +93,7 @@ def sheet_axes(machine: Machine, limits: list[AxisLimit]) -> list[SheetAxis]:
         rotary = axis.kind == "rotary"
         low, high = -math.inf, math.inf
         if travel is not None:
-            factor = _factor(travel, rotary)
+            factor = _factor(travel, travel.unit, rotary)
             low = low if travel.low is None else travel.low * factor
             high = high if travel.high is None else travel.high * factor
         more = bounds.get(axis.name[0], (-math.inf, math.inf))
