@@ -311,6 +311,27 @@ def test_another_page_of_a_drawing_is_chosen(tab: Any, served: Served, tmp_path:
     expect(about).to_contain_text("15.0 \N{MULTIPLICATION SIGN} 0.0 mm, 1 line")
 
 
+def test_a_drawing_that_is_opened_before_a_card_is_known(browser: Any, tmp_path: Path) -> None:
+    from playwright.sync_api import expect
+
+    fleet, config, file = Fleet(), tmp_path / "card.toml", tmp_path / "line.plt"
+    shutil.copy(CARD, config)
+    file.write_bytes(b"IN;SP1;PU400,400;PD2000,400;PU;")
+    opened = threading.Event()
+
+    async def come() -> None:
+        while not opened.is_set():
+            await asyncio.sleep(0.01)
+        fleet.add(1, "EMPTY")
+        fleet.tell("connect", 1, "is there")
+
+    with serving(fleet, config, come) as port, browser_tab(browser, address(port)) as page:
+        expect(page.locator("#link")).to_have_attribute("data-good", "true")
+        page.locator("#file").set_input_files(file)
+        opened.set()
+        expect(page.locator("#job-about")).to_contain_text("40.0 \N{MULTIPLICATION SIGN} 0.0 mm")
+
+
 # Four rules for people who see little, hear the page read, or have no mouse.
 RULES = """() => {
   const all = [...document.querySelectorAll("body *")].filter((e) => e.checkVisibility());

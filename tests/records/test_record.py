@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import motionfmu
 from motionfmu.base.errors import InputError
 from motionfmu.records import Record, lag_of, match
-from motionfmu.records.match import correlation
+from motionfmu.records.matching import correlation
 from motionfmu.records.quantities import quantity, si_name
 
 

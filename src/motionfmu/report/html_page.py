@@ -19,6 +19,7 @@ from motionfmu.run.checks import Verdict, tally
 from motionfmu.run.decimate import MOST
 
 # The name of the cursors that all plots over the time of one run share.
+QUICK = 1  # level of gzip: most of a page is packed samples already
 RUN = "run"
 # [bytes] of a page; samples of a curve that it has at least: of 150 curves fewer than 2000 fit.
 LARGEST, FEWEST = 2_000_000, 200
@@ -89,7 +90,7 @@ class Page:
         """The plots' data; if they do not fit into the room, long curves have their peaks alone."""
         most = MOST
         while True:
-            text = packed_text(json.dumps(self._drawn(most) | data, separators=(",", ":")))
+            text = packed_text(json.dumps(self._drawn(most) | data, separators=(",", ":")), QUICK)
             if len(text) <= room or most <= FEWEST:
                 return text
             most //= 2

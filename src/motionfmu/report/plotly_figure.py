@@ -295,7 +295,9 @@ def _hover(hover: Any) -> Figure:
         return {}
     if not len(hover):
         return {"hoverinfo": "skip"}
-    return {"hovertext": [text_of(text) for text in hover], "hoverinfo": "text"}
+    # All at once: a call for each of thousands takes a hundredth of a run's time.
+    words = text_of("\0".join(hover)).split("\0")
+    return {"hovertext": words, "hoverinfo": "text"}
 
 
 def _points(mark: LineMark | PointMark, space: bool) -> Figure:

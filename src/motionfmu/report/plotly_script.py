@@ -28,9 +28,9 @@ _PATTERN = re.compile(r"/(?:[^/\\\[\n]|\\.|\[(?:[^\]\\\n]|\\.)*\])+/[a-z]*")
 _BEFORE_PATTERN = {"return", "typeof", "case", "in", "of", "delete", "void", "throw", "else", "do"}
 
 
-def packed_text(text: str) -> str:
+def packed_text(text: str, level: int = 9) -> str:
     """A text as gzip in base64, which a browser unpacks."""
-    return base64.b64encode(gzip.compress(text.encode(), 9, mtime=0)).decode()
+    return base64.b64encode(gzip.compress(text.encode(), level, mtime=0)).decode()
 
 
 def packed_script(space: bool) -> str:

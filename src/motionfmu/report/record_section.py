@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from motionfmu.base.units import spelled
-from motionfmu.records import Match, Record
 from motionfmu.report.diagram import SOLID, Diagram
 from motionfmu.report.html_page import RUN, Page
 from motionfmu.report.html_tables import table
@@ -15,6 +14,9 @@ from motionfmu.report.signal_chart import recolored, signal_chart
 from motionfmu.report.style import AXES
 from motionfmu.run.figures import Chart, Curve, Panel
 from motionfmu.run.record_matches import RecordMatches
+
+if TYPE_CHECKING:
+    from motionfmu.records import Match, Record
 
 DRAWN = 12  # signals; all are in the table
 NOTE = (
@@ -54,7 +56,7 @@ def add_record(page: Page, found: RecordMatches) -> None:
         )
 
 
-def about(record: Record) -> str:
+def about(record: "Record") -> str:
     """A record in a sentence."""
     rate = record.rate
     even = f"{figure(rate)} Hz" if rate else "uneven samples"
@@ -62,7 +64,7 @@ def about(record: Record) -> str:
     return f"{Path(record.name).name}: {len(record.ns)} samples, {even}, {span}."
 
 
-def row(name: str, column: str, unit: str, one: Match) -> tuple[str, ...]:
+def row(name: str, column: str, unit: str, one: "Match") -> tuple[str, ...]:
     """The numbers of a match as a row of a table."""
     found: Mapping[str, Any] = one.numbers()
     own = spelled(unit)
@@ -89,7 +91,7 @@ def lag_text(lag: float | None) -> str:
     return f"{1e3 * lag:+.4g} ms".replace("-", MINUS)
 
 
-def chart(name: str, unit: str, one: Match, names: tuple[str, str]) -> Diagram:
+def chart(name: str, unit: str, one: "Match", names: tuple[str, str]) -> Diagram:
     """A signal and its record, and below them their difference."""
     both = (one.signal, one.record)
     curves = [Curve(n, one.time, x, False) for n, x in zip(names, both, strict=True)]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from motionfmu.run.decimate import MOST, Read, at, few, reader
 
-LEVEL = 6  # of zlib
+LEVEL = 3  # of zlib: a third of the time of its usual one, 3 % larger
 # Real numbers are whole multiples of a step that is no more than this part of the curve's height.
 COARSE = 1e-6
 GAP = 1 << 31  # the number of steps, below 0, that stands for NaN

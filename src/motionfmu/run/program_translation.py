@@ -4,21 +4,20 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionfmu.base.disk_cache import kept, key
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
-from motionfmu.drawings import Drawing, DrawingOptions, Polyline, reading
-from motionfmu.drawings.contours import contours_of
-from motionfmu.drawings.gcode_text import gcode_of
-from motionfmu.drawings.pen_path import PenPath
-from motionfmu.drawings.reading import ENDINGS, is_drawing
+from motionfmu.drawings import DrawingOptions
 from motionfmu.run.translated_places import write_places
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import Document
+
+if TYPE_CHECKING:
+    from motionfmu.drawings import Drawing
 
 GCODE = (".ngc", ".nc", ".tap", ".gcode")  # endings of part programs
 JOB, ROWS = ".mcj", ".npy"
@@ -38,6 +37,8 @@ class MachineProgram:
 def program_for(document: Document, file: Path) -> MachineProgram:
     """The program as the machine's controller reads it; as it is, if it reads it or refuses it."""
     component = str(document.body.signals.program).partition(".")[0]
+    from motionfmu.drawings.reading import ENDINGS, is_drawing
+
     drawn = is_drawing(file)
     if not drawn and (given := options_of(document).changes):
         if any(document.sources[0].has("drawing", _KEYS.get(key, key), None) for key in given):
@@ -69,6 +70,10 @@ def options_of(document: Document) -> DrawingOptions:
 
 def drawing_as_gcode(file: Path, options: DrawingOptions, has_z: bool) -> MachineProgram:
     """A drawing as a part program, with the pen as Z if there is one."""
+    from motionfmu.drawings import reading
+    from motionfmu.drawings.contours import contours_of
+    from motionfmu.drawings.gcode_text import gcode_of
+
     drawing = reading.read(file)
     contours = contours_of(drawing, options)
     if not contours:
@@ -97,6 +102,8 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
     from motionfmu.cards import job, load
     from motionfmu.cards.plan import plan, write
     from motionfmu.cards.plan_rows import plan_rows
+    from motionfmu.drawings import reading
+    from motionfmu.drawings.reading import ENDINGS, is_drawing
 
     name = str(document.body.signals.config)
     place = document.beside(name)
@@ -130,11 +137,13 @@ def beside(job: str | Path) -> Path:
     return Path(job).with_suffix(ROWS)
 
 
-def _drawing_of(file: Path) -> Drawing:
+def _drawing_of(file: Path) -> "Drawing":
     """The path of a part program in X and Y: what it moves with feed is drawn."""
     from motionfmu.analysis.gcode import read, strokes
     from motionfmu.analysis.gcode.program import TYPES
     from motionfmu.analysis.gcode.summary import MOTIONS
+    from motionfmu.drawings import Drawing, Polyline
+    from motionfmu.drawings.pen_path import PenPath
 
     program = read(file)
     if program.faults:

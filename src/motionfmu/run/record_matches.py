@@ -4,15 +4,17 @@ import hashlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionfmu.base.errors import InputError, NoNumber, suggestion
-from motionfmu.records import Match, Record, match
 from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios.record_signals import Overlay, file_of, overlays, record_of, table_of
 from motionfmu.scenarios.system import Resolver
+
+if TYPE_CHECKING:
+    from motionfmu.records import Match, Record
 
 TABLE = "record"  # the first part of a number's name: record.position.nrmse
 # Numbers of a `Match`.
@@ -31,8 +33,8 @@ class RecordMatches:
         By signal, its `Overlay`, which has the column, and the `Match`.
     """
 
-    record: Record
-    found: dict[str, tuple[Overlay, Match]]
+    record: "Record"
+    found: dict[str, tuple[Overlay, "Match"]]
 
     def numbers(self) -> dict[str, Any]:
         """The numbers, ready for JSON."""
@@ -96,6 +98,8 @@ def wrong(name: str, resolver: Resolver) -> str:
 
 def matches(run: RunRecord) -> RecordMatches:
     """The record of a scenario over its run; NoNumber if they have no time in common."""
+    from motionfmu.records import match
+
     measured = record_of(run.resolver)
     ns = np.rint(np.asarray(run.time) * 1e9).astype(np.int64)
     found = {}

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from motionfmu.base.columns import ROWS, Columns, forget
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.base.shown_by import drawn, report
-from motionfmu.records import Record
 from motionfmu.run import figures, record_matches, signals, waveforms
 from motionfmu.run.checks import TABLES, Verdict, is_figure, judge, tally
 from motionfmu.run.figures import Chart
@@ -30,6 +29,7 @@ if TYPE_CHECKING:
     from motionfmu.analysis.contour import ContourResult
     from motionfmu.analysis.contour.pulse_path import PulsePaths
     from motionfmu.analysis.iso9283 import Evaluation
+    from motionfmu.records import Record
 
 
 def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
@@ -355,7 +355,7 @@ class Result(Mapping[str, NDArray[Any]]):
             return str(reason)
         return ""
 
-    def record(self) -> Record:
+    def record(self) -> "Record":
         """The signals of this run, as a measured record is.
 
         Returns
@@ -363,6 +363,8 @@ class Result(Mapping[str, NDArray[Any]]):
         Record
             The same arrays, with times in whole ns; ``save`` writes it to a file.
         """
+        from motionfmu.records import Record
+
         ns = np.rint(np.asarray(self.time) * 1e9).astype(np.int64)
         return Record(self.name, ns, self.signals, self.units)
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from motionfmu.base import units
 from motionfmu.base.errors import Faults, InputError
 from motionfmu.base.units import spelled
-from motionfmu.records import Record, record
-from motionfmu.records import resampling as between
 from motionfmu.scenarios import recording
 from motionfmu.scenarios.analyses import RecordFile
 from motionfmu.scenarios.port import Port
 from motionfmu.scenarios.system import End, Resolver, Setting, Stimulus
 from motionfmu.scenarios.values import WHOLE, start_values
+
+if TYPE_CHECKING:
+    from motionfmu.records import Record
 
 TABLE = "record_file"
 DRIVE, OVER = f"{TABLE}.drive", f"{TABLE}.over"
@@ -47,14 +48,14 @@ def table_of(resolver: Resolver) -> RecordFile | None:
     return resolver.document.body.record_file
 
 
-def record_of(resolver: Resolver) -> Record:
+def record_of(resolver: Resolver) -> "Record":
     """The record that the scenario names; it is read once."""
     if TABLE not in resolver.known:
         resolver.known[TABLE] = _read(resolver)
     found = resolver.known[TABLE]
     if isinstance(found, InputError):
         raise found
-    assert isinstance(found, Record)
+    assert not isinstance(found, InputError)
     return found
 
 
@@ -69,10 +70,12 @@ def file_of(resolver: Resolver) -> Path:
     return found
 
 
-def _read(resolver: Resolver) -> Record | InputError:
+def _read(resolver: Resolver) -> "Record | InputError":
     table, document = table_of(resolver), resolver.document
     assert table is not None
     try:
+        from motionfmu.records import record
+
         return record(file_of(resolver), **table.layout)
     except InputError as error:
         told, prefix = str(error), "record: "
@@ -105,7 +108,7 @@ def overlays(resolver: Resolver) -> list[Overlay]:
 
 
 def of_signal(
-    resolver: Resolver, measured: Record, pair: tuple[str, str], table: str
+    resolver: Resolver, measured: "Record", pair: tuple[str, str], table: str
 ) -> list[Overlay]:
     """A column over a signal; a whole array has a column of as many elements."""
     signal, column = pair
@@ -131,7 +134,7 @@ def of_signal(
     ]
 
 
-def in_unit_of(measured: Record, column: str, port: Port) -> Array:
+def in_unit_of(measured: "Record", column: str, port: Port) -> Array:
     """A column in the unit of a variable; a variable without one takes plain numbers."""
     if port.unit is None:
         own = measured.unit(column)
@@ -254,11 +257,13 @@ def _sampled(resolver: Resolver, pair: tuple[str, str], end: End, ns: Array) -> 
         raise InputError(f"{measured.place(0)}: {column} has no value, which drives {name}")
     _check_range(measured, (column, data), end, np.flatnonzero(good))
     real = port.type.startswith("Float")
+    from motionfmu.records import resampling as between
+
     how = table.resample if real else between.HOLD
     return between.at(known, data[good], np.minimum(ns, known[-1]), how)
 
 
-def _check_range(measured: Record, column: tuple[str, Array], end: End, rows: Array) -> None:
+def _check_range(measured: "Record", column: tuple[str, Array], end: End, rows: Array) -> None:
     """Refuse a value that the input cannot have; the message says where it stands."""
     name, data = column
     port = end.port

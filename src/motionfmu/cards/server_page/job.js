@@ -8,6 +8,7 @@ const sendings = new Map(); // by card: what the last upload said
 const openings = new Map(); // by card: what was opened for it
 const files = new Map(); // by card: its file, of which another page may be wanted
 let last = null, card = null, wrong = "", opening = "";
+let early = null; // a file that was opened before a card was known
 
 // The picture to be shown: what was opened for the card, else its job, else what was opened last.
 const picture = () => openings.get(card?.id) || pictures.get(card?.job) || last;
@@ -20,6 +21,11 @@ export function scaleOf(one) {
 export function showJob(now) {
   if (card?.id !== now.id) wrong = "";
   card = now;
+  if (early) {
+    const file = early;
+    early = null;
+    open(file);
+  }
   if (card.job && !pictures.has(card.job)) fetchPicture(card.job);
   const shown = picture(), upload = card.upload;
   part("job-name").textContent = shown ? shown.name : "Job";
@@ -82,6 +88,10 @@ async function fetchPicture(job) {
 }
 
 async function open(file, page = 1) {
+  if (!card) {
+    early = file;
+    return;
+  }
   const { id } = card;
   [wrong, opening] = ["", file.name];
   dispatchEvent(new Event("job"));
