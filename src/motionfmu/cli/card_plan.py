@@ -132,9 +132,7 @@ def _report(
     with result_folder.whole(folder) as part:
         draw_plan(found, name, part / "plan.png")
         page = plan_page(name, found, drawing, numbers)
-        (part / "report.html").write_text(page, encoding="utf-8")
-        text = json.dumps(numbers, indent=1, allow_nan=False)
-        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
+        result_folder.write_result(part, page, numbers)
 
 
 @card.command()

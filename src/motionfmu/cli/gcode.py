@@ -289,9 +289,7 @@ def _show(
         if not (without := missing("report")):
             write_path(file.stem, path, part)
         page = page_text(file.stem, program, s, path, planned)
-        (part / "report.html").write_text(page, encoding="utf-8")
-        numbers = json.dumps(found, indent=1, allow_nan=False)
-        (part / result_folder.NUMBERS).write_text(numbers + "\n", encoding="utf-8")
+        result_folder.write_result(part, page, found)
     if without:
         out.print(f"no picture: {install('report')}", markup=False)
     report(target / "report.html")

@@ -1,6 +1,5 @@
 """The console command that identifies an axis from a record."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -114,10 +113,8 @@ def _write(target: Path, found: "Identified", run: "RecordRun | None") -> None:
     from motionfmu.report.loop_pages.identify_page import identify_page
 
     with result_folder.whole(target) as part:
-        (part / "report.html").write_text(identify_page(found, run), encoding="utf-8")
+        result_folder.write_result(part, identify_page(found, run), found_numbers(found, run))
         (part / "found.toml").write_text(found_toml(found), encoding="utf-8")
-        text = json.dumps(found_numbers(found, run), indent=1, allow_nan=False)
-        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
 
 
 def _tell(found: "Identified", run: "RecordRun | None") -> None:

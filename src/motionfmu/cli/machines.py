@@ -1,6 +1,5 @@
 """The command that lists machines, and measures one."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -62,11 +61,9 @@ def machines(
     with result_folder.whole(target) as part:
         for name, text in sheet.programs.items():
             (part / name).write_text(text, encoding="utf-8")
-        (part / "report.html").write_text(page_text(sheet), encoding="utf-8")
+        result_folder.write_result(part, page_text(sheet), sheet.numbers())
         (part / "figures.md").write_text(markdown(sheet), encoding="utf-8")
         write_sheet_picture(sheet, part / "figures")
-        text = json.dumps(sheet.numbers(), indent=1, allow_nan=False)
-        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
     report(target / "report.html")
 
 

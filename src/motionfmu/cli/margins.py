@@ -1,6 +1,5 @@
 """The command that shows margins and largest stable gains."""
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
@@ -76,9 +75,8 @@ def margins(  # noqa: PLR0913  (each is an option of the command)
     gains = {loop: gain} if loop is not None and gain is not None else {}
     studies = _study(linear, LoopStudyOptions(loop, gains, simulate, kick))
     with result_folder.whole(target) as part:
-        (part / "report.html").write_text(page_text(linear, studies, about), encoding="utf-8")
-        text = json.dumps(numbers(linear, studies), indent=1, allow_nan=False)
-        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
+        page = page_text(linear, studies, about)
+        result_folder.write_result(part, page, numbers(linear, studies))
     out.print(_table(studies))
     for line in in_lines(gain_of(linear.scenario, linear.set, axis, linear.at)):
         out.print(line, markup=False)

@@ -1,6 +1,5 @@
 """The console command that finds servo gains."""
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -64,10 +63,8 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     target = result_folder.usable(folder or results(scenario.name, "tune"))
     tuned = _tune(scenario, asked, settings(set_))
     with result_folder.whole(target) as part:
-        (part / "report.html").write_text(page_text(tuned), encoding="utf-8")
+        result_folder.write_result(part, page_text(tuned), tuned.numbers())
         (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
-        text = json.dumps(tuned.numbers(), indent=1, allow_nan=False)
-        (part / result_folder.NUMBERS).write_text(text + "\n", encoding="utf-8")
     table = bare_table("plant", tuned.study.path.what, "before", "after", "by the model")
     for before, after in zip(tuned.before, tuned.after, strict=True):
         old, new = before.fmus, after.fmus

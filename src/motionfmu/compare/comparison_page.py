@@ -1,6 +1,5 @@
 """The page of a comparison."""
 
-import json
 from collections.abc import Iterable, Sequence
 from html import escape
 from itertools import groupby
@@ -20,9 +19,7 @@ from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, judged, table
 from motionfmu.report.numbers import NOTHING, figure, length, text_of
 from motionfmu.run.checks import parts, tally, together
-from motionfmu.run.result_files import NUMBERS
 
-PAGE = "report.html"
 ELEMENTS = 40  # of signals are drawn; all are in the table
 SIDES = ("", "A", "B", GONE, "change of size")
 FOOTER = (
@@ -34,10 +31,8 @@ FOOTER = (
 def write_comparison(found: Pairing, folder: Path) -> Path:
     """Write the page and result.json, whole or not at all."""
     with result_folder.whole(folder) as part:
-        text = json.dumps(found.numbers(), indent=1, allow_nan=False, default=str)
-        (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
-        (part / PAGE).write_text(page_text(found), encoding="utf-8")
-    return folder.resolve() / PAGE
+        result_folder.write_result(part, page_text(found), found.numbers(), str)
+    return folder.resolve() / result_folder.PAGE
 
 
 def page_text(found: Pairing) -> str:

@@ -19,7 +19,6 @@ from motionfmu.report.record_section import DRAWN, NOTE, about, chart, heads, ro
 from motionfmu.run import Result, Scenario, load
 from motionfmu.run.result_files import NUMBERS
 
-PAGE = "report.html"
 FOOTER = 'Every number is in <a href="result.json">result.json</a>.'
 
 
@@ -101,10 +100,8 @@ class RecordComparison:
             The folder cannot be written, or holds something else.
         """
         with result_folder.whole(Path(folder)) as part:
-            text = json.dumps(self.numbers(), indent=1, allow_nan=False, default=str)
-            (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
-            (part / PAGE).write_text(self.page_text(), encoding="utf-8")
-        return Path(folder).resolve() / PAGE
+            result_folder.write_result(part, self.page_text(), self.numbers(), str)
+        return Path(folder).resolve() / result_folder.PAGE
 
 
 def _said(x: Record) -> dict[str, Any]:

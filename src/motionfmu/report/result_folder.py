@@ -1,6 +1,7 @@
 """The folder that a run leaves on disk: its signals, its numbers and its report."""
 
 import contextlib
+import json
 import os
 import shutil
 from collections.abc import Callable, Iterator
@@ -15,7 +16,7 @@ from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run.result import Result
 from motionfmu.run.result_files import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
 
-TABLE = "signals.csv"
+TABLE, PAGE = "signals.csv", "report.html"
 
 
 def _write_csv(result: Result, file: Path) -> None:
@@ -100,6 +101,15 @@ def save(
         told("report")
         shown = write_report(result, contour, part, ran, kept.pictures).name
     return folder.resolve() / shown
+
+
+def write_result(
+    part: Path, page: str, found: Any, default: Callable[[Any], Any] | None = None
+) -> None:
+    """Write a page and its numbers, all finite; `default` as of json.dumps."""
+    (part / PAGE).write_text(page, encoding="utf-8")
+    text = json.dumps(found, indent=1, allow_nan=False, default=default)
+    (part / NUMBERS).write_text(text + "\n", encoding="utf-8")
 
 
 @contextlib.contextmanager
