@@ -11,6 +11,7 @@ from few_cases import few
 
 import motionfmu
 from motionfmu.analysis.cycle_time import driven, planned, what_if
+from motionfmu.base.motion_rows import ROW
 from motionfmu.cards import load
 from motionfmu.run import Options, Session
 from motionfmu.run.axis_figures import axis_figures
@@ -45,6 +46,7 @@ def test_each_cause_by_a_program_made_for_it(name, tmp_path):
 
 def test_the_sum_is_the_cycle_time_and_lines_are_parts_of_it():
     plan = planned(motionfmu.load("scenarios/pocket"))
+    assert plan.rows.dtype == ROW  # of the FMU's file, and of what the package writes
     assert sum(s.time for s in plan.shares()) == pytest.approx(plan.time, abs=1e-9)
     blocks = plan.blocks()
     assert sum(b.time for b in blocks) == pytest.approx(plan.time, abs=1e-9)

@@ -27,4 +27,4 @@ CAUSES = {
     7: "dwell",
     8: "waiting",
 }
-NUMBERS = {name: number for number, name in CAUSES.items()}
+NUMBER_OF = {name: number for number, name in CAUSES.items()}

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.base.motion_rows import NUMBERS, ROW
+from motionfmu.base.motion_rows import NUMBER_OF, ROW
 from motionfmu.cards.config import CardConfig
 from motionfmu.cards.plan import DRAWS, RESTS, Plan
 
@@ -14,10 +14,9 @@ AT_FEED, AT_MOST = 0.999, 0.99
 def plan_rows(plan: Plan, config: CardConfig) -> NDArray[np.void]:
     """Rows of the planned motion, one a frame.
 
-    The planner keeps one of the axes' limits at every instant in which it is below the feed: the
-    one of which the planned places take the largest share. Its exact differences say so, as
-    nothing is rounded in them; their order is that of the derivative, so they stand half a frame
-    to one and a half frames before the end of their row.
+    Wherever the planner stays below the feed, one axis is at a limit of its speed, acceleration or
+    jerk: the one of which the planned places take the largest share. Differences of these places
+    show it, for they are not rounded to pulses; the third stands one and a half frames off its row.
     """
     rows = np.zeros(len(plan.steps), ROW)
     axes, motion = len(config.axes), config.motion
@@ -42,11 +41,11 @@ def plan_rows(plan: Plan, config: CardConfig) -> NDArray[np.void]:
         axis=1,
     )
     most = shares.argmax(axis=1)
-    by = np.array([NUMBERS["speed"], NUMBERS["acceleration"], NUMBERS["jerk"]])
+    by = np.array([NUMBER_OF["speed"], NUMBER_OF["acceleration"], NUMBER_OF["jerk"]])
     rows["cause"], rows["axis"] = by[most // axes], most % axes + 1
     whole = rows["speed"] >= AT_FEED * rows["feed"]
     rests = plan.steps == RESTS
     for where, name in ((whole, "feed"), (rests, "dwell")):
-        rows["cause"][where], rows["axis"][where] = NUMBERS[name], 0
+        rows["cause"][where], rows["axis"][where] = NUMBER_OF[name], 0
     rows["feed"][rests] = 0.0
     return rows

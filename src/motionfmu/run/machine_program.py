@@ -122,7 +122,7 @@ class Machine:
         return found
 
     def translated(self, file: Path, drawing: Mapping[str, Any]) -> MachineProgram:
-        """Make what the machine's controller reads of a program.
+        """Translate a program into what the controller reads.
 
         Parameters
         ----------

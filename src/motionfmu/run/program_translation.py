@@ -126,13 +126,13 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
 
         def make(target: Path) -> None:
             write(planned.job, target)
-            np.save(beside(target), plan_rows(planned, config))
+            np.save(motion_file(target), plan_rows(planned, config))
 
         file = _made(f"{file.stem}{JOB}", make, planned.job, ROWS)
     return MachineProgram(file, values, job.read(file).time, notes)
 
 
-def beside(job: str | Path) -> Path:
+def motion_file(job: str | Path) -> Path:
     """Where the planned motion of a job made here is kept."""
     return Path(job).with_suffix(ROWS)
 

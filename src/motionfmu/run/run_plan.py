@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.base.errors import Faults, InputError
+from motionfmu.base.memo import Memo
 from motionfmu.run import contrary, figures, waveforms
 from motionfmu.run.checks import is_figure, misplaced, table_of
 from motionfmu.scenarios import (
@@ -86,7 +87,7 @@ class RunPlan:
         )
         self.ends: list[system.End] = []
         self.only_drawn: set[str] = set()
-        self._kept: list[tuple[dict[str, Any], system.System]] = []
+        self._kept: Memo[system.System] = Memo(_KEPT)
         faults = Faults(self.document.wrong)
         self.resolver = system.Resolver(self.document, faults)
         self._check_names(faults)
@@ -160,11 +161,7 @@ class RunPlan:
         """The system that an engine runs, with the options' values; the latest ones are kept."""
         asked = {name: getattr(options, name) for name in _MADE_OF}
         asked = files.plain(asked | {"undriven": sorted(options.undriven)})
-        kept = next((made for known, made in self._kept if known == asked), None)
-        if kept is None:
-            kept = self._resolved(options)
-            self._kept = [(asked, kept), *self._kept[: _KEPT - 1]]
-        return kept
+        return self._kept(repr(asked), lambda: self._resolved(options))
 
     def _resolved(self, options: Options) -> system.System:
         faults = Faults()

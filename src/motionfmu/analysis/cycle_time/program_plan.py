@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.base.motion_rows import CAUSES, NUMBERS
+from motionfmu.base.motion_rows import CAUSES, NUMBER_OF
 from motionfmu.run import Scenario
 from motionfmu.run.controller_plan import plan_rows
-from motionfmu.run.program_translation import beside
+from motionfmu.run.program_translation import motion_file
 
-DWELL = NUMBERS["dwell"]
+DWELL = NUMBER_OF["dwell"]
 SLOWEST = 10
 
 
@@ -171,7 +171,7 @@ def _rows_of_job(scenario: Scenario, set: Mapping[str, Any]) -> NDArray[Any] | N
     """What the planner of a network card's job has left beside it; None of any other."""
     body = scenario.document.body
     job = str(set.get(str(body.signals.program), body.set.get(str(body.signals.program), "")))
-    if body.signals.config is None or not job or not beside(job).is_file():
+    if body.signals.config is None or not job or not motion_file(job).is_file():
         return None
-    rows: NDArray[Any] = np.load(beside(job))
+    rows: NDArray[Any] = np.load(motion_file(job))
     return rows
