@@ -192,3 +192,21 @@ def test_the_script_of_a_student_shows_half_the_backlash(tmp_path: Path) -> None
     assert sum(bool(line) for line in code) < 30
     files = {f.name for f in folder.iterdir()} - {"README.md"}
     assert files == set(re.findall(r"\]\(([\w.]+)\)", (folder / "README.md").read_text()))
+
+
+@pytest.mark.more
+def test_the_digital_twin_repeats_its_record_and_follows_better(tmp_path: Path) -> None:
+    folder = ROOT / "examples/digital_twin"
+    told = output(sys.executable, folder / "digital_twin.py", cwd=tmp_path)
+    shares = dict(re.findall(r"beside the record, ([\w. ]+): ([\d.]+) %", told))
+    assert float(shares["following error"]) < 0.25 and float(shares["drives.torque"]) < 3.8
+    (mass,) = re.findall(r"table_mass +([\d.]+)", told)
+    assert float(mass) + 1e-5 * (2.0 * np.pi / 0.01) ** 2 == pytest.approx(95.1089, rel=0.01)
+    before, after = map(float, re.findall(r"nominal plant: RMS ([\d.]+) .* → ([\d.]+)", told)[0])
+    assert before == pytest.approx(577.0, rel=0.01) and after < before / 12.0
+    kept, count = re.findall(r"^(\d+) of (\d+) plants on the 95 % region", told, re.M)[0]
+    assert kept == count
+    text = (folder / "README.md").read_text()
+    for figure in (f"{before:.0f}", f"{after:.0f} µm RMS", f"of {count} possible ones"):
+        assert figure in text
+    assert (tmp_path / "digital_twin.png").read_bytes()[:4] == b"\x89PNG"

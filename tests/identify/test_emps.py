@@ -1,11 +1,8 @@
 """A published record of a real ball-screw axis, against its published values.
 
 A. Janot, M. Gautier, M. Brunot, "Data Set and Reference Models of EMPS", Workshop on Nonlinear
-System Identification Benchmarks, Eindhoven 2019. The record itself is not part of the project.
+System Identification Benchmarks, Eindhoven 2019.
 """
-
-import os
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,11 +12,8 @@ import motionfmu
 from motionfmu.identify import ColumnUse, IdentifyOptions, identify, run_of_record
 from motionfmu.identify.axis_record import of_record
 
-RECORD = Path(os.environ.get("MOTIONFMU_EMPS", ROOT.parent / "shared/data/axis-record.csv"))
-pytestmark = [
-    pytest.mark.more,
-    pytest.mark.skipif(not RECORD.is_file(), reason="the record of EMPS is not here"),
-]
+RECORD = ROOT / "examples/digital_twin/axis/record.csv"
+pytestmark = pytest.mark.more
 LEAD, INERTIA = 0.01, 1e-5  # [m], [kg.m2]: any, for the record has forces and lengths only
 SHARE = LEAD / (2.0 * np.pi)
 KP, KV, DRIVE = 160.18, 243.45, 35.15065  # [1/s], [V.s/m], [N/V]

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from motionfmu.identify.axis_record import AxisRecord
+    from motionfmu.identify.confidence_region import ConfidenceRegion, read_region, region_of
     from motionfmu.identify.ground import IdentifyOptions
     from motionfmu.identify.identification import Identified, identify
     from motionfmu.identify.record_run import RecordRun, run_of_record
@@ -12,10 +13,13 @@ if TYPE_CHECKING:
 __all__ = [
     "AxisRecord",
     "ColumnUse",
+    "ConfidenceRegion",
     "Identified",
     "IdentifyOptions",
     "RecordRun",
     "identify",
+    "read_region",
+    "region_of",
     "run_of_record",
 ]
 
@@ -27,9 +31,16 @@ def __getattr__(name: str) -> Any:
     from motionfmu.base.extras import needed
 
     needed("tune")
-    from motionfmu.identify import axis_record, ground, identification, record_run, recorded_loop
+    from motionfmu.identify import (
+        axis_record,
+        confidence_region,
+        ground,
+        identification,
+        record_run,
+        recorded_loop,
+    )
 
-    places = (axis_record, ground, identification, record_run, recorded_loop)
+    places = (axis_record, confidence_region, ground, identification, record_run, recorded_loop)
     return next(getattr(place, name) for place in places if hasattr(place, name))
 
 

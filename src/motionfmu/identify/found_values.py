@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.identify.confidence_region import KEY, region_of
 from motionfmu.identify.identification import Identified, Parameter
 from motionfmu.identify.record_run import RecordRun
 
@@ -41,6 +42,7 @@ def found_numbers(found: Identified, run: RecordRun | None) -> dict[str, Any]:
         return float(x) if math.isfinite(x) else None
 
     check, known, chosen = found.check, found.spread, found.chosen
+    region = region_of(found)
     return {
         "scenario": found.scenario.name,
         "axis": found.axis,
@@ -62,6 +64,7 @@ def found_numbers(found: Identified, run: RecordRun | None) -> dict[str, Any]:
         "free": list(found.free),
         "correlation": [] if known is None else np.round(known.correlation, 6).tolist(),
         "condition": None if known is None else plain(known.condition),
+        KEY: None if region is None else region.numbers(),
         "correlated_samples": None if known is None else known.lag,
         "controller": None
         if check is None

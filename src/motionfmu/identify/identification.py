@@ -4,14 +4,15 @@ import math
 import time as clock
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError, suggestion
-from motionfmu.identify import rigid_motion
-from motionfmu.identify.axis_record import AxisRecord
+from motionfmu.identify import identify_file, rigid_motion
+from motionfmu.identify.axis_record import AxisRecord, of_record
 from motionfmu.identify.controller_check import ControllerCheck
 from motionfmu.identify.free_parameters import FreeParameters, carried, checked
 from motionfmu.identify.friction_curve import FrictionCurve, friction_curve
@@ -19,7 +20,8 @@ from motionfmu.identify.ground import Ground, IdentifyOptions, ground
 from motionfmu.identify.recorded_loop import RecordedLoop
 from motionfmu.identify.shooting import Fitted, Guess
 from motionfmu.identify.spread import Spread, autocorrelation, spread
-from motionfmu.run import Scenario
+from motionfmu.records import Record
+from motionfmu.run import Scenario, load
 
 Array = NDArray[np.float64]
 # A quantity whose standard deviation is above this share of itself cannot be told by the record;
@@ -175,9 +177,9 @@ Progress = Callable[[str, float], None]
 
 
 def identify(
-    scenario: Scenario,
-    record: AxisRecord,
-    options: IdentifyOptions,
+    scenario: Scenario | str | Path,
+    record: AxisRecord | Record,
+    options: IdentifyOptions | Mapping[str, Any] | None = None,
     set: Mapping[str, Any] | None = None,
     progress: Progress = lambda what, share: None,
 ) -> Identified:
@@ -189,10 +191,11 @@ def identify(
 
     Parameters
     ----------
-    scenario : Scenario
+    scenario : Scenario, str or Path
         With the controller that the record was made with, and the plant.
-    record : AxisRecord
-    options : IdentifyOptions
+    record : AxisRecord or Record
+    options : IdentifyOptions or mapping, optional
+        As in an identify.toml; that beside the scenario if not given.
     set : mapping, optional
         Values by ``component.variable``, stronger than the scenario's.
     progress : callable, optional
@@ -207,6 +210,13 @@ def identify(
     InputError
         A name, column or unit is wrong, or the axis has no plant that can be identified.
     """
+    scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
+    record = record if isinstance(record, AxisRecord) else of_record(record)
+    if options is None:
+        file = scenario.document.file.parent / identify_file.FILE
+        options = identify_file.options(identify_file.read(file), str(file))
+    elif not isinstance(options, IdentifyOptions):
+        options = identify_file.options(options, "identify")
     marks = [clock.perf_counter()]
     given = dict(set or {})
     progress("controller and start values", 0.0)

@@ -124,6 +124,7 @@ def _along(scenario: Scenario, own: Ground) -> Scenario:
     stop = data.interval * (data.samples - 1)
     return scenario.changed(
         drive=drives,
+        record_file=None,  # what it drives is driven here, at the samples of the fit
         connect=cut,
         leave=list(cut),
         record={"every": 1, "signals": list(data.compared)},

@@ -90,6 +90,12 @@ def _file_beside(document: Document, values: Values) -> Values:
     return tuple(str(document.beside(x) or x) if isinstance(x, str) else x for x in values)
 
 
+def later(set: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    """Both together: what is new counts, and a whole array also over elements set before."""
+    kept = {n: v for n, v in set.items() if n.partition("[")[0] not in new}
+    return {**kept, **new}
+
+
 def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
     """Values set before the run: the scenario's, then the caller's, each stronger than before.
 

@@ -11,6 +11,7 @@ from motionfmu.analysis.linear.plant import Point
 from motionfmu.analysis.linear.wiring import Net, Port, period_of
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import Scenario, load
+from motionfmu.scenarios.values import later
 
 if TYPE_CHECKING:
     from motionfmu.analysis.linear.systems import (
@@ -95,7 +96,7 @@ class AxisModel:
         InputError
             A name or value is wrong.
         """
-        return _build(self.scenario, self.axis, self.at, {**self.set, **set}, self._parts)
+        return _build(self.scenario, self.axis, self.at, later(self.set, set), self._parts)
 
     def moved(self, at: Mapping[str, float]) -> "AxisModel":
         """The same model about another operating point.

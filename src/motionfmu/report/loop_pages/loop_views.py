@@ -12,7 +12,6 @@ from motionfmu.report.matplotlib_figure import picture
 from motionfmu.report.notebook_view import beside, cells, images, view
 from motionfmu.report.numbers import MINUS, figure, length
 from motionfmu.study.tune.tuning_result import LoopMargins, Tuned
-from motionfmu.study.tune.tuning_words import plant_text
 
 _INCHES = 7.5  # width of a picture as it is drawn
 
@@ -37,7 +36,7 @@ def tuned_html(tuned: Tuned) -> str:
     ]
     errors_found = []
     for before, after in zip(tuned.before, tuned.after, strict=True):
-        plant = escape(plant_text(before.plant))
+        plant = escape(tuned.plant_name(before.plant))
         for word, had, has in (
             ("RMS", before.fmus.rms, after.fmus.rms),
             ("largest", before.fmus.max, after.fmus.max),

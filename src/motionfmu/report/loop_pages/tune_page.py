@@ -16,8 +16,8 @@ from motionfmu.report.samples import Samples
 from motionfmu.report.style import AXES, RAPID
 from motionfmu.study.tune.problem import ON_PATH
 from motionfmu.study.tune.trial import Trial
-from motionfmu.study.tune.tuning_result import Tuned, TuningRun
-from motionfmu.study.tune.tuning_words import assumptions, plant_text, units_of
+from motionfmu.study.tune.tuning_result import RegionCheck, Tuned, TuningRun, kept_of, room_text
+from motionfmu.study.tune.tuning_words import assumptions, units_of
 
 BEFORE, AFTER = RAPID, AXES[0]
 _STEPS = 600
@@ -39,6 +39,10 @@ def page_text(tuned: Tuned) -> str:
     if told := tuned.before[0].result.overrides:
         page.section("What was run", "", overrides(told))
     page.section("Gains", "", _gains(tuned))
+    if tuned.region is not None:
+        page.section(
+            "Plants that the record leaves possible", tuned.region.text + ".", _region(tuned.region)
+        )
     if tuned.trial is not None:
         note = f"{tuned.trial.stopped_by}. Runs of the FMUs with the gains above."
         page.section(f"Trial of {tuned.trial.name}", note, _trial(tuned.trial))
@@ -109,6 +113,21 @@ def _kp(gain: LoopGain | None) -> str:
     return "" if gain is None else f'<div class="sub">Kp {in_words(gain.kp)}</div>'
 
 
+def _region(region: RegionCheck) -> str:
+    """How much room plants leave, and which of them were held to."""
+    sides = region.before, region.room
+    rows = [
+        ["plants that keep all limits", *(f"{kept_of(r)} of {len(r)}" for r in sides)],
+        ["least room", *(room_text(r) for r in sides)],
+    ]
+    heads = ["", "gains for the nominal plant", "gains found"]
+    found = table(heads, rows, 1)
+    names = list(dict.fromkeys(n for plant in region.added for n in plant))
+    held = [[n, *(f"{plant[n]:.5g}" for plant in region.added)] for n in names]
+    heads = ["added to the search", *(f"possible plant {k + 1}" for k in range(len(region.added)))]
+    return found + (table(heads, held, 1) if held else "")
+
+
 def _trial(trial: Trial) -> str:
     rows = []
     for value, look in trial.tried.items():
@@ -120,7 +139,7 @@ def _trial(trial: Trial) -> str:
 def _runs(tuned: Tuned) -> str:
     rows = []
     for before, after in zip(tuned.before, tuned.after, strict=True):
-        name = escape(plant_text(before.plant))
+        name = escape(tuned.plant_name(before.plant))
         for side, run in (("before", before), ("after", after)):
             error = run.fmus
             lengths = (error.rms, run.model.rms, error.max, run.model.max)
@@ -161,7 +180,7 @@ def _step(tuned: Tuned) -> Diagram:
 
 
 def _limits_note(tuned: Tuned) -> str:
-    family = " Least of the family of plants." if tuned.study.problem.family else ""
+    family = " Least of the family of plants." if len(tuned.study.plants) > 1 else ""
     return (
         "Loops are opened at the input named: the outer one with the inner one closed, the inner"
         f" one alone.{family} What is reached is marked."
@@ -195,8 +214,8 @@ def _limits(tuned: Tuned) -> str:
         tight = min(same, key=lambda x: slack[x])
         mark = ' <span class="mark fail">reached</span>' if (what, k) in reached else ""
         name = f"axis {k}: {escape(what)}{mark}"
-        if study.problem.family:
-            name += f'<div class="sub">{escape(plant_text(study.plants[tight.plant]))}</div>'
+        if len(study.plants) > 1:
+            name += f'<div class="sub">{escape(tuned.plant_name(study.plants[tight.plant]))}</div>'
         before = min(old[x] for x in same)
         others.append([name, f"{100.0 * before:.3g} %", f"{100.0 * slack[tight]:.3g} %"])
     heads = ["loop", "", "before", "after", "asked"]

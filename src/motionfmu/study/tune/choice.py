@@ -22,6 +22,8 @@ from motionfmu.study.tune.problem import Problem
 SPAN = 20.0
 # An output that shows a command is so many periods late at most.
 _LATE_MAX = 8
+# A motion is judged for its speed in so many pieces; one of this share of the quickest stands.
+_STRETCHES, _STANDS = 1000, 0.05
 
 
 @dataclass(frozen=True)
@@ -138,21 +140,27 @@ def _of_contour(axis: AxisModel) -> tuple[str, str]:
 
 
 def _followed(axis: AxisModel, name: str) -> str:
-    """The command that an output shows."""
+    """The command that an output shows, or that is driven itself."""
     component, _, output = name.partition(".")
     block = axis.blocks.get(component)
+    if name in axis.scenario.document.body.driven and name in axis.inputs:
+        return name
     if isinstance(block, Sampled) and output in block.ports:
         own = reaches(block)[block.ports.index(output)]
         first = len(block.inputs)
         found = np.flatnonzero(own[first:])
         if len(found) == 1 and not own[:first].any():
             return f"{component}.{block.commands[int(found[0])]}"
-    raise InputError(f"command = {name!r}: it shows no command of the linear model")
+    raise InputError(
+        f"command = {name!r}: it shows no command of the linear model, and drives no input of it"
+    )
 
 
 def shown(axis: AxisModel, problem: Problem, command: str) -> int:
-    """Periods after which an output shows the command it must follow."""
+    """Periods after which an output shows the command it must follow; 0 for a driven input."""
     assert problem.command is not None
+    if problem.command == command:
+        return 0
     system = matrices(axis, [command], [problem.command])
     for periods in range(_LATE_MAX):
         gain = system.d if not periods else system.c @ _power(system.a, periods - 1) @ system.b
@@ -190,6 +198,21 @@ def operating_point(axis: AxisModel, base: Result) -> dict[str, float]:
     unit = base.scenario.resolver.end(contour.position, "contour", "position").port.unit or "1"
     factor = parse("mm").factor / parse(unit).factor
     return {speed: feed * factor}
+
+
+def mean_speed(axis: AxisModel, base: Result, position: str) -> dict[str, float]:
+    """Mean speed of a run's own motion, as a speed output of the plant; empty if it has none."""
+    if not (speed := speed_output(axis, position)):
+        return {}
+    place = np.asarray(base[position], dtype=np.float64).reshape(len(base.time), -1)
+    place = place[:, axis.axis - 1 if place.shape[1] > 1 else 0]
+    # longer than the rounding of an encoder, shorter than a ramp
+    stride = max(1, len(place) // _STRETCHES)
+    rates = np.abs(np.diff(place[::stride])) / (stride * (base.time[1] - base.time[0]))
+    moving = rates > _STANDS * rates.max()
+    per = base.scenario.resolver.end(position, "position", position).port.unit or "1"
+    own = base.scenario.resolver.end(speed, "position", speed).port.unit or "1"
+    return {speed: float(rates[moving].mean()) * parse(per).factor / parse(own).factor}
 
 
 def speed_output(axis: AxisModel, position: str) -> str:

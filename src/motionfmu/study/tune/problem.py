@@ -63,8 +63,9 @@ class Problem(BaseModel):
         ``contour_rms`` or ``contour_max`` on the scenario's path, ``error_rms`` or ``error_max`` on
         its move; ``ise``, ``iae`` or ``itae`` after a step, the sum over the axes.
     command, position : str or None
-        For a scenario without [contour]: the output that says where the axis is to be, and the one
-        that says where it is, ``component.variable``.
+        For a scenario without [contour]: the output, or the input that [[drive]] or a record
+        drives, that says where the axis is to be, and the output that says where it is,
+        ``component.variable``.
     trial : dict
         Least and largest value of a parameter that no linear model knows: looked for by running the
         FMUs with the gains found.
@@ -73,6 +74,11 @@ class Problem(BaseModel):
     limits : TuningLimits
     family : dict
         Least and largest value of plant parameters: all corners are held.
+    identified : list of str
+        Results of ``motionfmu identify``, of an axis each: their values are set, all plants that
+        their records leave possible are held.
+    level : float
+        Probability of each region of possible plants.
     at : dict
         Operating point of the plants; else the mean feed.
     starts : int
@@ -94,6 +100,8 @@ class Problem(BaseModel):
     bounds: dict[str, tuple[float, float]] = Field(default_factory=dict)
     limits: TuningLimits = TuningLimits()
     family: dict[str, tuple[float, float]] = Field(default_factory=dict)
+    identified: list[str] = Field(default_factory=list)
+    level: float = Field(default=0.95, gt=0.0, lt=1.0)
     at: dict[str, float] = Field(default_factory=dict)
     starts: int = Field(default=2, ge=1, le=50)
     check: int = Field(default=40, ge=0, le=100_000)
@@ -276,4 +284,6 @@ def read(file: str | Path, scenario: Scenario | None = None) -> dict[str, Any]:
     text = text_of(file)
     values = tables_of(text, file)
     problem(values, Lines(text), str(file), scenario)
+    if "identified" in values:
+        values["identified"] = [str(Path(file).parent / name) for name in values["identified"]]
     return values

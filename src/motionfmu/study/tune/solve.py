@@ -194,20 +194,27 @@ def merit(values: CostAndLimits) -> float:
     return float(np.log(values.worst)) + _PENALTY * float(-np.minimum(values.slack, 0.0).sum())
 
 
-# CCN 18: stages of one search after each other, of each of which time and evaluations are told.
-def solve(study: TuningFunctions, progress: Callable[[float], None] = lambda share: None) -> Found:
-    """Find the gains within the limits; `RanAway` if only a gain's own bound stops it."""
+# CCN 21: stages of one search after each other, of each of which time and evaluations are told.
+def solve(
+    study: TuningFunctions,
+    progress: Callable[[float], None] = lambda share: None,
+    near: Array | None = None,
+) -> Found:
+    """Find the gains within the limits; `RanAway` if only a gain's own bound stops it.
+
+    With a point that is `near` the search begins there, and nowhere else.
+    """
     together = _solver(study, _shared(study))
     begun, first = time.perf_counter(), study.evaluations
-    check, points = np.nan, [study.present]
-    if study.problem.check:
+    check, points = np.nan, [study.present if near is None else near]
+    if study.problem.check and near is None:
         point, values = _global(study, lambda share: progress(0.4 * share))
         check = values.worst if values.feasible(TOLERANCE) else np.nan
         points.append(point)
     spent = time.perf_counter() - begun, study.evaluations - first
     begun, first = time.perf_counter(), study.evaluations
     points = points[: study.problem.starts]
-    if len(points) < study.problem.starts:
+    if len(points) < study.problem.starts and near is None:
         points = [*points, *_spread(study)][: study.problem.starts]
     candidates: list[tuple[Array, CostAndLimits]] = []
     costs = []

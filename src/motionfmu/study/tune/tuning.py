@@ -2,14 +2,17 @@
 
 import itertools
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from motionfmu.base.errors import InputError
+from motionfmu.identify import Identified
+from motionfmu.identify.confidence_region import ConfidenceRegion, read_region, region_of
 from motionfmu.run import Result, Scenario, load
+from motionfmu.scenarios.values import later
 from motionfmu.study.tune.choice import DecisionVariable
 from motionfmu.study.tune.move import MoveCost
 from motionfmu.study.tune.path_error import EVERY
@@ -18,8 +21,10 @@ from motionfmu.study.tune.solve import TOLERANCE, merit, solve
 from motionfmu.study.tune.steps import Array
 from motionfmu.study.tune.trial import tried
 from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
-from motionfmu.study.tune.tuning_result import Tuned, TuningRun, settings
+from motionfmu.study.tune.tuning_result import RegionCheck, Tuned, TuningRun, settings
 
+# Directions drawn on each region, and how often the worst plant is added.
+_DRAWN, _EXCHANGES = 40, 6
 # If there are more registers than this, all are rounded together instead of one by one.
 _ONE_BY_ONE = 4
 
@@ -52,6 +57,7 @@ def tune(
     options: Problem | Mapping[str, Any] | None = None,
     set: Mapping[str, Any] | None = None,
     progress: Callable[[str, float], None] = lambda what, share: None,
+    identified: Sequence[Identified | ConfidenceRegion | str | Path] = (),
 ) -> Tuned:
     """Find gains for a scenario's own path and run its FMUs.
 
@@ -65,6 +71,9 @@ def tune(
         from which the search begins.
     progress : callable
         Called with what is done and the share of it.
+    identified : sequence, optional
+        What `motionfmu.identify` found, or its folders, beside those of the options: values are set
+        as found, and limits of loops and steps hold for all plants that the records leave possible.
 
     Returns
     -------
@@ -88,15 +97,14 @@ def tune(
     if asked.trial and asked.command is None:
         raise InputError("trial: only for a scenario that is judged by command and position")
     check_names(asked, loaded)
-    given = dict(set or {})
+    regions = _regions(asked, identified)
+    given = _identified(regions, dict(set or {}))
     base = loaded.run(set=given, every=EVERY, progress=lambda share: progress("path", share))
-    study = TuningFunctions(loaded, asked, base, given)
-    found = solve(study, lambda share: progress("gains", share))
-    z, values = rounded(study, found.z)
-    tuned = Tuned(study, found, z, values)
+    tuned = _solved(loaded, (asked, regions), (base, given), progress)
+    study, z, values = tuned.study, tuned.z, tuned.values
     if isinstance(study.path, MoveCost):
         for name, ends in asked.trial.items():
-            set_ = {**given, **tuned.settings}
+            set_ = later(given, tuned.settings)
             most = asked.limits.beyond
             item = name, ends, np.inf if most is None else most
             tuned.trial = tried(
@@ -109,12 +117,98 @@ def tune(
     for i, p in enumerate(plants):
         progress("FMUs", i / len(plants))
         plant = study.plants[p]
-        ran = base if p == 0 else loaded.run(set={**given, **present, **plant}, every=EVERY)
+        before = later(later(given, present), plant)
+        ran = base if p == 0 else loaded.run(set=before, every=EVERY)
         tuned.before.append(_run(study, study.present, p, ran))
-        ran = loaded.run(set={**given, **tuned.settings, **plant}, every=EVERY)
+        ran = loaded.run(set=later(later(given, tuned.settings), plant), every=EVERY)
         tuned.after.append(_run(study, z, p, ran))
     tuned.seconds = time.perf_counter() - begun
     return tuned
+
+
+def _regions(
+    problem: Problem, identified: Sequence[Identified | ConfidenceRegion | str | Path]
+) -> list[ConfidenceRegion]:
+    """All regions; an InputError if two of them, or one and the family, say the same value."""
+    found: list[ConfidenceRegion] = []
+    known = {name: f"family.{name}" for name in problem.family}
+    for one in (*problem.identified, *identified):
+        if isinstance(one, str | Path):
+            region = read_region(one)
+        elif isinstance(one, ConfidenceRegion):
+            region = one
+        elif (told := region_of(one)) is not None:
+            region = told
+        else:
+            raise InputError(f"{one.record.name} told nothing, so it leaves every plant possible")
+        for name in region.settings:
+            if other := known.get(name) or known.get(name.partition("[")[0]):
+                raise InputError(f"{name} is in {region.name} and in {other}: choose one")
+        known |= dict.fromkeys(region.settings, region.name)
+        found.append(region)
+    return found
+
+
+def _identified(regions: Sequence[ConfidenceRegion], set: dict[str, Any]) -> dict[str, Any]:
+    """What was identified, below what is set; an InputError if that is a plant's value."""
+    found: dict[str, Any] = {}
+    for region in regions:
+        for name in region.moved:
+            if twice := {name, name.partition("[")[0]} & set.keys():
+                raise InputError(
+                    f"{min(twice)} is set, and identified in {region.name}: choose one"
+                )
+        found |= region.settings
+    return later(found, set)
+
+
+def _solved(
+    scenario: Scenario,
+    asked: tuple[Problem, Sequence[ConfidenceRegion]],
+    of: tuple[Result, dict[str, Any]],
+    progress: Callable[[str, float], None],
+) -> Tuned:
+    """Find the gains; the possible plant that misses a limit most is added, and again.
+
+    So an exchange method solves a problem with limits for infinitely many plants (Blankenship and
+    Falk 1976).
+    """
+    (problem, regions), (base, given) = asked, of
+    possible = _possible(problem, regions)
+    more: list[dict[str, float]] = []
+    first: tuple[float, ...] = ()
+    near: Array | None = None
+    while True:
+        study = TuningFunctions(scenario, problem, base, given, more)
+        found = solve(study, lambda share: progress("gains", share), near)
+        z, values = rounded(study, found.z)
+        tuned = Tuned(study, found, z, values)
+        if not possible:
+            return tuned
+        room = []
+        for k, plant in enumerate(possible):
+            progress("possible plants", k / len(possible))
+            room.append(study.room(z, plant))
+        first = first or tuple(room)
+        names = tuple(r.name for r in regions)
+        tuned.region = RegionCheck(names, problem.level, tuple(more), tuple(room), first)
+        worst = possible[int(np.argmin(room))]
+        if min(room) > -TOLERANCE or worst in more or len(more) == _EXCHANGES:
+            return tuned
+        more.append(worst)
+        near = found.z
+
+
+def _possible(problem: Problem, regions: Sequence[ConfidenceRegion]) -> list[dict[str, float]]:
+    """Plants on the surface of all regions, at each corner of the family.
+
+    Those of several regions, of an axis each, go together, for axes have limits of their own.
+    """
+    every = [[*r.principal(problem.level), *r.surface(problem.level, _DRAWN)] for r in regions]
+    rows = itertools.zip_longest(*every, fillvalue={})
+    around = [{n: v for plant in row for n, v in plant.items()} for row in rows]
+    nominal, *corners = problem.plants()
+    return [{**corner, **plant} for corner in corners or [nominal] for plant in around]
 
 
 def _run(study: TuningFunctions, z: Array, plant: int, result: Result) -> TuningRun:

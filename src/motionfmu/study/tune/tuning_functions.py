@@ -1,6 +1,6 @@
 """Cost and limits of a tuning as functions of the gains."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,7 +61,7 @@ class TuningFunctions(Family):
     """A tuning problem, ready to be evaluated.
 
     `base` is a run of the scenario with its present gains and `set`, each step a row; InputError if
-    there are fewer.
+    there are fewer. `more` are plants beside those of the problem.
     """
 
     def __init__(
@@ -70,11 +70,12 @@ class TuningFunctions(Family):
         problem: Problem,
         base: Result,
         set: Mapping[str, Any] | None = None,
+        more: Sequence[Mapping[str, float]] = (),
     ) -> None:
         every = base.options["every"] or base.scenario.document.body.record.every
         if every != EVERY:
             raise InputError(f"a tuning needs each step of its run, not one of {every}: every = 1")
-        super().__init__(scenario, problem, base, set or {})
+        super().__init__(scenario, problem, base, set or {}, more)
         first = next(iter(self.axes))
         self.path, self.lag = self._path(first, self.parts[0][first])
         self._rough = self.path  # judges motions for the global search, from fewer samples
@@ -174,6 +175,19 @@ class TuningFunctions(Family):
             np.array(dcosts),
             np.array(dslack).reshape(len(slack), len(z)),
         )
+
+    def room(self, z: Array, plant: Mapping[str, float]) -> float:
+        """Least relative distance to the limits of loops and steps with another plant.
+
+        It is minus infinity if a loop is unstable with it.
+        """
+        least, none = np.inf, np.zeros(0)
+        with _BLAS.limit(limits=1, user_api="blas"):
+            for part in self.still(z, plant):
+                if not np.isfinite(part.slowest(none)[0]):
+                    return -np.inf
+                least = min(least, *self._slack(part, none, False)[0], np.inf)
+        return float(least)
 
     def motions(self, z: Array, plant: int = 0) -> dict[int, Array]:
         """Positions of all axes on the path."""

@@ -1,6 +1,6 @@
 """The result of a tuning."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -13,7 +13,7 @@ from motionfmu.base.shown_by import drawn
 from motionfmu.run import Result
 from motionfmu.study.tune.curve import margin
 from motionfmu.study.tune.path_error import PathError, RunPath
-from motionfmu.study.tune.solve import Found
+from motionfmu.study.tune.solve import TOLERANCE, Found
 from motionfmu.study.tune.steps import Array
 from motionfmu.study.tune.trial import Trial
 from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
@@ -44,6 +44,37 @@ class LoopMargins:
     phase: float  # [deg]
 
 
+@dataclass(frozen=True)
+class RegionCheck:
+    """The gains with plants on the surface of the regions that records leave possible."""
+
+    names: tuple[str, ...]  # of the records
+    level: float  # probability of each region
+    added: tuple[dict[str, float], ...]  # plants held to in the search, because they missed a limit
+    room: tuple[float, ...]  # least relative distance to a limit, of each plant
+    before: tuple[float, ...]  # the same with gains for the nominal plant alone
+
+    @property
+    def text(self) -> str:
+        """In words."""
+        where = f"the {100 * self.level:g} % region of {', '.join(self.names)}"
+        return (
+            f"{kept_of(self.room)} of {len(self.room)} plants on {where} keep all limits of loops"
+            f" and steps, the worst has {room_text(self.room)} of room; with gains for the nominal"
+            f" plant {kept_of(self.before)}, {room_text(self.before)}"
+        )
+
+
+def room_text(room: Sequence[float]) -> str:
+    """The least room of several plants, in per cent."""
+    return f"{100.0 * min(room):z.2f} %".replace("-", "\N{MINUS SIGN}")
+
+
+def kept_of(room: Sequence[float]) -> int:
+    """How many plants of so much room keep all limits."""
+    return sum(r > -TOLERANCE for r in room)
+
+
 @dataclass
 class Tuned:
     """What a tuning found.
@@ -63,6 +94,8 @@ class Tuned:
         Of everything.
     trial : Trial or None
         The parameter that was looked for by running the FMUs.
+    region : RegionCheck or None
+        The gains on plants that were not searched with, if the plant was identified.
     """
 
     study: TuningFunctions
@@ -73,6 +106,7 @@ class Tuned:
     after: list[TuningRun] = field(default_factory=list)
     seconds: float = 0.0
     trial: Trial | None = None
+    region: RegionCheck | None = None
     # It is computed once for the gains file, the page and the numbers.
     _margins: Memo[list[LoopMargins]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
     _position_gains: Memo[list[LoopGain]] = field(default_factory=lambda: Memo(_KEPT), repr=False)
@@ -87,12 +121,28 @@ class Tuned:
             both = (
                 f"{r.fmus.rms * 1e3:.4g} µm, largest {r.fmus.max * 1e3:.4g} µm" for r in (had, has)
             )
-            lines.append(f"{what}, {plant_text(has.plant)}: RMS {' → '.join(both)}")
+            lines.append(f"{what}, {self.plant_name(has.plant)}: RMS {' → '.join(both)}")
         lines += [f"stopped by {text}" for text in self.stopped_by]
         return f"Tuned gains of {name}\n" + "\n".join(f"  {t}" for t in lines)
 
     def _repr_html_(self) -> str:
         return str(drawn("loop_pages.loop_views").tuned_html(self))
+
+    def plant_name(self, plant: Mapping[str, float]) -> str:
+        """A plant in words; by its number if it was added.
+
+        Parameters
+        ----------
+        plant : mapping
+
+        Returns
+        -------
+        str
+        """
+        added = self.region.added if self.region else ()
+        if plant in added:
+            return f"possible plant {added.index(dict(plant)) + 1}"
+        return plant_text(plant)
 
     @property
     def present(self) -> dict[str, Any]:
@@ -122,7 +172,7 @@ class Tuned:
             text = f"{what}, {'axes' if len(axes) > 1 else 'axis'} {', '.join(map(str, axes))}"
             plants = sorted({x.plant for x in same})
             if self.study.problem.family:
-                text += f", {plant_text(self.study.plants[plants[0]])}"
+                text += f", {self.plant_name(self.study.plants[plants[0]])}"
                 text += f" and {len(plants) - 1} more" if len(plants) > 1 else ""
             found.append(text)
         found += self.found.ends
@@ -197,6 +247,7 @@ class Tuned:
             f"# Gains of {self.study.scenario.name}, found by motionfmu tune.",
             *(f"# {text}" for text in assumptions(self.study)),
             *(f"# Stopped by: {text}" for text in self.stopped_by),
+            *([f"# {self.region.text}."] if self.region else []),
             *(f"# Lag of axis {k}: {v * 1e3:.4g} ms" for k, v in self.lags(self.z).items()),
             *(f"# {text}" for text in in_lines(self.position_gains(self.z))),
         ]
@@ -236,6 +287,7 @@ class Tuned:
             "tried": {str(v): asdict(x) for v, x in self.trial.tried.items()}
             if self.trial
             else None,
+            "region": asdict(self.region) if self.region else None,
             "seconds": {
                 "nlp": found.seconds[0],
                 "global_search": found.seconds[1],
