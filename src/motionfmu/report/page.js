@@ -236,6 +236,12 @@ async function unpacked(name) {
   return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
 }
 
+// What was drawn is on the screen; of a page behind others it is when somebody looks.
+function onScreen() {
+  const looked = new Promise((done) => requestAnimationFrame(() => setTimeout(done)));
+  return Promise.race([looked, new Promise((done) => setTimeout(done, 500))]);
+}
+
 async function open() {
   if (!("DecompressionStream" in window)) {
     document.getElementById("unable").hidden = false;
@@ -249,7 +255,11 @@ async function open() {
   if (plotsDark) recolored(page.figures, palette(true));
   const clocks = page.times.map(timesOf);
   plots = page.figures.map((figure) => new Plot(figure, clocks));
-  await Promise.all(plots.map((p) => p.open()));
+  // Scenes in space take as long as all the rest, so the rest is shown before they begin.
+  const [flat, deep] = [false, true].map((d) => plots.filter((p) => "scene" in p.layout === d));
+  await Promise.all(flat.map((p) => p.open()));
+  if (deep.length && flat.length) await onScreen();
+  await Promise.all(deep.map((p) => p.open()));
   linked(plots.filter((p) => p.overTime));
   measured(plots.filter((p) => p.cursors && p.traces.length));
   addEventListener("beforeprint", () => printed(true));
