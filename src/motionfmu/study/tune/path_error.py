@@ -18,6 +18,9 @@ EVERY = 1
 SAMPLE = 1e-3
 # The same for the global search; costs are within 5 % wherever the limits are kept.
 ROUGH = 2e-3
+# A path that is longer than what is judged of it is judged in pieces of so many seconds: half of
+# them where the error is largest, half spread evenly. The motion begins so long before each [s].
+PIECE, RUN_UP = 1.0, 0.4
 # Order of the norm that approximates the largest error, so that it has a derivative.
 _ORDER = 24
 
@@ -73,21 +76,25 @@ class PathCost:
 
     what = "contour error"
 
-    def __init__(self, base: Result, period: float, sample: float = SAMPLE) -> None:
+    def __init__(
+        self, base: Result, period: float, sample: float = SAMPLE, most: float = np.inf
+    ) -> None:
         contour = base.contour()
         run, document = contour.run, base.scenario.document
         assert document.body.contour is not None
         rows = round(period / (run.time[1] - run.time[0]))
         # periods of the model from one sample to the next
         self.periods = max(1, round(sample / period))
-        stride = slice(None, None, rows * self.periods)
         window = contour.window
         owners = contour.command_track.segment
         time = run.time
+        error = np.where(contour.cutting, contour.track.distance, 0.0)
+        stride, judged = pieces(error, rows * self.periods, float(time[1] - time[0]), most)
         self.time = time[stride]
-        first = owners[_held(time, -window)][stride]
-        last = owners[_held(time, AHEAD * window)][stride]
-        self._cutting = contour.cutting[stride]
+        self.judged = float(judged.sum()) * rows * self.periods * float(time[1] - time[0])
+        first = owners[_held(time, -window)[stride]]
+        last = owners[_held(time, AHEAD * window)[stride]]
+        self._cutting = contour.cutting[stride] & judged
         self._path = run.path
         self._lowest, self._owners = first, first.copy()
         # Other samples have one candidate only, so runs of samples between them are independent.
@@ -96,7 +103,11 @@ class PathCost:
         self._pairs = np.split(self._open, np.flatnonzero(np.diff(self._candidates[0])) + 1)
         self.axes = tuple(i + 1 for i in run.axes if i < 3)
         counts = base[document.body.contour.pulses]
-        self.pulses = {i: counts[stride, i - 1].astype(float) for i in self.axes}
+        # what lies between two pieces is left out of the motion, and added to the positions
+        self.pulses = {
+            i: _joined(counts[stride, i - 1].astype(float), stride)[0] for i in self.axes
+        }
+        self._left_out = {i: _joined(run.commanded[stride, i - 1], stride)[1] for i in self.axes}
         self._rest = run.actual[stride, :3].copy()
         self._start = {i: float(run.actual[0, i - 1]) for i in self.axes}
         port = base.scenario.resolver.end(
@@ -109,7 +120,7 @@ class PathCost:
         # The positions are in the unit of the scenario's position output.
         points = self._rest.copy()
         for axis, values in positions.items():
-            points[:, axis - 1] = self._start[axis] + values * self.factor
+            points[:, axis - 1] = self._start[axis] + values * self.factor + self._left_out[axis]
         self._assign(points)
         points = points[self._cutting]
         near = self._path.segments.foot(points, self._owners[self._cutting])
@@ -141,6 +152,47 @@ class PathCost:
         values = track.distance if track.signed is None else track.signed
         shown = np.where(contour.cutting, values, np.nan)
         return RunPath(contour.error.rms, contour.error.max, contour.run.time, shown)
+
+
+def pieces(
+    error: Array, stride: int, step: float, most: float
+) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """The samples of a path with an error (n,) every so many seconds that are looked at.
+
+    They are every `stride`-th one, of a path that is longer than `most` [s] those of some pieces
+    only. The second array has those that are judged, not only run up to.
+    """
+    every = np.arange(0, len(error), stride)
+    if len(error) * step <= most:
+        return every, np.ones(len(every), dtype=bool)
+    length = max(1, round(PIECE / (stride * step)))
+    count = -(-len(every) // length)
+    wanted = max(2, int(most / PIECE))
+    rows = np.arange(count) * length * stride
+    highest = np.maximum.reduceat(error, rows)
+    worst = np.argsort(-highest, kind="stable")[: wanted // 2]
+    others = np.setdiff1d(np.arange(count), worst)
+    spread = others[np.linspace(0, len(others) - 1, wanted - len(worst)).round().astype(np.int64)]
+    judged = np.zeros(count * length, dtype=bool)
+    for k in (*worst, *spread):
+        judged[k * length : (k + 1) * length] = True
+    judged = judged[: len(every)]
+    before = round(RUN_UP / (stride * step))
+    # a sample is looked at if one is judged within the run-up after it
+    ahead = np.cumsum(np.append(judged, np.zeros(before, dtype=bool)))
+    here = np.arange(len(every))
+    seen = ahead[here + before] - np.where(here > 0, ahead[here - 1], 0) > 0
+    return every[seen], judged[seen]
+
+
+def _joined(values: Array, rows: NDArray[np.int64]) -> tuple[Array, Array]:
+    """Values at some rows, less the way between two that do not follow each other; that way."""
+    steps = np.diff(rows)
+    gaps = np.flatnonzero(steps > steps.min()) + 1 if len(steps) else steps
+    away = np.zeros(len(values))
+    away[gaps] = values[gaps] - values[gaps - 1]
+    left_out = np.cumsum(away)
+    return values - left_out, left_out
 
 
 def _held(time: Array, shift: float) -> NDArray[np.int64]:

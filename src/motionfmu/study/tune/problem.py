@@ -81,6 +81,9 @@ class Problem(BaseModel):
         Probability of each region of possible plants.
     at : dict
         Operating point of the plants; else the mean feed.
+    judged : float
+        Seconds of a path with a [contour] by which gains are judged: of a longer one half where the
+        error is largest, half spread evenly. The FMUs run the whole.
     starts : int
         Points from which the NLP begins: the present gains, what the global search found, then
         points spread over the range.
@@ -103,6 +106,7 @@ class Problem(BaseModel):
     identified: list[str] = Field(default_factory=list)
     level: float = Field(default=0.95, gt=0.0, lt=1.0)
     at: dict[str, float] = Field(default_factory=dict)
+    judged: float = Field(default=60.0, ge=1.0)
     starts: int = Field(default=2, ge=1, le=50)
     check: int = Field(default=40, ge=0, le=100_000)
 

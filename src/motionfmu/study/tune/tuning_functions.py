@@ -80,7 +80,7 @@ class TuningFunctions(Family):
         self.path, self.lag = self._path(first, self.parts[0][first])
         self._rough = self.path  # judges motions for the global search, from fewer samples
         if isinstance(self.path, PathCost):
-            self._rough = PathCost(base, self.parts[0][first].period, ROUGH)
+            self._rough = PathCost(base, self.parts[0][first].period, ROUGH, problem.judged)
         period = self.parts[0][first].period
         seconds = _LAGS * max(self.lag, 50.0 * period)
         self._step = max(1, round(seconds / _SAMPLES / period)), _SAMPLES
@@ -93,7 +93,8 @@ class TuningFunctions(Family):
         """The judge of motions, and the servo lag [s] with the present gains."""
         problem, base = self.problem, self.base
         if problem.command is None or problem.position is None:
-            return PathCost(base, part.period), base.contour().lag
+            path = PathCost(base, part.period, most=problem.judged)
+            return path, base.contour().lag
         ends = problem.command, problem.position
         gains = self.gains(self.present)[axis]
         late = choice.shown(self.axes[axis], problem, self.signals.command)

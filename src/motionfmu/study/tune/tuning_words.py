@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from motionfmu.analysis.linear.block import Plant, Sampled
 from motionfmu.analysis.linear.tuning_parts import worst
+from motionfmu.study.tune.path_error import PathCost
 from motionfmu.study.tune.problem import ON_PATH
 from motionfmu.study.tune.tuning_functions import TuningFunctions
 
@@ -31,6 +32,11 @@ def assumptions(study: TuningFunctions) -> list[str]:
     found += [f"Worst case: {text}" for text in worst(axis)]
     point = ", ".join(f"{n} = {v:.4g}" for n, v in study.at.items()) or "at rest"
     found.append(f"Operating point: {point}")
+    if isinstance(study.path, PathCost) and study.path.judged < 0.99 * study.base.time[-1]:
+        found.append(
+            f"Path: {study.path.judged:.0f} s of {study.base.time[-1]:.0f} s are judged, half where"
+            " the error is largest, half spread evenly; the FMUs run the whole"
+        )
     if study.problem.family:
         ranges = ", ".join(f"{n} {lo:g} to {hi:g}" for n, (lo, hi) in study.problem.family.items())
         found.append(f"Plants: nominal and all corners of {ranges}")
