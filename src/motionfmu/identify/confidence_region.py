@@ -199,6 +199,28 @@ def read_region(place: str | Path) -> ConfidenceRegion:
         The file is missing, it is no identification's, or its record told nothing.
     """
     file = Path(place) / "result.json" if Path(place).is_dir() else Path(place)
+    own, settings = _numbers(file)
+    count = len(own.free)
+    covariance = np.array(own.covariance, dtype=np.float64)
+    rows: list[list[Any]] = [own.values, own.low, own.high, *(m.by for m in own.moved.values())]
+    if covariance.shape != (count, count) or any(len(r) != count for r in rows):
+        raise InputError(f"{file}: {KEY}: not all of it has {count} quantities")
+    low = np.array([-np.inf if v is None else v for v in own.low])
+    high = np.array([np.inf if v is None else v for v in own.high])
+    moved = {n: (m.at, np.array(m.by)) for n, m in own.moved.items()}
+    return ConfidenceRegion(
+        file.parent.name or str(place),
+        settings,
+        tuple(own.free),
+        np.array(own.values),
+        covariance,
+        (low, high),
+        moved,
+    )
+
+
+def _numbers(file: Path) -> tuple[_RegionNumbers, dict[str, Any]]:
+    """The region in a result.json, of the right types, and the settings beside it."""
     text = text_of(file)
     try:
         every = json.loads(text)
@@ -214,20 +236,4 @@ def read_region(place: str | Path) -> ConfidenceRegion:
         first = error.errors()[0]
         at = ".".join(map(str, first["loc"]))
         raise InputError(f"{file}: {KEY}.{at}: {first['msg'].lower()}") from None
-    count = len(own.free)
-    covariance = np.array(own.covariance, dtype=np.float64)
-    rows: list[list[Any]] = [own.values, own.low, own.high, *(m.by for m in own.moved.values())]
-    if covariance.shape != (count, count) or any(len(r) != count for r in rows):
-        raise InputError(f"{file}: {KEY}: not all of it has {count} quantities")
-    low = np.array([-np.inf if v is None else v for v in own.low])
-    high = np.array([np.inf if v is None else v for v in own.high])
-    moved = {n: (m.at, np.array(m.by)) for n, m in own.moved.items()}
-    return ConfidenceRegion(
-        file.parent.name or str(place),
-        every["settings"],
-        tuple(own.free),
-        np.array(own.values),
-        covariance,
-        (low, high),
-        moved,
-    )
+    return own, every["settings"]

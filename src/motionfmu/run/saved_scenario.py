@@ -23,16 +23,8 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
     tables = _tables(document.sources[0].tables, options)
     machine = Path(tables.pop("machine"))
     tables.pop("drawing", None)  # it is in the program that was made
-    files = read_files(plan.resolver, tables["set"])
-    tables["set"] |= {name: file.name for name, file in files.items()}
-    if "record_file" in tables:
-        files["record_file"] = record_file(plan.resolver)
-        tables["record_file"] = {**tables["record_file"], "file": files["record_file"].name}
     with new_folder(folder) as part:
-        for file in [*files.values(), *(c for f in files.values() for c in _called(f))]:
-            if (part / file.name).exists() and not filecmp.cmp(file, part / file.name, False):
-                raise InputError(f"{folder}: two files {file.name} would stand there")
-            shutil.copyfile(file, part / file.name)
+        tables = copied_files(plan, tables, part)
         top = {"machine": _machine_name(machine, folder.absolute())}
         top |= {k: v for k, v in tables.items() if not isinstance(v, dict | list)}
         lines = [f"# {document.about}."]
@@ -42,6 +34,21 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
             if isinstance(table, dict | list):
                 lines += table_lines(name, table)
         (part / package_files.SCENARIO).write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def copied_files(plan: RunPlan, tables: Mapping[str, Any], part: Path) -> dict[str, Any]:
+    """Copy the files that tables name into a folder; the tables with their names there."""
+    values = tables.get("set", {})
+    files = read_files(plan.resolver, values)
+    found = {**tables, "set": {**values, **{name: file.name for name, file in files.items()}}}
+    if "record_file" in tables:
+        files["record_file"] = record_file(plan.resolver)
+        found["record_file"] = {**tables["record_file"], "file": files["record_file"].name}
+    for file in [*files.values(), *(c for f in files.values() for c in _called(f))]:
+        if (part / file.name).exists() and not filecmp.cmp(file, part / file.name, False):
+            raise InputError(f"{part}: two files {file.name} would stand there")
+        shutil.copyfile(file, part / file.name)
+    return found
 
 
 def record_file(resolver: Resolver) -> Path:

@@ -18,7 +18,7 @@ from motionfmu.cards.config import CardConfig, load
 from motionfmu.cards.server_page.configuration import Configuration
 from motionfmu.cards.server_page.guard import Guard
 from motionfmu.cards.server_page.job_pictures import Pictures
-from motionfmu.cards.server_page.live import Live
+from motionfmu.cards.server_page.open_pages import OpenPages
 from motionfmu.cards.server_page.plan_process import opened_apart
 from motionfmu.cards.views import CardView, CommandResult, ConfigurationResult, Event
 
@@ -77,7 +77,7 @@ def application(cards: Fleet, token: str, config: Path | None = None) -> Starlet
         The configuration is wrong.
     """
     page = _CardPage(cards, load(config) if config else None, config)
-    live = Live(cards, token)
+    live = OpenPages(cards, token)
     routes = [
         Route("/", _file("page.html")),
         *(Route(f"/{f.name}", _file(f.name)) for f in sorted(FILES.iterdir()) if f.suffix in KINDS),

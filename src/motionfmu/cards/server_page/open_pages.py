@@ -17,7 +17,7 @@ EVENTS = 200  # of all cards, at the start
 FLEETING = ("status", "progress")  # kinds that are no line of the log
 
 
-class Live:
+class OpenPages:
     """The pages that are open."""
 
     def __init__(self, cards: Any, token: str) -> None:

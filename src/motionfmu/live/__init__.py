@@ -1,0 +1,7 @@
+"""A machine that runs while somebody works at it."""
+
+from motionfmu.live.journal import Action, Journal
+from motionfmu.live.live_machine import LiveMachine
+from motionfmu.live.pace import Pace
+
+__all__ = ["Action", "Journal", "LiveMachine", "Pace"]

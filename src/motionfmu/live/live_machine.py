@@ -1,0 +1,473 @@
+"""The fused program of a scenario, stepped, changed, looked at and taken back by hand."""
+
+import json
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from ctypes import byref, c_size_t, c_void_p
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu import fused
+from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.new_folder import new_folder
+from motionfmu.fmu.describe import STRICT
+from motionfmu.fused.resource_files import carrying, placed
+from motionfmu.live.journal import Action, Journal
+from motionfmu.run.engines import fmu_messages
+from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
+from motionfmu.run.run_plan import Options
+from motionfmu.run.runner import Scenario, load
+from motionfmu.run.saved_scenario import copied_files
+from motionfmu.scenarios import package_files
+from motionfmu.scenarios.system import End, Stimulus
+from motionfmu.scenarios.toml_text import pair_lines, table_lines
+from motionfmu.scenarios.values import start_values, values_of
+
+NAME = "system"
+# Bytes of all states that are kept to go back to.
+STATES_MAX = 512 << 20
+# What a scenario says of its own run, at times that this one need not reach.
+_CLAIMS = "limit", "settle", "contrary", "figure", "waveform", "iso9283"
+_NUMBERS = {
+    "Float64",
+    "Float32",
+    "Boolean",
+    *(f"{u}Int{n}" for u in ("", "U") for n in (8, 16, 32, 64)),
+}
+
+
+@dataclass
+class _SavedState:
+    """A state of the program, and what had been set by then."""
+
+    step: int
+    state: c_void_p
+    values: dict[str, tuple[Any, ...]]
+
+
+class LiveMachine:
+    """A scenario's program that goes on for as long as it is stepped.
+
+    What is set acts when the next communication step begins and is written down with it, so what
+    was done by hand is a scenario, whose run has the same bits.
+
+    Parameters
+    ----------
+    scenario : Scenario, str or Path
+        Its [[drive]]s act too; a signal that ends it does not end the machine.
+    set : mapping, optional
+        Values by ``component.variable``, stronger than the scenario's.
+
+    Attributes
+    ----------
+    scenario : Scenario
+    journal : Journal
+    steps : int
+        Communication steps made.
+
+    Raises
+    ------
+    InputError
+        A name or value is wrong, or an FMU refuses one.
+    """
+
+    def __init__(
+        self, scenario: Scenario | str | Path, set: Mapping[str, Any] | None = None
+    ) -> None:
+        self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
+        self._options = Options(set=dict(set or {}))
+        self._system = self.scenario.resolved(self._options)
+        self._outputs = {e.name: e for e in self._ends("output")}
+        self._made = fused.program(self._system, list(self._outputs.values()), 3)
+        about = json.loads((self._made.folder / "program.json").read_bytes())
+        self._token: str = about["token"]
+        self._places = {name: ValuePlace(*row) for name, row in about["variables"].items()}
+        self._inputs = {e.name: e for e in self._changeable()}
+        self._errors: list[str] = []
+        self.warnings: list[str] = []
+        self._library = Library(self._made.folder / about["library"], 3)
+        self._kept: deque[_SavedState] = deque()
+        self._readers: dict[tuple[str, ...], Callable[[], list[Any]]] = {}
+        self.journal = Journal(self._system.step_ns)
+        self.steps = 0
+        try:
+            self._begin()
+        except BaseException:
+            self._library.close()
+            raise
+
+    def _ends(self, causality: str) -> list[End]:
+        resolver = self.scenario.resolver
+        return [
+            resolver.end(f"{component}.{port.name}", "", "")
+            for component, ports in resolver.ports.items()
+            for port in ports.values()
+            if port.causality == causality and port.type in _NUMBERS
+        ]
+
+    def _changeable(self) -> list[End]:
+        """Inputs that no wire feeds and no stimulus drives, and tunable parameters."""
+        taken = {w.target.name for w in self._system.wires}
+        taken |= {s.end.name for s in self._system.stimuli}
+        tunable = [e for e in self._ends("parameter") if e.port.tunable]
+        both = [*self._ends("input"), *tunable]
+        return [e for e in both if e.name not in taken and e.name in self._places]
+
+    def _begin(self) -> None:
+        library, system = self._library, self._system
+        settings = placed(system, carrying(system)).settings
+        values = {s.end.name: s.values for s in settings if s.end.port.name != STRICT}
+        given: dict[str, tuple[Any, ...]] = {n: v for n, v in values.items() if n in self._places}
+        given |= {"system.step": (system.step_ns * 1e-9,), "recorder.folder": ("",)}
+        if "until.settle" in self._places:
+            given["until.settle"] = (-1,)
+        self._values = {
+            e.name: values.get(e.name, tuple(start_values(e.port))) for e in self._inputs.values()
+        }
+        due = system.due()
+        self._due: dict[int, Sequence[Stimulus]] = dict(due)
+
+        def begin() -> None:
+            library.instantiate(NAME, self._token, self._made.folder / "resources", self._tell)
+            library.warn()
+            library.set((self._places[n], v) for n, v in given.items())
+            library.enter()
+            library.leave()
+
+        self._refusable(begin)
+
+    def _tell(self, status: int, text: str) -> None:
+        told = text.strip().removeprefix(f"{NAME}: ")
+        fmu_messages.keep(status, told, self._errors, self.warnings)
+
+    def _refusable(self, call: Callable[[], None]) -> None:
+        self._errors.clear()
+        try:
+            call()
+        except FmuRefusal as refused:
+            raise fmu_messages.failure(NAME, str(refused), self._errors) from None
+
+    @property
+    def time(self) -> float:
+        """Simulated time [s]."""
+        return self.steps * self._system.step_ns / 1e9
+
+    @property
+    def step_seconds(self) -> float:
+        """Communication step [s]."""
+        return self._system.step_ns / 1e9
+
+    @property
+    def names(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """What can be looked at, and what can be set."""
+        return tuple(self._outputs), tuple(self._inputs)
+
+    def set(self, name: str, value: Any) -> Action:
+        """Give an input or a parameter a value from now on.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``, or ``component.variable[i]``.
+        value : number, bool or list
+            One for all elements, or a list.
+
+        Returns
+        -------
+        Action
+
+        Raises
+        ------
+        InputError
+            There is no such name, something else sets it, or the value is out of its range.
+        """
+        whole, element = self._split(name)
+        end = self._inputs[whole]
+        had = self._values[whole]
+        had = had * end.port.count if len(had) == 1 else had
+        try:
+            if element is None:
+                values = values_of(end, value)
+                values = values * end.port.count if len(values) == 1 else values
+            else:
+                values = values_of(end, [*had[:element], value, *had[element + 1 :]])
+        except ValueError as error:
+            raise InputError(str(error)) from None
+        self._refusable(lambda: self._library.set([(self._places[whole], values)]))
+        self._values[whole] = values
+        action = Action(self.steps, whole, values)
+        self.journal.add(action)
+        return action
+
+    def _split(self, name: str) -> tuple[str, int | None]:
+        try:
+            whole, element = self.scenario.resolver.split(name)
+        except InputError:
+            whole, element = name, None
+        if whole in self._inputs:
+            return whole, element
+        for stimulus in self._system.stimuli:
+            if stimulus.end.name == whole:
+                raise InputError(f"{whole} is driven by the scenario")
+        for wire in self._system.wires:
+            if wire.target.name == whole:
+                raise InputError(f"{whole} is wired to {wire.source.name}")
+        if whole in self._outputs:
+            raise InputError(f"{whole} is an output")
+        raise InputError(f"{name} cannot be set{suggestion(name, self._inputs)}")
+
+    def __getitem__(self, name: str) -> Any:
+        """The present value of an output or of what can be set: a number, or an array."""
+        whole, bracket, _ = name.partition("[")
+        if whole not in self._outputs and whole not in self._inputs:
+            raise InputError(f"{name}: no such signal{suggestion(name, self._outputs)}")
+        found = self.read([whole])[0]
+        if not bracket:
+            return found[0] if len(found) == 1 else np.array(found)
+        _, element = self.scenario.resolver.split(name)
+        return found[element or 0]
+
+    def read(self, names: Iterable[str]) -> list[list[Any]]:
+        """Present values of whole signals.
+
+        Parameters
+        ----------
+        names : iterable of str
+
+        Returns
+        -------
+        list of list
+            The elements of each, in the order of the names.
+        """
+        key = tuple(names)
+        if key not in self._readers:
+            self._readers[key] = self._reader(key)
+        return self._readers[key]()
+
+    def _reader(self, names: tuple[str, ...]) -> Callable[[], list[list[Any]]]:
+        """A function that gets signals by one call of each type."""
+        by_type: dict[str, list[str]] = {}
+        for name in names:
+            by_type.setdefault(self._places[name].type, []).append(name)
+        calls, where = [], {}
+        for kind, several in by_type.items():
+            places = [self._places[n] for n in several]
+            buffer = self._library.buffer(kind, sum(p.count for p in places))
+            calls.append(self._library.access("Get", places, buffer))
+            first = 0
+            for name, place in zip(several, places, strict=True):
+                where[name] = buffer, slice(first, first + place.count)
+                first += place.count
+
+        def read() -> list[list[Any]]:
+            for call in calls:
+                call()
+            return [list(where[n][0][where[n][1]]) for n in names]
+
+        return read
+
+    def step(self, count: int = 1) -> None:
+        """Make communication steps.
+
+        Parameters
+        ----------
+        count : int
+
+        Raises
+        ------
+        InputError
+            An FMU refuses to go on.
+        """
+        end = self.steps + count
+        while self.steps < end:
+            now = self._due.get(self.steps, ())
+            if now:
+                self._refusable(
+                    lambda now=now: self._library.set(  # type: ignore[misc]
+                        (self._places[s.end.name], s.values) for s in now
+                    )
+                )
+            later = [k for k in self._due if self.steps < k < end]
+            following = min(later, default=end)
+            self._advance(following - self.steps)
+
+    def _advance(self, count: int) -> None:
+        step = self._system.step_ns * 1e-9
+        self._refusable(lambda: self._library.step(self.steps * step, count * step))
+        self.steps += count
+
+    def trace(self, names: Iterable[str], count: int) -> dict[str, NDArray[Any]]:
+        """Make communication steps; record signals before each.
+
+        Parameters
+        ----------
+        names : iterable of str
+            Whole outputs.
+        count : int
+
+        Returns
+        -------
+        dict
+            By name, of shape (count,) or (count, elements).
+        """
+        wanted = tuple(names)
+        rows = []
+        for _ in range(count):
+            rows.append(self.read(wanted))
+            self.step()
+        return {
+            n: np.array([r[k] for r in rows]).squeeze(axis=1)
+            if self._places[n].count == 1
+            else np.array([r[k] for r in rows])
+            for k, n in enumerate(wanted)
+        }
+
+    def keep(self) -> None:
+        """Keep the state, to go back to; the oldest go beyond 512 MB."""
+        state = c_void_p()
+        self._refusable(lambda: self._library.call("GetFMUState", byref(state)))
+        self._kept.append(_SavedState(self.steps, state, dict(self._values)))
+        while len(self._kept) > 1 and len(self._kept) * self.state_bytes > STATES_MAX:
+            self._drop(self._kept.popleft())
+
+    @property
+    def state_bytes(self) -> int:
+        """Size of one state [bytes]."""
+        if not self._kept:
+            return 0
+        size = c_size_t()
+        state = self._kept[-1].state
+        self._refusable(lambda: self._library.call("SerializedFMUStateSize", state, byref(size)))
+        return size.value
+
+    @property
+    def kept(self) -> list[float]:
+        """Times of the states that are kept [s]."""
+        return [k.step * self._system.step_ns / 1e9 for k in self._kept]
+
+    def back(self, time: float) -> float:
+        """Go back to a state; what was done since is forgotten.
+
+        Parameters
+        ----------
+        time : float
+            [s].
+
+        Returns
+        -------
+        float
+            Time of that state [s].
+
+        Raises
+        ------
+        InputError
+            No state is kept from then.
+        """
+        step = round(time * 1e9 / self._system.step_ns)
+        if not any(k.step <= step for k in self._kept):
+            raise InputError(f"no state is kept at or before {time:g} s")
+        while self._kept[-1].step > step:
+            self._drop(self._kept.pop())
+        there = self._kept[-1]
+        self._refusable(lambda: self._library.call("SetFMUState", there.state))
+        self.steps, self._values = there.step, dict(there.values)
+        self.journal.forget(self.steps)
+        return self.time
+
+    def _drop(self, kept: _SavedState) -> None:
+        self._refusable(lambda: self._library.call("FreeFMUState", byref(kept.state)))
+
+    def as_scenario(self, name: str | None = None) -> Scenario:
+        """The scenario that does what was done.
+
+        Parameters
+        ----------
+        name : str, optional
+
+        Returns
+        -------
+        Scenario
+            Without what the one it began with claims of its own run.
+
+        Raises
+        ------
+        InputError
+            The machine has not been stepped.
+        """
+        if not self.steps:
+            raise InputError(f"{self.scenario.name}: no step was made")
+        tables = self.scenario.document.tables
+        drives = [*tables.get("drive", []), *self.journal.drives()]
+        cut: dict[str, Any] = {k: None for k in _CLAIMS if k in tables}
+        cut |= {t: dict.fromkeys(tables[t]) for t in ("check", "expect") if tables.get(t)}
+        return self.scenario.changed(
+            set=self._options.set,
+            drive=drives,
+            stop=self.time,
+            name=name,
+            **cut,
+        )
+
+    def save(self, folder: str | Path, check: Mapping[str, Any] | None = None) -> Path:
+        """Write what was done as a scenario, with the files it reads.
+
+        Parameters
+        ----------
+        folder : str or Path
+            Not there yet.
+        check : mapping, optional
+            The [check] of the scenario.
+
+        Returns
+        -------
+        Path
+            The scenario.toml.
+
+        Raises
+        ------
+        InputError
+            The folder is there, no step was made, or a check names what there is not.
+        """
+        place = Path(folder)
+        plan = self.as_scenario(place.name)
+        if check:
+            plan = plan.changed(check=check)
+        given = plan.document.tables.items()
+        tables = {k: v for k, v in given if k not in ("machine", "extends") and v not in ({}, [])}
+        with new_folder(place) as part:
+            tables = copied_files(plan, tables, part)
+            lines = [f"# {self.scenario.document.about.rstrip('.')}, as it was worked at."]
+            plain = {k: v for k, v in tables.items() if not _is_table(v)}
+            for key, value in plain.items():
+                lines += pair_lines(key, value)
+            for key, value in tables.items():
+                if key not in plain:
+                    lines += table_lines(key, value)
+            text = "\n".join(lines) + "\n"
+            (part / package_files.SCENARIO).write_text(text, encoding="utf-8")
+        return place / package_files.SCENARIO
+
+    def close(self) -> None:
+        """Free the program and the states that are kept."""
+        while self._kept:
+            self._drop(self._kept.pop())
+        self._library.close()
+
+    def __enter__(self) -> "LiveMachine":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"<LiveMachine {self.scenario.name}: {self.time:.9g} s, {len(self.journal)} actions>"
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict) or (
+        isinstance(value, list) and bool(value) and isinstance(value[0], dict)
+    )
