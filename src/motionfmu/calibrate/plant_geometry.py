@@ -25,7 +25,6 @@ class AxisErrors(BaseModel):
     """Parameters of an axis by the part of its positioning error."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    position: str  # output that shows where each axis is
     backlash: str | None = None
     slope: str | None = None
     amplitude: str | None = None
