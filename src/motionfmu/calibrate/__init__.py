@@ -5,6 +5,12 @@ from motionfmu.base.extras import needed
 needed("tune")
 
 # ruff: noqa: E402
+from motionfmu.calibrate.arm_calibration import (
+    ArmCalibration,
+    ArmOptions,
+    PoseFit,
+    arm_calibration,
+)
 from motionfmu.calibrate.circle_errors import CircleErrors, circle_errors
 from motionfmu.calibrate.circle_record import CircleChoice, CircleRecord, circle_record
 from motionfmu.calibrate.compensation import (
@@ -23,9 +29,12 @@ from motionfmu.calibrate.machine_calibration import (
     MachineRecords,
     machine_calibration,
 )
+from motionfmu.calibrate.pose_record import PoseRecord, pose_record
 from motionfmu.calibrate.position_record import PositionRecord, position_record
 
 __all__ = [
+    "ArmCalibration",
+    "ArmOptions",
     "AxisCalibration",
     "CircleCalibration",
     "CircleChoice",
@@ -37,7 +46,10 @@ __all__ = [
     "LeadError",
     "MachineCalibration",
     "MachineRecords",
+    "PoseFit",
+    "PoseRecord",
     "PositionRecord",
+    "arm_calibration",
     "circle_errors",
     "circle_record",
     "compensation_table",
@@ -45,5 +57,6 @@ __all__ = [
     "compensation_text",
     "lead_error",
     "machine_calibration",
+    "pose_record",
     "position_record",
 ]

@@ -84,7 +84,9 @@ def circle_record(files: Sequence[Path], plane: str, choice: CircleChoice) -> Ci
     radius = choice.radius
     if radius is None or not radius > 0.0:
         told = "--radius, the nominal one [mm], wanted"
-        raise InputError(f"{files[0]}: a circle: {told}" + ("" if radius is None else f": {radius}"))
+        raise InputError(
+            f"{files[0]}: a circle: {told}" + ("" if radius is None else f": {radius}")
+        )
     parts, centre = [], None
     for file in files:
         own, middle = _one(file, plane, radius, choice)

@@ -43,7 +43,7 @@ class CompensationTable:
 
     def places(self, pulse: float) -> Array:
         """Where its points are, with a pulse's length [mm]."""
-        return (np.arange(len(self.forward)) - self.home) * (self.interval * pulse)
+        return np.asarray(np.arange(len(self.forward)) - self.home, float) * (self.interval * pulse)
 
     def at(self, places: Array, pulse: float) -> tuple[Array, Array]:
         """Corrections at places, forward and backward [mm]."""
@@ -90,7 +90,7 @@ def compensation_table(
         interval += 1
     home = math.ceil(-low / (interval * pulse) - 1e-9)
     count = _count(low, high, interval * pulse)
-    grid = (np.arange(count) - home) * (interval * pulse)
+    grid = np.asarray(np.arange(count) - home, float) * (interval * pulse)
     up, down = (_deviation(error, grid, rows) for rows in error.test.means)
     zero = float(_deviation(error, np.zeros(1), error.test.means[0])[0])
     forward, backward = zero - up, zero - down

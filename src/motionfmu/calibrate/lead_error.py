@@ -116,12 +116,15 @@ def lead_error(test: PositioningTest) -> LeadError:
             Estimate(v, s, unit)
             for v, s, unit in zip(values[2:], deviations[2:], ("mm", "mm", "rad"), strict=True)
         ]
+    amplitude, period, phase = wave
     return LeadError(
-        test,
-        backlash,
-        Estimate(values[0], deviations[0], "mm"),
-        Estimate(values[1], deviations[1], "1"),
-        *wave,
+        test=test,
+        backlash=backlash,
+        offset=Estimate(values[0], deviations[0], "mm"),
+        slope=Estimate(values[1], deviations[1], "1"),
+        amplitude=amplitude,
+        period=period,
+        phase=phase,
         rest=math.sqrt(best.left / len(x)),
         shortest=1.0 / _highest(x),
     )

@@ -264,9 +264,7 @@ class _Calibrating:
         return self.rows[name]
 
     def _axis(self, name: str, record: PositionRecord) -> AxisCalibration:
-        found = AxisCalibration(
-            name, self._row(name, record.name), record, lead_error(record.test)
-        )
+        found = AxisCalibration(name, self._row(name, record.name), record, lead_error(record.test))
         self.notes += [f"{record.name}: {note}" for note in record.notes]
         if self.controller is None:
             return found
@@ -373,7 +371,7 @@ class _Calibrating:
 
     def _scale(self, errors: CircleErrors, record: CircleRecord, names: AxisErrors) -> None:
         """A circle tells the difference of two slopes, so one of them must be known."""
-        first, second = record.plane
+        first, second = record.plane[0], record.plane[1]
         known = [n for n in record.plane if n in self.axes]
         scale = errors.scale
         if len(known) == 2:
@@ -403,9 +401,7 @@ class _Calibrating:
     @property
     def settings(self) -> dict[str, float]:
         """Values of the plant as they are now."""
-        return {
-            v.name: v.now * TO_PLANT[v.seen.unit][0] for v in self.values if v.seen.told
-        }
+        return {v.name: v.now * TO_PLANT[v.seen.unit][0] for v in self.values if v.seen.told}
 
     def run(self, tests: MachineTests) -> None:
         """Correct values by the machine's own runs, then look at it with its compensation."""
@@ -508,7 +504,7 @@ class _Calibrating:
             parameters.append(GeometryParameter(v.name, v.part, v.before, shown, v.record))
         document = self.geometry.plan.document
         tables = [a.table for a in self.axes.values() if a.table is not None]
-        name = Path(self.geometry.name).parent.name
+        name = self.geometry.plan.name
         text, target = "", ""
         if tables and self.controller is not None:
             about = f"{name}, from " + ", ".join(a.record.name for a in self.axes.values())

@@ -52,10 +52,9 @@ class ArmPose(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
     joints: str
     position: str
-    attitude: str | None = None
-    tool: str | None = None
-    known: list[str] = Field(default_factory=list)
-    errors: list[str] = Field(default_factory=list)
+    attitude: str
+    errors: list[str]
+    known: dict[str, str] = Field(default_factory=dict)  # error that adds to it; -: takes from it
 
 
 class Geometry(BaseModel):
@@ -90,7 +89,10 @@ def _named(found: Geometry) -> list[str]:
     names: list[str] = list(found.squareness.values())
     for table in (found.axis, found.pose):
         for value in table.model_dump().values() if table else ():
-            names += value if isinstance(value, list) else [value] if value else []
+            if isinstance(value, dict):
+                names += [*value, *(e.lstrip("-").partition("[")[0] for e in value.values())]
+            else:
+                names += value if isinstance(value, list) else [value] if value else []
     return names + ([found.compensation.file] if found.compensation else [])
 
 
