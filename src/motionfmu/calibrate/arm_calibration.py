@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.units import parse
 from motionfmu.calibrate.arm_pose import BASE, SIZE, TOOL_TURN, ArmFrames, ArmPoses, moved_frames
 from motionfmu.calibrate.estimate import Estimate
 from motionfmu.calibrate.plant_geometry import ArmPose, MachineGeometry
@@ -25,7 +26,7 @@ from motionfmu.scenarios import agreement, fmus
 Array = NDArray[np.float64]
 # A column of which others leave less than this share acts as they do: gravity and the errors of the
 # gears keep those that are alike from being so to the last digit.
-ALIKE = 3e-3
+ALIKE = 0.02
 # Deviation, in sizes of an error, from which on a value is no news.
 USELESS = 1.0
 STEPS, DONE = 40, 1e-7  # of Gauss-Newton, and the step in sizes that ends it
@@ -206,7 +207,7 @@ def arm_calibration(
         known=of_controller,
         kept_back=work.kept_back(after),
         settings=settings,
-        compensated=_Controller(geometry, component, table, poses).values(after, of_controller),
+        compensated=_ToldController(geometry, component, table, poses).values(after, of_controller),
         next_poses=work.next_poses(after),
         notes=tuple(work.notes(after)),
         component=component,
@@ -456,7 +457,9 @@ def _counterparts(
     found = {}
     for name, error in table.known.items():
         sign, bare = (-1.0, error[1:]) if error.startswith("-") else (1.0, error)
-        factor = {"m": 1e-3, "rad": 1.0, "deg": 180.0 / math.pi}[ports[name].unit or "rad"]
+        unit = parse(ports[name].unit or "1")
+        length = unit.exponents == parse("mm").exponents
+        factor = parse("mm" if length else "rad").factor / unit.factor
         count = ports[name].count
         if count == 1:
             found[bare] = name, 0, sign * factor
@@ -465,7 +468,7 @@ def _counterparts(
     return found
 
 
-class _Controller:
+class _ToldController:
     """The arm and its controller, when the controller knows what it can know."""
 
     def __init__(

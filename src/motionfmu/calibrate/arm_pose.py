@@ -17,8 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.units import parse
 from motionfmu.calibrate.plant_geometry import ArmPose, MachineGeometry
 from motionfmu.fmu.modelica import equation_text
+from motionfmu.fmu.modelica.flat import Declaration
 from motionfmu.scenarios import fmus
 
 Array = NDArray[np.float64]
@@ -53,6 +55,20 @@ class ArmFrames:
         return cls(np.eye(3), np.zeros(3), np.eye(3), np.zeros(3))
 
 
+FRAMES = tuple(
+    PoseColumn(name, unit, 1.0)
+    for names, unit in ((BASE[:3], "mm"), (BASE[3:], "rad"), (TOOL, "mm"), (TOOL_TURN, "rad"))
+    for name in names
+)
+
+
+def _column(declared: Declaration) -> PoseColumn:
+    """A parameter of the plant as an unknown in mm or rad."""
+    unit = parse(declared.unit or "1")
+    own = "mm" if unit.exponents == parse("mm").exponents else "rad"
+    return PoseColumn(declared.name, own, parse(own).factor / unit.factor)
+
+
 class ArmPoses:
     """Measured poses of an arm as a function of its errors, its base and its tool."""
 
@@ -62,24 +78,14 @@ class ArmPoses:
         if text is None:
             raise InputError(f"{geometry.name}: {component}: its FMU carries no equation")
         ode = equation_text.from_json(text)
-        names = [d.name for d in ode.parameters]
-        self.p = np.array(ode.p0)
-        for d in {n.partition("[")[0] for n in names}:
-            rows = [k for k, n in enumerate(names) if n.partition("[")[0] == d]
-            self.p[rows] = [float(v) for v in geometry.values(component, d)]
-        self.joints = [k for k, n in enumerate(names) if n.partition("[")[0] == table.joints]
-        factors = {"m": ("mm", 1e-3), "rad": ("rad", 1.0), "deg": ("rad", 180.0 / np.pi)}
-        own = [k for e in table.errors for k, n in enumerate(names) if n.partition("[")[0] == e]
-        self.errors = [PoseColumn(names[k], *factors[ode.parameters[k].unit]) for k in own]
-        self.rows = own
-        self.names = names
-        self.columns = (
-            *(PoseColumn(n, "mm", 1.0) for n in BASE[:3]),
-            *(PoseColumn(n, "rad", 1.0) for n in BASE[3:]),
-            *(PoseColumn(n, "mm", 1.0) for n in TOOL),
-            *(PoseColumn(n, "rad", 1.0) for n in TOOL_TURN),
-            *self.errors,
-        )
+        self.names = names = [d.name for d in ode.parameters]
+        arrays = [n.partition("[")[0] for n in names]
+        values = {a: iter(geometry.values(component, a)) for a in dict.fromkeys(arrays)}
+        self.p = np.array([float(next(values[a])) for a in arrays])
+        self.joints = [k for k, a in enumerate(arrays) if a == table.joints]
+        self.rows = [k for e in table.errors for k, a in enumerate(arrays) if a == e]
+        self.errors = [_column(ode.parameters[k]) for k in self.rows]
+        self.columns = (*FRAMES, *self.errors)
         self._function = self._made(ode, table)
         self.scale = np.array([SIZE[c.unit] for c in self.columns])
 

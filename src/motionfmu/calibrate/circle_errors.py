@@ -61,7 +61,7 @@ class CircleErrors:
 
     @property
     def left(self) -> float:
-        """Root mean square of what the fit leaves of the samples that it uses [mm]."""
+        """Root mean square that the fit leaves [mm]."""
         return float(np.sqrt(np.mean(self.fit.rest[self.fit.used] ** 2)))
 
     def numbers(self) -> dict[str, Any]:

@@ -42,11 +42,25 @@ class CompensationTable:
     backward: NDArray[np.int64]
 
     def places(self, pulse: float) -> Array:
-        """Where its points are, with a pulse's length [mm]."""
+        """Where its points are [mm].
+
+        Parameters
+        ----------
+        pulse : float
+            Length of a pulse [mm].
+        """
         return np.asarray(np.arange(len(self.forward)) - self.home, float) * (self.interval * pulse)
 
     def at(self, places: Array, pulse: float) -> tuple[Array, Array]:
-        """Corrections at places, forward and backward [mm]."""
+        """Corrections forward and backward [mm].
+
+        Parameters
+        ----------
+        places : ndarray
+            [mm]
+        pulse : float
+            Length of a pulse [mm].
+        """
         own = self.places(pulse)
         both = (np.interp(places, own, rows * pulse) for rows in (self.forward, self.backward))
         forward, backward = both
@@ -56,7 +70,7 @@ class CompensationTable:
 def compensation_table(
     error: LeadError, axis: int, pulse: float, before: CompensationTable | None = None
 ) -> CompensationTable:
-    """Make the table that takes away what a positioning test has shown.
+    """Make the table that takes a positioning error away.
 
     Parameters
     ----------
@@ -72,7 +86,7 @@ def compensation_table(
     -------
     CompensationTable
         At position 0 approached upwards it corrects nothing, so the origin stays. Beyond the
-        targets it goes on with its last values.
+        targets it goes on with its last values, an interval behind them.
 
     Raises
     ------
@@ -91,8 +105,8 @@ def compensation_table(
     home = math.ceil(-low / (interval * pulse) - 1e-9)
     count = _count(low, high, interval * pulse)
     grid = np.asarray(np.arange(count) - home, float) * (interval * pulse)
-    up, down = (_deviation(error, grid, rows) for rows in error.test.means)
-    zero = float(_deviation(error, np.zeros(1), error.test.means[0])[0])
+    up, down = (_deviation(error, grid, rows, interval * pulse) for rows in error.test.means)
+    zero = float(_deviation(error, np.zeros(1), error.test.means[0], interval * pulse)[0])
     forward, backward = zero - up, zero - down
     if before is not None:
         old = before.at(grid, pulse)
@@ -110,11 +124,12 @@ def _count(low: float, high: float, step: float) -> int:
     return math.ceil(-low / step - 1e-9) + math.ceil(high / step - 1e-9) + 1
 
 
-def _deviation(error: LeadError, places: Array, means: Array) -> Array:
+def _deviation(error: LeadError, places: Array, means: Array, beyond: float) -> Array:
     """Deviation of one direction: the fit, and what it leaves at the targets, straight between."""
+    # the fit goes on to the first point beyond the targets, or the last piece would be oblique
     x = error.test.targets
-    inside = np.clip(places, x[0], x[-1])
-    return np.asarray(error.mean(inside) + np.interp(inside, x, means - error.mean(x)))
+    near = np.clip(places, x[0] - beyond, x[-1] + beyond)
+    return np.asarray(error.mean(near) + np.interp(near, x, means - error.mean(x)))
 
 
 def compensation_text(tables: Iterable[CompensationTable], about: str) -> str:

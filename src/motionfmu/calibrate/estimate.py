@@ -29,7 +29,15 @@ class Estimate:
         return not self.why
 
     def in_unit(self, factor: float, unit: str) -> "Estimate":
-        """The same in another unit, by the factor to it."""
+        """The same in another unit.
+
+        Parameters
+        ----------
+        factor : float
+            From this unit to the other.
+        unit : str
+            Its name.
+        """
         return Estimate(self.value * factor, self.deviation * abs(factor), unit, self.why)
 
     def numbers(self) -> dict[str, Any]:
@@ -44,7 +52,13 @@ class Estimate:
         }
 
     def text(self, factor: float = 1.0) -> str:
-        """Value with its deviation in as many digits as it has."""
+        """Value with its deviation, in as many digits as that has.
+
+        Parameters
+        ----------
+        factor : float
+            To the unit in which it is shown.
+        """
         value, deviation = self.value * factor, self.deviation * abs(factor)
         if not math.isfinite(deviation) or deviation <= 0.0:
             return f"{value:.6g}"

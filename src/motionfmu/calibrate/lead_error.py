@@ -66,7 +66,13 @@ class LeadError:
     shortest: float
 
     def mean(self, x: Array) -> Array:
-        """The fitted mean deviation of both directions at places [mm]."""
+        """The fitted mean deviation of both directions [mm].
+
+        Parameters
+        ----------
+        x : ndarray
+            Places [mm].
+        """
         found = self.offset.value + self.slope.value * x
         if self.amplitude.told:
             turn = 2.0 * math.pi * x / self.period.value + self.phase.value

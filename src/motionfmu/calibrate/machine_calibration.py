@@ -95,7 +95,16 @@ class AxisCalibration:
 
 @dataclass(frozen=True)
 class CircleCalibration:
-    """A plane that was measured: `run` is by the FMUs with what was found."""
+    """A plane that was measured.
+
+    Attributes
+    ----------
+    record : CircleRecord
+    errors : CircleErrors
+        In the record.
+    run : CircleErrors or None
+        By the FMUs with what was found.
+    """
 
     record: CircleRecord
     errors: CircleErrors
@@ -216,7 +225,7 @@ def machine_calibration(
 
 
 @dataclass
-class _Value:
+class _GeometryValue:
     """A value that is being found: one parameter of the plant, by figures of a record."""
 
     part: str
@@ -249,7 +258,7 @@ class _Calibrating:
         self.controller = geometry.find("compensation")
         self.axes = {n: self._axis(n, r) for n, r in records.positions.items()}
         self.circles = {c.plane: CircleCalibration(c, self._errors(c)) for c in records.circles}
-        self.values: list[_Value] = []
+        self.values: list[_GeometryValue] = []
         for a in self.axes.values():
             self._of_axis(a)
         for c in self.circles.values():
@@ -306,7 +315,7 @@ class _Calibrating:
         name = f"{component}.{variable}[{self.rows[axis]}]"
         straight = what in ("backlash", "slope")
         self.values.append(
-            _Value(f"{axis}: {what}", axis, what, name, before, seen, now, record, straight)
+            _GeometryValue(f"{axis}: {what}", axis, what, name, before, seen, now, record, straight)
         )
 
     def _names(self) -> AxisErrors:
@@ -327,7 +336,6 @@ class _Calibrating:
         for variable, (what, seen) in zip(names.wave, parts, strict=True):
             self._add(axis.name, what, variable, seen, axis.record.name)
 
-    # CCN 16: each figure of a circle goes to a parameter, or a sentence says why not.
     def _of_circle(self, circle: CircleCalibration) -> None:
         errors, record, plane = circle.errors, circle.record, circle.record.plane
         names = self._names()
@@ -342,7 +350,7 @@ class _Calibrating:
         else:
             before = self.geometry.value(frame[0], variable, 1)
             self.values.append(
-                _Value(
+                _GeometryValue(
                     f"{plane}: squareness",
                     plane,
                     "squareness",

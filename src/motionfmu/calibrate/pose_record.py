@@ -15,7 +15,7 @@ from motionfmu.records.raw_table import NoTimes
 from motionfmu.virtual.robot import matrix_of
 
 Array = NDArray[np.float64]
-JOINT = re.compile(r"^(?:j|joint|q|axis|theta|achse|a)[ _]?([1-9])(?:[ _]?\[?(?:deg|°)\]?)?$")
+JOINT = re.compile(r"^(?:j|joint|q|axis|theta|achse|a)[ _]?([1-9])$")
 PLACES, ANGLES, QUATERNION = ("x", "y", "z"), ("a", "b", "c"), ("qw", "qx", "qy", "qz")
 FEWEST = 8
 
@@ -71,41 +71,52 @@ def pose_record(
     InputError
         What is wrong, with file, line and value.
     """
-    path, given = Path(file), dict(layout or {})
-    try:
-        found = readers.record(path, **given)
-    except NoTimes:
-        found = readers.record(path, **{"rate": 1.0} | given)
+    path = Path(file)
+    found = _opened(path, layout or {})
     columns = _columns(found, over or {})
-    joints = sorted(n for n in columns if n.startswith("j"))
-    numbers = [int(n[1:]) for n in joints]
-    if numbers != list(range(1, len(joints) + 1)) or not joints:
-        told = ", ".join(joints) or "none"
-        raise InputError(f"{path}: columns of joints j1, j2, ... wanted ({told} found)")
+    joints = _joints(path, columns)
     if lacking := [n for n in PLACES if n not in columns]:
         raise InputError(f"{path}: no column {lacking[0].upper()} of the measured place")
     data = {n: _values(found, c, n) for n, c in columns.items()}
     places = np.column_stack([data[n] for n in PLACES])
     if len(places) < FEWEST:
         raise InputError(f"{path}: {len(places)} poses, {FEWEST} at least wanted")
-    attitudes = None
-    if all(n in data for n in QUATERNION):
-        attitudes = _rotations(path, found, np.column_stack([data[n] for n in QUATERNION]))
-    elif all(n in data for n in ANGLES):
-        pose = np.column_stack([np.zeros_like(places), *(data[n] for n in ANGLES)])
-        attitudes = matrix_of(pose)[:, :3, :3]
     angles = np.column_stack([data[n] for n in joints])
     where = tuple(found.place(k) for k in range(len(places)))
-    return PoseRecord(str(path), angles, places, attitudes, where)
+    return PoseRecord(str(path), angles, places, _attitudes(found, data), where)
+
+
+def _joints(path: Path, columns: Mapping[str, str]) -> list[str]:
+    """Names of the joints, of which none may be left out."""
+    joints = sorted(n for n in columns if n.startswith("j"))
+    if not joints or [int(n[1:]) for n in joints] != list(range(1, len(joints) + 1)):
+        told = ", ".join(joints) or "none"
+        raise InputError(f"{path}: columns of joints j1, j2, ... wanted ({told} found)")
+    return joints
+
+
+def _opened(path: Path, layout: Mapping[str, Any]) -> Record:
+    """A file whose rows need no times."""
+    try:
+        return readers.record(path, **layout)
+    except NoTimes:
+        return readers.record(path, **{"rate": 1.0, **layout})
+
+
+def _attitudes(found: Record, data: Mapping[str, Array]) -> Array | None:
+    """Rotations of each pose, if they were measured."""
+    if all(n in data for n in QUATERNION):
+        return _rotations(found, np.column_stack([data[n] for n in QUATERNION]))
+    if not all(n in data for n in ANGLES):
+        return None
+    angles = np.column_stack([data[n] for n in ANGLES])
+    return np.asarray(matrix_of(np.hstack([np.zeros_like(angles), angles]))[:, :3, :3])
 
 
 def is_pose_record(file: Path, layout: Mapping[str, Any]) -> bool:
     """Whether a file has a column of a second joint."""
-    try:
-        found = readers.record(file, **layout)
-    except NoTimes:
-        found = readers.record(file, **{"rate": 1.0, **layout})
-    return any((m := JOINT.match(n.lower())) and m[1] == "2" for n in found)
+    names = (JOINT.match(n.lower()) for n in _opened(file, layout))
+    return any(m and m[1] == "2" for m in names)
 
 
 def _columns(found: Record, over: Mapping[str, str]) -> dict[str, str]:
@@ -132,10 +143,10 @@ def _values(found: Record, column: str, name: str) -> Array:
         raise InputError(f"{place}: column {column!r}: a value is missing")
     if name in QUATERNION or not found.units.get(column):
         return np.asarray(found[column], float)
-    return np.asarray(found.in_unit(column, "mm" if name in PLACES else "deg"), float)
+    return np.asarray(found.in_unit(column, "mm" if name in PLACES else "°"), float)
 
 
-def _rotations(path: Path, found: Record, q: Array) -> Array:
+def _rotations(found: Record, q: Array) -> Array:
     """Rotations of quaternions w, x, y, z."""
     size = np.linalg.norm(q, axis=1)
     wrong = np.flatnonzero(np.abs(size - 1.0) > 1e-2)

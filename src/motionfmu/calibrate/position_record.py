@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from motionfmu.analysis.positioning import PositioningTest
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import text_of
+from motionfmu.base.units import parse
+from motionfmu.records.quantities import name_and_unit, quantity
 
 Array = NDArray[np.float64]
 # Names of columns, in small letters.
@@ -21,12 +23,11 @@ DIRECTIONS = ("direction", "approach", "dir", "richtung")
 RUNS = ("run", "cycle", "series", "lauf", "repetition")
 UP = ("+", "+1", "1", "up", "u", "pos", "positive", "forward", "fwd", "↑", "auf", "vor")
 DOWN = ("-", "-1", "2", "down", "d", "neg", "negative", "backward", "reverse", "↓", "ab", "zurück")
-UNITS = {"mm": 1.0, "m": 1e3, "um": 1e-3, "µm": 1e-3, "μm": 1e-3, "nm": 1e-6, "in": 25.4}
+MM, MICRON = parse("mm"), 1e-3  # of lengths; [mm]
 # No axis is this far from its target [mm]: the unit is not what it seems.
 FARTHEST = 5.0
 SAME = 1e-6  # [mm] targets that differ by less are one
 FEWEST_TARGETS = 3
-_UNIT = re.compile(r"[\[(/]\s*([a-zµμA-Z]+)\s*[\])]?\s*$")
 _AXIS = re.compile(r"^\W*axis(?:\s+name)?\s*[:=;,\t ]\s*\"?([A-Za-z]\d?)\b", re.IGNORECASE)
 _SECTION = re.compile(r"^([A-Z][A-Z0-9 -]*)::")
 
@@ -120,6 +121,8 @@ def position_record(file: str | Path) -> PositionRecord:
 
 def is_position_record(file: Path) -> bool:
     """Whether a file has targets, as no other record here has."""
+    if not file.is_file() or file.suffix.lower() in (".parquet", ".mat"):
+        return False
     lines = text_of(file).lstrip("\ufeff").splitlines()
     if any(_SECTION.match(line.strip()) for line in lines):
         return True
@@ -136,6 +139,8 @@ def _head(lines: Sequence[str]) -> tuple[int, str, list[str]] | None:
     for row, line in enumerate(lines):
         for mark in (";", "\t", ",", "|", " "):
             cells = _cells(line.lstrip("# "), mark)
+            if mark == " " and line.startswith("#"):
+                continue  # a sentence
             if len(cells) > 1 and any(_name(c) in TARGETS for c in cells):
                 return row, mark, cells
     return None
@@ -143,17 +148,19 @@ def _head(lines: Sequence[str]) -> tuple[int, str, list[str]] | None:
 
 def _name(heading: str) -> str:
     """A heading without its unit, in small letters."""
-    bare = _UNIT.sub("", heading) if "/" not in heading or "[" in heading else heading.split("/")[0]
-    return bare.strip(" _").lower()
+    return name_and_unit(heading)[0].strip(" _").lower()
 
 
-def _unit(file: Path, heading: str, line: int, usual: str = "mm") -> float:
-    """Factor to mm of a heading's unit."""
-    found = _UNIT.search(heading)
-    name = found[1] if found else usual
-    if name not in UNITS:
-        raise InputError(f"{file}: line {line}: unit {name!r} of {heading!r}: {', '.join(UNITS)}")
-    return UNITS[name]
+def _unit(file: Path, heading: str, line: int) -> float:
+    """Factor to mm of a heading's unit; without one it is mm."""
+    name = name_and_unit(heading)[1] or MM.name
+    try:
+        found = quantity(name)
+    except ValueError:
+        found = None
+    if found is None or found.exponents != MM.exponents:
+        raise InputError(f"{file}: line {line}: {heading!r}: {name!r} is no length")
+    return float(found.factor / MM.factor)
 
 
 def _number(file: Path, line: int, text: str, comma: bool) -> float:
@@ -197,28 +204,29 @@ Heads = tuple[int, list[str], list[str]]  # line, headings, their names
 Rows = list[tuple[int, list[str]]]  # line and cells of each
 
 
+def _place(names: Sequence[str], *kinds: Sequence[str]) -> int | None:
+    """The first column whose name is of the first kind that there is."""
+    every = (k for kind in kinds for k, n in enumerate(names) if n in kind)
+    return next(every, None)
+
+
 def _list(readings: _Readings, head: Heads, rows: Rows, comma: bool) -> None:
     """A row a reading."""
     line, heads, names = head
     file = readings.file
-    target = next(k for k, n in enumerate(names) if n in TARGETS)
-    value = next((k for k, n in enumerate(names) if n in DEVIATIONS), None)
-    relative = value is not None
-    if value is None:
-        value = next(k for k, n in enumerate(names) if n in PLACES)
+    target, value = _place(names, TARGETS), _place(names, DEVIATIONS, PLACES)
+    told = _place(names, DIRECTIONS)
+    assert target is not None and value is not None
     factors = _unit(file, heads[target], line), _unit(file, heads[value], line)
-    told = next((k for k, n in enumerate(names) if n in DIRECTIONS), None)
     targets = np.array([factors[0] * _number(file, n, c[target], comma) for n, c in rows])
-    ways = (
-        _by_order(file, rows, targets)
-        if told is None
-        else [_way(file, n, c[told]) for n, c in rows]
-    )
     if told is None:
+        ways = _by_order(file, rows, targets)
         readings.notes.append("directions are those in which its targets follow one another")
+    else:
+        ways = [_way(file, n, c[told]) for n, c in rows]
     for (n, cells), at, way in zip(rows, targets.tolist(), ways, strict=True):
         size = factors[1] * _number(file, n, cells[value], comma)
-        readings.add(at, way, size if relative else size - at, n)
+        readings.add(at, way, size - (0.0 if names[value] in DEVIATIONS else at), n)
 
 
 def _way(file: Path, line: int, text: str) -> int:
@@ -246,18 +254,14 @@ def _matrix(readings: _Readings, head: Heads, rows: Rows, comma: bool) -> None:
     """A row a target, a column an approach."""
     line, heads, names = head
     file = readings.file
-    target = next(k for k, n in enumerate(names) if n in TARGETS)
+    target = _place(names, TARGETS)
+    assert target is not None
     scale = _unit(file, heads[target], line)
-    columns = []
-    for k, heading in enumerate(heads):
-        if k == target or not heading:
-            continue
-        words = [w for w in re.split(r"[\s_.:#]+|(?<=\d)(?=[^\d\s])", _name(heading)) if w]
-        ways = [w for word in words for w in (_word_way(word),) if w]
-        if len(ways) != 1:
-            told = f"heading {heading!r} says no direction: '1 up', '1 down' wanted"
-            raise InputError(f"{file}: line {line}: {told}")
-        columns.append((k, ways[0], _unit(file, heading, line)))
+    columns = [
+        (k, _heading_way(file, heading, line), _unit(file, heading, line))
+        for k, heading in enumerate(heads)
+        if k != target and heading
+    ]
     numbers = [[_number(file, n, c, comma) for c in cells] for n, cells in rows]
     targets = np.array([scale * r[target] for r in numbers])
     values = np.array([[f * r[k] for k, _, f in columns] for r in numbers])
@@ -266,9 +270,19 @@ def _matrix(readings: _Readings, head: Heads, rows: Rows, comma: bool) -> None:
     places = bool(span > 0.0 and (np.ptp(values, axis=0) > 0.5 * span).all())
     readings.notes.append(f"its cells are {'positions' if places else 'deviations'}")
     for r, (n, _) in enumerate(rows):
+        at = float(targets[r])
         for c, (_, way, _) in enumerate(columns):
-            at = float(targets[r])
             readings.add(at, way, float(values[r, c]) - (at if places else 0.0), n)
+
+
+def _heading_way(file: Path, heading: str, line: int) -> int:
+    """Direction that the heading of a column says, such as ``1 up``."""
+    words = re.split(r"[\s_.:#]+|(?<=\d)(?=[^\d\s])", _name(heading))
+    ways = [way for word in words if (way := _word_way(word))]
+    if len(ways) != 1:
+        told = f"heading {heading!r} says no direction: '1 up', '1 down' wanted"
+        raise InputError(f"{file}: line {line}: {told}")
+    return ways[0]
 
 
 def _word_way(word: str) -> int:
@@ -280,7 +294,7 @@ def _word_way(word: str) -> int:
     return -1 if word in DOWN or (word.startswith("-") and word[1:].isdigit()) else 0
 
 
-# CCN 17: a section after another, each with the rows that it has.
+# CCN 21: a section after another, each with the rows that it has.
 def _rtl(readings: _Readings, lines: Sequence[str]) -> None:
     """An .rtl: sections with targets [mm], and run, number of the target, deviation [µm]."""
     file = readings.file
@@ -316,4 +330,4 @@ def _rtl(readings: _Readings, lines: Sequence[str]) -> None:
         if targets[-1] < targets[0]:
             way = -way
         for number, value, n in rows:
-            readings.add(targets[number - 1], way, UNITS["um"] * value, n)
+            readings.add(targets[number - 1], way, MICRON * value, n)
