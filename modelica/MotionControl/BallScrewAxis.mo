@@ -17,6 +17,7 @@ model BallScrewAxis
   parameter Real lead_error_slope(unit = "1") = 0 "Error of the travel per travel";
   parameter Real lead_error_amplitude(unit = "m") = 0 "Amplitude of a wave of the error";
   parameter Real lead_error_period(unit = "m", min = 1e-9) = 0.01 "Period of the wave";
+  parameter Real lead_error_phase(unit = "rad") = 0 "Phase of the wave at position 0";
   parameter Real screw_stiffness(unit = "N/m", min = 0) = 1e8 "Axial stiffness from motor to table";
   parameter Real screw_damping(unit = "N.s/m", min = 0) = 1e4 "Axial damping from motor to table";
   parameter Real backlash(unit = "m", min = 0) = 0 "Lost motion between nut and table";
@@ -68,7 +69,7 @@ protected
     coulomb_asymmetry = table_coulomb_asymmetry, viscous_asymmetry = table_viscous_asymmetry,
     start_position = start_position) "Table";
   LeadError error(slope = lead_error_slope, amplitude = lead_error_amplitude,
-    period = lead_error_period) "Error of the screw";
+    period = lead_error_period, start_phase = lead_error_phase) "Error of the screw";
   RotaryEncoder encoder(lines = encoder_lines) "On the motor shaft";
   LinearScale scale(pitch = scale_pitch) "On the table";
 equation

@@ -3,6 +3,7 @@ block LeadError "Where a screw whose lead is not exact puts the table"
   parameter Real slope(unit = "1") = 0 "Travel too much per travel";
   parameter Real amplitude(unit = "m") = 0 "Amplitude of the wave on it";
   parameter Real period(unit = "m", min = 1e-9) = 0.01 "Period of the wave";
+  parameter Real start_phase(unit = "rad") = 0 "Phase of the wave at position 0";
   input Real nominal(unit = "m") "Position of the table if the lead were exact";
   input Real nominal_speed(unit = "m/s") "Its speed";
   output Real position(unit = "m") "Position";
@@ -10,7 +11,7 @@ block LeadError "Where a screw whose lead is not exact puts the table"
 protected
   Real phase(unit = "rad") "Phase of the wave";
 equation
-  phase = 2*pi*nominal/period;
+  phase = 2*pi*nominal/period + start_phase;
   position = nominal + (slope*nominal + amplitude*sin(phase));
   speed = nominal_speed*(1 + (slope + amplitude*2*pi/period*cos(phase)));
   annotation(Documentation(info = "<html>

@@ -9,7 +9,6 @@ from motionfmu.base.errors import InputError
 from motionfmu.cli.common import bare_table, out, record_options, report, results, run_shown
 
 if TYPE_CHECKING:
-    from motionfmu.records import Record
     from motionfmu.run import Scenario
 
 
@@ -95,7 +94,7 @@ def measured_ballbar(
     folder: Path | None,
 ) -> None:
     """Read a ballbar's record, or one for each way, and say what it tells of the machine."""
-    from motionfmu.analysis.explain import ballbar_test, signature
+    from motionfmu.analysis.explain import ballbar_of, ballbar_test, signature
     from motionfmu.report import result_folder
     from motionfmu.report.cause_pages.record_page import write_ballbar
     from motionfmu.report.numbers import length
@@ -105,7 +104,7 @@ def measured_ballbar(
         raise InputError(f"{files[0]}: a ballbar's record: --radius, the nominal one [mm], wanted")
     target = result_folder.usable(folder or results(files[0].stem, "ballbar"))
     over, layout = record_options(*asked)
-    pairs = [_ballbar(file, radius, over or {}, layout or {}) for file in files]
+    pairs = [ballbar_of(file, radius, over or {}, layout or {}) for file in files]
     try:
         speed = None if feed is None else feed / 60.0
         test = ballbar_test([own for _, own in pairs], radius, plane, speed)
@@ -121,38 +120,3 @@ def measured_ballbar(
     with result_folder.whole(target) as part:
         shown = write_ballbar(test, mark, [r for r, _ in pairs], part).name
     report(target / shown)
-
-
-def _ballbar(
-    file: Path, radius: float, over: dict[str, str], layout: dict[str, Any]
-) -> tuple["Record", Any]:
-    """A record and its angle, deviation and times."""
-    from motionfmu.analysis.explain import BallbarRecord
-    from motionfmu.records import record
-    from motionfmu.records.raw_table import NoTimes
-
-    timed = True
-    try:
-        found = record(file, **layout)
-    except NoTimes:
-        found, timed = record(file, **layout, rate=1.0), False
-    lower = {n.lower(): n for n in found}
-
-    def column(*names: str) -> str | None:
-        wanted = [over.get(n) for n in names] + [lower.get(n) for n in names]
-        return next((n for n in wanted if n is not None), None)
-
-    angle = column("angle", "winkel", "phi")
-    size = column("deviation", "radius", "abweichung", "error")
-    if angle is None or size is None:
-        told = f"angle and deviation or radius wanted (there are: {', '.join(found)})"
-        raise InputError(f"{file}: {told}: --map angle=COLUMN --map deviation=COLUMN")
-    data = found.in_unit(size, "mm")
-    whole = size == column("radius") and size != column("deviation")
-    if whole:
-        data = data - radius
-    bad = found.missing(angle) | found.missing(size)
-    if bad.any():
-        raise InputError(f"{found.place(int(bad.argmax()))}: a value is missing")
-    time = found.time if timed else None
-    return found, BallbarRecord(found.in_unit(angle, "rad"), data, time)

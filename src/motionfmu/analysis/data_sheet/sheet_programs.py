@@ -43,18 +43,25 @@ def targets(axis: SheetAxis) -> np.ndarray:
     return np.round(even + UNEVEN * (even[1] - even[0]) * shift, 2)
 
 
-def positioning_program(axis: SheetAxis, dwell: float, pen: bool = False) -> PositioningProgram:
+def positioning_program(
+    axis: SheetAxis,
+    dwell: float,
+    pen: bool = False,
+    places: np.ndarray | None = None,
+    approaches: int = APPROACHES,
+) -> PositioningProgram:
     """Go to each target upwards and downwards, five times, and rest there.
 
-    With a pen nothing but its lift makes a rest: rapids and feeds take turns.
+    With a pen nothing but its lift makes a rest: rapids and feeds take turns. `places` are other
+    targets than those of a data sheet.
     """
-    places, word = targets(axis), axis.word
+    places, word = targets(axis) if places is None else places, axis.word
     turn = 0.5 * FREE * (axis.high - axis.low)
     ends = places[0] - turn, places[-1] + turn
     text = [f"(ISO 230-2: {axis.name})", "G21 G90", "F3000", f"G0 {word}{ends[0]:.2f}"]
     if pen:
         text = [f"(ISO 230-2: {axis.name})", "G21 G90", f"G0 {word}{ends[0]:.2f}"]
-    lines = np.zeros((APPROACHES, 2, len(places)), int)
+    lines = np.zeros((approaches, 2, len(places)), int)
     order, fed = [], False
     flat = np.arange(lines.size).reshape(lines.shape)
 
@@ -63,7 +70,7 @@ def positioning_program(axis: SheetAxis, dwell: float, pen: bool = False) -> Pos
         fed = pen and not fed
         text.append(f"G1 {word}{place:.2f} F3000" if fed else f"G0 {word}{place:.2f}")
 
-    for run in range(APPROACHES):
+    for run in range(approaches):
         for way, listed in enumerate((range(len(places)), reversed(range(len(places))))):
             for k in listed:
                 go(places[k])
@@ -75,16 +82,23 @@ def positioning_program(axis: SheetAxis, dwell: float, pen: bool = False) -> Pos
     return PositioningProgram("\n".join([*text, "M2", ""]), places, lines, np.array(order))
 
 
-def circle_program(axes: dict[str, SheetAxis], plane: tuple[str, str, str]) -> str:
-    """A circle both ways round in the middle of the travel of two axes."""
+def circle_program(
+    axes: dict[str, SheetAxis],
+    plane: tuple[str, str, str],
+    radius: float | None = None,
+    feed: float = FEED,
+    centre: tuple[float, float] | None = None,
+) -> str:
+    """A circle both ways round, [mm] and [mm/min]; else in the middle of the travel of two axes."""
     code, first, second = plane
     a, b = axes[first], axes[second]
-    radius = min(RADIUS, SPAN * min(a.high - a.low, b.high - b.low))
-    radius = round(radius, 1 if radius < 10.0 else 0)
-    middle = [round(0.5 * (x.low + x.high), 1) for x in (a, b)]
+    if radius is None:
+        radius = min(RADIUS, SPAN * min(a.high - a.low, b.high - b.low))
+        radius = round(radius, 1 if radius < 10.0 else 0)
+    middle = centre or tuple(round(0.5 * (x.low + x.high), 1) for x in (a, b))
     at = f"{first}{middle[0] + radius:g} {second}{middle[1]:g}"
     back = f"{OFFSETS[first]}{-radius:g}"
     turns = [f"{way} {at} {back} P{TURNS}" for way in ("G2", "G3")]
     head = [f"(ISO 230-4: circle of R {radius:g} in {first}{second}, {TURNS} turns each way)"]
-    head += [f"G21 G90 {code} F{FEED:g}", f"G0 {at}"]
+    head += [f"G21 G90 {code} F{feed:g}", f"G0 {at}"]
     return "\n".join([*head, *turns, "M2", ""])

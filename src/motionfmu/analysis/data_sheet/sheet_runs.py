@@ -85,10 +85,16 @@ class RestRun:
     unrest: float  # how far it moves while it is read, at the most
 
 
-def positioning(tested: SheetMachine, axes: Sequence[SheetAxis], dwell: float) -> list[RestRun]:
+def positioning(
+    tested: SheetMachine,
+    axes: Sequence[SheetAxis],
+    dwell: float,
+    places: Array | None = None,
+    approaches: int = APPROACHES,
+) -> list[RestRun]:
     """Position the first axis as ISO 230-2 has it, and look at all of them, which go with it."""
     moved, pen = axes[0], tested.machine.signals.config is not None
-    program = positioning_program(moved, dwell, pen)
+    program = positioning_program(moved, dwell, pen, places, approaches)
     result = tested.run(f"iso230_2_{moved.name}.ngc", program.text, RECORDED)
     if pen:
         rests = _by_speed(tested, moved, result, program)

@@ -86,6 +86,38 @@ class Signature:
         }
 
 
+@dataclass(frozen=True)
+class FittedCircle:
+    """The parts of the signature, fitted to a circle."""
+
+    angle: Array  # (n,) [rad]
+    way: Array  # (n,) 1 counter-clockwise, -1 clockwise
+    deviation: Array  # (n,) [mm]
+    used: NDArray[np.bool_]  # (n,) whether a sample is fitted, or just behind a quadrant
+    columns: Array  # (n, 8) of the basis, with the backlash taken up behind the quadrants
+    parts: Array  # (8,) m, x, y, s, q, g, bx, by [mm]
+
+    @property
+    def rest(self) -> Array:
+        """What the parts leave of the deviation [mm]."""
+        return self.deviation - self.columns @ self.parts
+
+
+def fitted(test: CircularTest) -> FittedCircle:
+    """Fit the parts of the signature; a ValueError if one way is missing."""
+    if test.ccw is None or test.cw is None:
+        raise ValueError("the signature needs a circle run both ways round")
+    parts = [_samples(test.ccw, 1.0, test.radius), _samples(test.cw, -1.0, test.radius)]
+    angle, way, deviation = (np.concatenate(p) for p in zip(*parts, strict=True))
+    used = ~_behind_quadrant(angle, way)
+    basis = _basis(angle, way)
+    c = np.linalg.lstsq(basis[used], deviation[used], rcond=None)[0]
+    for i, start in ((6, 0.0), (7, 0.25 * TURN)):
+        since = np.mod(way * (angle - start), 0.5 * TURN)
+        basis[:, i] *= _taken_up(since, test.radius, float(c[i]))
+    return FittedCircle(angle, way, deviation, used, basis, c)
+
+
 def signature(test: CircularTest, lag: float = 0.0) -> Signature:
     """Read the signature of a circle run both ways round.
 
@@ -102,19 +134,10 @@ def signature(test: CircularTest, lag: float = 0.0) -> Signature:
     ValueError
         One way is missing.
     """
-    if test.ccw is None or test.cw is None:
-        raise ValueError("the signature needs a circle run both ways round")
-    parts = [_samples(test.ccw, 1.0, test.radius), _samples(test.cw, -1.0, test.radius)]
-    angle, way, deviation = (np.concatenate(p) for p in zip(*parts, strict=True))
-    fitted = ~_behind_quadrant(angle, way)
-    basis = _basis(angle, way)
-    c = np.linalg.lstsq(basis[fitted], deviation[fitted], rcond=None)[0]
-    for i, start in ((6, 0.0), (7, 0.25 * TURN)):
-        basis[:, i] *= _taken_up(
-            np.mod(way * (angle - start), 0.5 * TURN), test.radius, float(c[i])
-        )
-    rest = deviation - basis @ c
-    scatter = float(np.sqrt(np.mean(rest[fitted] ** 2)))
+    whole = fitted(test)
+    angle, way, c, rest = whole.angle, whole.way, whole.parts, whole.rest
+    scatter = float(np.sqrt(np.mean(rest[whole.used] ** 2)))
+    assert test.ccw is not None
     turn = lag * test.ccw.speed / test.radius
     mean, x, y, scale, square, mismatch, bx, by = (float(v) for v in c)
     scale += mismatch * turn

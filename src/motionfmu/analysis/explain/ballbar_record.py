@@ -1,9 +1,11 @@
 """A circle that a ballbar has measured: its deviation over its angle, one way or both."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +18,9 @@ from motionfmu.analysis.contour.circles import (
     plane_axes,
 )
 from motionfmu.analysis.contour.iso230 import both_ways, reading
+from motionfmu.base.errors import InputError
+from motionfmu.records import Record, readers
+from motionfmu.records.raw_table import NoTimes
 
 # Normal of each plane, as G17, G18 and G19 have it.
 PLANES = {"XY": (0.0, 0.0, 1.0), "ZX": (0.0, 1.0, 0.0), "YZ": (1.0, 0.0, 0.0)}
@@ -38,6 +43,58 @@ class BallbarRecord:
     angle: Array
     deviation: Array
     time: Array | None = None
+
+
+def ballbar_of(
+    file: Path, radius: float, over: Mapping[str, str], layout: Mapping[str, Any]
+) -> tuple[Record, BallbarRecord]:
+    """Read a ballbar's record: its angle, and its deviation or radius.
+
+    Parameters
+    ----------
+    file : Path
+    radius : float
+        Nominal [mm].
+    over : mapping
+        Columns by ``angle``, ``deviation`` and ``radius``, where they have other names.
+    layout : mapping
+        What the file does not say, as of `motionfmu.record`.
+
+    Returns
+    -------
+    record : Record
+    measured : BallbarRecord
+
+    Raises
+    ------
+    InputError
+        What is wrong, with file, line and character.
+    """
+    timed = True
+    try:
+        found = readers.record(file, **layout)
+    except NoTimes:
+        found, timed = readers.record(file, **layout, rate=1.0), False
+    lower = {n.lower(): n for n in found}
+
+    def column(*names: str) -> str | None:
+        wanted = [over.get(n) for n in names] + [lower.get(n) for n in names]
+        return next((n for n in wanted if n is not None), None)
+
+    angle = column("angle", "winkel", "phi")
+    size = column("deviation", "radius", "abweichung", "error")
+    if angle is None or size is None:
+        told = f"angle and deviation or radius wanted (there are: {', '.join(found)})"
+        raise InputError(f"{file}: {told}: --map angle=COLUMN --map deviation=COLUMN")
+    data = found.in_unit(size, "mm")
+    whole = size == column("radius") and size != column("deviation")
+    if whole:
+        data = data - radius
+    bad = found.missing(angle) | found.missing(size)
+    if bad.any():
+        raise InputError(f"{found.place(int(bad.argmax()))}: a value is missing")
+    time = found.time if timed else None
+    return found, BallbarRecord(found.in_unit(angle, "rad"), data, time)
 
 
 def ballbar_test(
