@@ -1,0 +1,334 @@
+"""Two masses joined by a spring, found from their frequency response.
+
+On the side of the drive, all in its unit of angle or way, with k + c s the spring and its damper:
+
+    G(s) = (J2 s^2 + (c + d2) s + k) / (s D(s)) e^(-s T),
+    D(s) = J1 J2 s^3 + (J1 (c + d2) + J2 (c + d1)) s^2
+           + (J1 k + J2 k + c (d1 + d2) + d1 d2) s + k (d1 + d2)
+
+is the motion per torque; the antiresonance is sqrt(k/J2), the resonance sqrt(k (1/J1 + 1/J2)).
+"""
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.analysis.measured_response.response_estimate import MeasuredResponse
+from motionfmu.base.errors import InputError
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+# Relative deviation above which a quantity is not told.
+VAGUE = 0.3
+# Relative error that no measured response is without: what a linear model leaves.
+_LEAST = 2e-3
+# Two masses are told if they leave so much less than one does.
+_BETTER = 0.5
+_STARTS, _BEST = 14, 4  # frequencies at which a search begins, and how many are followed
+
+
+@dataclass(frozen=True)
+class MassModel:
+    """Two masses, a spring, a damper, friction and a delay, on the side of the drive.
+
+    Attributes
+    ----------
+    motor, load : float
+        Inertias [kg.m2, or kg].
+    stiffness, damping : float
+        Of the spring [N.m/rad, or N/m] and its damper [N.m.s/rad, or N.s/m].
+    motor_viscous, load_viscous : float
+        Friction per speed.
+    delay : float
+        [s].
+    """
+
+    motor: float
+    load: float = 0.0
+    stiffness: float = math.inf
+    damping: float = 0.0
+    motor_viscous: float = 0.0
+    load_viscous: float = 0.0
+    delay: float = 0.0
+
+    @property
+    def antiresonance(self) -> float:
+        """Frequency at which the motor stands [rad/s], without damping."""
+        return math.sqrt(self.stiffness / self.load) if self.load > 0.0 else math.inf
+
+    @property
+    def resonance(self) -> float:
+        """Frequency at which both swing [rad/s], without damping."""
+        if not self.load > 0.0:
+            return math.inf
+        return math.sqrt(self.stiffness * (1.0 / self.motor + 1.0 / self.load))
+
+    def response(self, omega: Array, load: bool = False) -> Complex:
+        """Motion of the motor, or of the load, per torque.
+
+        Parameters
+        ----------
+        omega : ndarray
+            [rad/s].
+        load : bool
+            Whether the load's motion is wanted.
+
+        Returns
+        -------
+        ndarray of complex
+        """
+        s = 1j * omega
+        late = np.exp(-s * self.delay)
+        if not self.load > 0.0:
+            viscous = self.motor_viscous + self.load_viscous
+            return np.asarray(late / (s * (self.motor * s + viscous)))
+        spring = self.stiffness + self.damping * s
+        one = (self.motor * s + self.motor_viscous) * s
+        two = (self.load * s + self.load_viscous) * s
+        whole = one * (two + spring) + two * spring
+        return np.asarray(late * (spring if load else two + spring) / whole)
+
+
+@dataclass(frozen=True)
+class MassFit:
+    """Two masses found from a response, and how sure they are.
+
+    Attributes
+    ----------
+    model : MassModel
+    deviations : dict
+        Standard deviation of each quantity of the model, and of ``antiresonance``, ``resonance``
+        [rad/s] and ``ratio`` (load over motor); infinite if it is not told.
+    why : dict
+        Why a quantity is not told, by its name.
+    two : bool
+        Whether the response shows two masses; else `model` is one, in `MassModel.motor`.
+    residual : ndarray of complex, shape (n,)
+        Measured over model, less 1.
+    left : float
+        RMS of the residual.
+    alone : float
+        RMS of the residual of one mass.
+    """
+
+    model: MassModel
+    deviations: Mapping[str, float]
+    why: Mapping[str, str]
+    two: bool
+    residual: Complex
+    left: float
+    alone: float
+    correlation: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def told(self, name: str) -> bool:
+        """Whether a quantity is known.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        bool
+        """
+        return name not in self.why
+
+    @property
+    def ratio(self) -> float:
+        """Inertia of the load over that of the motor."""
+        return self.model.load / self.model.motor
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Weighted residuals of a model in logarithms of its quantities."""
+
+    omega: Array
+    values: Complex
+    weight: Array
+    motor_viscous: float
+    load: bool
+    scale: float  # [s] of a delay of 1
+
+    def model(self, x: Array) -> MassModel:
+        whole, viscous = math.exp(x[0]), x[1] * math.exp(x[0])
+        delay = x[2] * self.scale
+        left = viscous - self.motor_viscous
+        if len(x) == 3:
+            return MassModel(whole, 0.0, math.inf, 0.0, self.motor_viscous, left, delay)
+        ratio, anti = math.exp(x[3]), math.exp(x[4])
+        load = whole * ratio / (1.0 + ratio)
+        stiffness = anti * anti * load
+        damping = math.exp(x[5]) * 2.0 * math.sqrt(stiffness * load)
+        return MassModel(
+            whole / (1.0 + ratio), load, stiffness, damping, self.motor_viscous, left, delay
+        )
+
+    def rest(self, x: Array) -> Array:
+        away = (self.model(x).response(self.omega, self.load) - self.values) * self.weight
+        return np.concatenate([away.real, away.imag])
+
+
+def fit_masses(
+    measured: MeasuredResponse, motor_viscous: float = 0.0, load: bool = False
+) -> MassFit:
+    """Fit two masses to a response of motion per torque.
+
+    Weighted least squares of the complex values; deviations are those of the response, or of what
+    is left, whichever is larger.
+
+    Parameters
+    ----------
+    measured : MeasuredResponse
+        Motion (angle or way) per torque or force, in units of the SI.
+    motor_viscous : float
+        Friction per speed on the side of the motor, which acts as that of the load does.
+    load : bool
+        Whether the load's motion was measured.
+
+    Returns
+    -------
+    MassFit
+
+    Raises
+    ------
+    InputError
+        The response has less frequencies than are needed.
+    """
+    n = len(measured.omega)
+    if n < 8:
+        raise InputError(f"{measured.name}: {n} frequencies; 8 at least are wanted for two masses")
+    size = np.abs(measured.values)
+    known = np.where(np.isfinite(measured.deviation), measured.deviation, 0.0)
+    rough = 0.05 * size if not known.any() else known
+    weight = 1.0 / np.hypot(rough, _LEAST * size)
+    scale = 1.0 / float(measured.omega.max())
+    problem = _Problem(
+        measured.omega, measured.values, weight, motor_viscous, load, scale
+    )
+    one = _search(problem, _starts(problem, False))
+    two = _search(problem, _starts(problem, True))
+    alone, both = (_left(problem, x) for x in (one[0], two[0]))
+    model = problem.model(two[0])
+    low, high = float(measured.omega.min()), float(measured.omega.max())
+    seen = low < model.antiresonance < 1.05 * high if not load else low < model.resonance < high
+    told = bool(both[1] < _BETTER * alone[1] and seen)
+    x, jac = two if told else one
+    model = problem.model(x)
+    answer = model.response(measured.omega, load)
+    residual = measured.values / answer - 1.0
+    # a deviation is that of the noise, or of what the model leaves, whichever is larger
+    freedom = max(2 * n - len(x), 1)
+    chi = float(np.sum(problem.rest(x) ** 2)) / freedom
+    covariance = np.linalg.pinv(jac.T @ jac) * max(chi, 1.0 if known.any() else 0.0)
+    deviations, why = _deviations(problem, x, covariance, (low, high))
+    spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    return MassFit(
+        model,
+        deviations,
+        why,
+        told,
+        residual,
+        float(np.sqrt(np.mean(np.abs(residual) ** 2))),
+        alone[0],
+        covariance / np.outer(spread, spread),
+    )
+
+
+def _left(problem: _Problem, x: Array) -> tuple[float, float]:
+    """RMS of what is left of the values, and of the weighted residuals."""
+    rest = problem.values / problem.model(x).response(problem.omega, problem.load) - 1.0
+    return float(np.sqrt(np.mean(np.abs(rest) ** 2))), float(
+        np.sqrt(np.mean(problem.rest(x) ** 2))
+    )
+
+
+def _starts(problem: _Problem, two: bool) -> list[Array]:
+    """Guesses; those of two masses that leave least of the magnitudes."""
+    omega = problem.omega
+    push = np.abs(problem.values) * omega * omega  # acceleration per torque
+    whole = -math.log(float(np.median(push[: max(3, len(push) // 4)])))
+    base = np.array([whole, 0.0, 0.0])
+    if not two:
+        return [base]
+    places = np.geomspace(float(omega[0]), float(omega[-1]), _STARTS)
+    dip = float(omega[int(np.argmin(push))])
+    peak = float(omega[int(np.argmax(push))])
+    guesses = []
+    for anti, factor in itertools.product([*places, dip], (1.1, 1.3, 1.7, 2.5, 4.0, 0.0)):
+        high = peak if factor == 0.0 else factor * anti
+        if high <= 1.02 * anti:
+            continue
+        x = np.array([*base, math.log((high / anti) ** 2 - 1.0), math.log(anti), math.log(0.03)])
+        size = np.log(push) - np.log(
+            np.abs(problem.model(x).response(omega, problem.load)) * omega * omega
+        )
+        x[0] -= float(np.median(size))
+        guesses.append((float(np.mean(np.abs(size - np.median(size)))), x))
+    return [x for _, x in sorted(guesses, key=lambda pair: pair[0])[:_BEST]]
+
+
+def _search(problem: _Problem, starts: list[Array]) -> tuple[Array, Array]:
+    """The best of all searches, and its derivatives."""
+    from scipy.optimize import least_squares
+
+    best = None
+    for x in starts:
+        found = least_squares(problem.rest, x, x_scale="jac", loss="linear", max_nfev=200)
+        if best is None or found.cost < best.cost:
+            best = found
+    assert best is not None
+    return np.asarray(best.x), np.asarray(best.jac)
+
+
+def _quantities(model: MassModel) -> dict[str, float]:
+    found = {
+        "motor": model.motor,
+        "load": model.load,
+        "stiffness": model.stiffness,
+        "damping": model.damping,
+        "load_viscous": model.load_viscous,
+        "delay": model.delay,
+    }
+    if model.load > 0.0:
+        found |= {
+            "ratio": model.load / model.motor,
+            "antiresonance": model.antiresonance,
+            "resonance": model.resonance,
+        }
+    return found
+
+
+def _deviations(
+    problem: _Problem, x: Array, covariance: Array, band: tuple[float, float]
+) -> tuple[dict[str, float], dict[str, str]]:
+    """Deviations of all quantities, and why one is not told."""
+    at = _quantities(problem.model(x))
+    deviations, why = {}, {}
+    steps = np.maximum(1e-5 * np.abs(x), 1e-6)
+    for name, value in at.items():
+        if len(x) == 3 and name in ("load", "stiffness", "damping"):
+            deviations[name] = math.inf
+            why[name] = "the response shows one mass"
+            continue
+        slope = np.zeros(len(x))
+        for k, step in enumerate(steps):
+            moved = [x.copy(), x.copy()]
+            moved[0][k] += step
+            moved[1][k] -= step
+            a, b = (_quantities(problem.model(m))[name] for m in moved)
+            slope[k] = (a - b) / (2.0 * step)
+        spread = math.sqrt(max(float(slope @ covariance @ slope), 0.0))
+        deviations[name] = spread
+        if name != "delay" and not spread <= VAGUE * abs(value):
+            why[name] = f"its deviation is {100 * min(spread / max(abs(value), 1e-300), 99):.0f} %"
+        elif name == "load_viscous" and value < 0.0:
+            why[name] = "it comes out negative"
+    if "resonance" in at and at["resonance"] > 1.3 * band[1] and not problem.load:
+        for name in ("motor", "ratio", "resonance"):
+            why.setdefault(name, "the resonance lies above the band")
+    return deviations, why
