@@ -28,8 +28,9 @@ from motionfmu.analysis.measured_response.response_estimate import (
 from motionfmu.analysis.measured_response.response_table import read_response, response_table
 from motionfmu.base import units
 from motionfmu.base.errors import InputError
-from motionfmu.identify.axis_record import AxisRecord, of_record
+from motionfmu.identify.axis_record import AxisRecord
 from motionfmu.identify.recorded_loop import ColumnUse
+from motionfmu.records import Record
 from motionfmu.run import Scenario
 
 Array = NDArray[np.float64]
@@ -103,11 +104,25 @@ def identify_response(
             measured, pair = read_response(table, options.columns, scenario.resolver.ports)
             found.append(_in_band(measured, options.estimate))
             continue
-        record = file if isinstance(file, AxisRecord) else of_record(records.record(file))
+        record = file if isinstance(file, AxisRecord) else _by_elements(records.record(file))
         roles = _roles(record, options.columns, (model, masses))
         pair = (options.columns[roles.input].signal, options.columns[roles.output].signal)
         found.append(estimate(_signals(record, roles, options, model), options.estimate))
     return found_response(scenario, together(found), pair, options.axis, given)
+
+
+def _by_elements(record: Record) -> AxisRecord:
+    """A record's columns, those of vectors by element: ``X[1]``."""
+    columns: dict[str, Array] = {}
+    units: dict[str, str] = {}
+    for name in record.columns:
+        values = np.asarray(record[name], np.float64)
+        parts = {name: values}
+        if values.ndim == 2:
+            parts = {f"{name}[{k + 1}]": values[:, k] for k in range(values.shape[1])}
+        columns |= parts
+        units |= dict.fromkeys(parts, record.units.get(name) or "")
+    return AxisRecord(record.time, columns, units, record.name)
 
 
 def _in_band(measured: MeasuredResponse, options: EstimateOptions) -> MeasuredResponse:

@@ -41,7 +41,8 @@ class LoopSignals:
     Parameters
     ----------
     reference : ndarray or None, shape (n,)
-        What excites the loop from outside; None: nothing of it is known.
+        What excites the loop from outside; None: nothing of it is known, as the mean of periods
+        needs nothing of it.
     input, output : ndarray, shape (n,)
         Between which the response is wanted.
     interval : float
@@ -195,10 +196,10 @@ def estimate(
                 f" {signals.interval:g} s; 0 averages windows instead"
             )
     found = _windows(signals) if period is None else _periods(signals, period)
-    if signals.reference is None:
+    if signals.reference is None and period is None:  # else the mean of periods has no noise
         note = (
-            "no reference: input and output alone; noise that goes round the loop biases the"
-            " response towards that of the controller"
+            "no reference and no periods: noise that goes round the loop biases the response towards"
+            " that of the controller"
         )
         found = replace(found, notes=(note, *found.notes))
     hertz = found.omega / (2.0 * math.pi)

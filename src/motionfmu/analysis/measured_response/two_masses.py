@@ -107,19 +107,16 @@ class MassFit:
         Why a quantity is not told, by its name.
     two : bool
         Whether the response shows two masses; else `model` is one, in `MassModel.motor`.
-    residual : ndarray of complex, shape (n,)
-        Measured over model, less 1.
     left : float
-        RMS of the residual.
+        RMS of the difference of response and model, over the larger of them.
     alone : float
-        RMS of the residual of one mass.
+        The same of one mass.
     """
 
     model: MassModel
     deviations: Mapping[str, float]
     why: Mapping[str, str]
     two: bool
-    residual: Complex
     left: float
     alone: float
     correlation: Array = field(default_factory=lambda: np.zeros((0, 0)))
@@ -219,8 +216,6 @@ def fit_masses(
     told = bool(both[1] < _BETTER * alone[1] and seen)
     x, jac = two if told else one
     model = problem.model(x)
-    answer = model.response(measured.omega, load)
-    residual = measured.values / answer - 1.0
     # a deviation is that of the noise, or of what the model leaves, whichever is larger
     freedom = max(2 * n - len(x), 1)
     chi = float(np.sum(problem.rest(x) ** 2)) / freedom
@@ -232,8 +227,7 @@ def fit_masses(
         deviations,
         why,
         told,
-        residual,
-        float(np.sqrt(np.mean(np.abs(residual) ** 2))),
+        _left(problem, x)[0],
         alone[0],
         covariance / np.outer(spread, spread),
     )
@@ -241,10 +235,14 @@ def fit_masses(
 
 def _left(problem: _Problem, x: Array) -> tuple[float, float]:
     """RMS of what is left of the values, and of the weighted residuals."""
-    rest = problem.values / problem.model(x).response(problem.omega, problem.load) - 1.0
-    return float(np.sqrt(np.mean(np.abs(rest) ** 2))), float(
-        np.sqrt(np.mean(problem.rest(x) ** 2))
-    )
+    rest = apart(problem.values, problem.model(x).response(problem.omega, problem.load))
+    weighted = np.mean(problem.rest(x) ** 2)
+    return float(np.sqrt(np.mean(rest**2))), float(np.sqrt(weighted))
+
+
+def apart(a: Complex, b: Complex) -> Array:
+    """Difference of two responses over the larger of them, 0 to 2."""
+    return np.asarray(np.abs(a - b) / np.maximum(np.abs(a), np.abs(b)))
 
 
 def _starts(problem: _Problem, two: bool) -> list[Array]:
