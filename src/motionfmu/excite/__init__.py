@@ -10,8 +10,17 @@ if TYPE_CHECKING:
         excitation_of,
     )
     from motionfmu.excite.excite_files import write_scenario
+    from motionfmu.excite.position_program import PositionProgram, part_program
 
-__all__ = ["AxisExcitation", "ExciteOptions", "LimitedMove", "excitation_of", "write_scenario"]
+__all__ = [
+    "AxisExcitation",
+    "ExciteOptions",
+    "LimitedMove",
+    "PositionProgram",
+    "excitation_of",
+    "part_program",
+    "write_scenario",
+]
 
 
 def __getattr__(name: str) -> Any:
@@ -21,9 +30,9 @@ def __getattr__(name: str) -> Any:
     from motionfmu.base.extras import needed
 
     needed("tune")
-    from motionfmu.excite import axis_excitation, excite_files
+    from motionfmu.excite import axis_excitation, excite_files, position_program
 
-    places = (axis_excitation, excite_files)
+    places = (axis_excitation, excite_files, position_program)
     return next(getattr(place, name) for place in places if hasattr(place, name))
 
 

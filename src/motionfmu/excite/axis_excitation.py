@@ -1,7 +1,7 @@
 """A multisine for one axis, as large as its limits allow, about a steady speed."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,6 +23,7 @@ Complex = NDArray[np.complex128]
 _HIGH, _OF_RATE, _MOST = 500.0, 0.2, 0.4
 # The motor's mean speed over the peak of what is added to it: it never turns back.
 _STEADY = 1.3
+_AMPLE = 2.0  # the same where there is room
 # Share of a limit that mean and peak take together at most, when the mean is chosen.
 _SHARE = _STEADY / (1.0 + _STEADY)
 # [rad/s] of the motor that friction is slid at, if the limits allow it.
@@ -180,7 +181,13 @@ class TravelRoom:
 class ExcitedAxis:
     """What an input moves: responses, limits, and the kind of the input."""
 
-    def __init__(self, scenario: Scenario, given: Mapping[str, Any], options: ExciteOptions) -> None:
+    def __init__(
+        self,
+        scenario: Scenario,
+        given: Mapping[str, Any],
+        options: ExciteOptions,
+        inside: bool = False,
+    ) -> None:
         self.options = options
         self.axis, self.masses = axis_of(scenario, options.axis, given)
         self.given = dict(given)
@@ -189,7 +196,7 @@ class ExcitedAxis:
         self.input = options.input or self._usual()
         self.port = self.axis.port(self.input, self.axis.inputs, "input")
         block = self.axis.blocks[self.port[0]]
-        if isinstance(block, Sampled) and self.port[1] in block.commands:
+        if isinstance(block, Sampled) and self.port[1] in block.commands and not inside:
             raise InputError(f"{self.input} arises inside: nothing can be driven there")
         self.slow = np.array([_SLOW, 2.0 * _SLOW])
         angle = self.of(self.position, self.slow)
@@ -234,6 +241,12 @@ class ExcitedAxis:
         """Response of an output to the input, whose wire is cut."""
         system = self.axis.system(self.input, output, cut=self.input)
         return np.asarray(system(np.exp(1j * omega * system.dt), squeeze=False))[0, 0]
+
+    def turning(self, omega: Array) -> Complex:
+        """Speeds of motor and load, both in [rad/s] of the motor: neither is to turn back."""
+        load = self.masses.signal(self.masses.names.load.position)
+        both = self.of(self.position, omega), self.of(load, omega) / self.masses.ratio
+        return np.asarray(np.array(both) * 1j * omega)
 
     def limits(self, omega: Array) -> list[MoveLimit]:
         """What limits the signals that the input moves: by the machine, and by the drive's law."""
@@ -299,7 +312,6 @@ class ExcitedAxis:
         return None
 
 
-# CCN 17: from the band over limits and phases to the command, each part made of the last.
 def excitation_of(
     scenario: Scenario,
     options: ExciteOptions = ExciteOptions(),
@@ -333,42 +345,9 @@ def excitation_of(
             f"period = {options.period:g} s: a whole number of samples of {interval:g} s wanted"
         )
     lines = _lines(options, interval)
-    omega = 2.0 * math.pi * lines / options.period
-    limits = moved.limits(omega)
-    if not limits:
-        raise InputError(f"{moved.input}: nothing limits what it moves: [limits] is missing")
-    whole = options.period * (options.periods + 1) + 2.0 * _LEAD
-    room = moved.travel()
-    most = _fastest(options, limits, room, whole)
-    speed = most if options.speed is None else abs(options.speed)
-    if speed > most * (1.0 + 1e-9):
-        raise InputError(
-            f"speed = {speed:g} rad/s: {most:.4g} rad/s is the most that speed, torque and travel"
-            f" leave for {whole:.4g} s"
-        )
-    turning = moved.of(moved.position, omega) * 1j * omega
-    caps = [(options.margin * m.limit - abs(m.per_speed) * speed - m.still, m) for m in limits]
-    for cap, m in caps:
-        if cap <= 0.0:
-            raise InputError(
-                f"{m.signal}: friction and a speed of {speed:.4g} rad/s leave nothing of"
-                f" {options.margin:g} times its limit, {m.limit:g} {m.unit}"
-            )
-    rows = np.array([turning / (speed / _STEADY), *(m.response / cap for cap, m in caps)])
-    size = 1.0 / np.abs(rows).max(axis=0)
-    if options.seed is None:
-        phases = low_peaks(rows * size, lines)
-    else:
-        phases = np.random.default_rng(options.seed).uniform(0.0, 2.0 * math.pi, len(lines))
-    sines = size * np.exp(1j * phases)
-    sines /= np.abs(waves(rows * sines, lines, n * max(1, math.ceil(8 * lines[-1] / n)))).max()
-    sines *= _continuous(limits, sines, lines, speed, options)
-    if options.speed is None:
-        peak = float(np.abs(waves(turning * sines, lines, n)).max())
-        speed = min(speed, max(_STEADY * peak, min(_SLIDING, speed)))
-    sign = -1.0 if room is not None and room.down * room.per_speed > room.up * room.per_speed else 1.0
-    if options.speed is not None:
-        sign = math.copysign(1.0, options.speed)
+    sized = multisine_of(moved, lines, n)
+    sines, limits, room, speed = sized.sines, sized.limits, sized.room, abs(sized.speed)
+    sign = math.copysign(1.0, sized.speed)
     one = waves(sines, lines, n)
     lead = _lead(moved, limits, speed)
     command, time = _command(moved, one, sign * speed, lead)
@@ -407,6 +386,59 @@ def excitation_of(
     )
 
 
+@dataclass(frozen=True)
+class SizedSines:
+    """Complex amplitudes at the input, as large as the limits allow, and what limits them."""
+
+    sines: Complex
+    speed: float  # [rad/s] of the motor, mean
+    limits: tuple[MoveLimit, ...]
+    room: TravelRoom | None
+
+
+# CCN 16: each limit is met in its own way: by the mean, by the peak, by the RMS, by the way.
+def multisine_of(moved: ExcitedAxis, lines: NDArray[np.int64], n: int) -> SizedSines:
+    """Sines at whole cycles per period of n samples, about the speed that suits them best."""
+    options = moved.options
+    omega = 2.0 * math.pi * lines / options.period
+    limits = moved.limits(omega)
+    if not limits:
+        raise InputError(f"{moved.input}: nothing limits what it moves: [limits] is missing")
+    whole = options.period * (options.periods + 1) + 2.0 * _LEAD
+    room = moved.travel()
+    most = _fastest(options, limits, room, whole)
+    speed = most if options.speed is None else abs(options.speed)
+    if speed > most * (1.0 + 1e-9):
+        raise InputError(
+            f"speed = {speed:g} rad/s: {most:.4g} rad/s is the most that speed, torque and travel"
+            f" leave for {whole:.4g} s"
+        )
+    turning = moved.turning(omega)
+    caps = [(options.margin * m.limit - abs(m.per_speed) * speed - m.still, m) for m in limits]
+    for cap, m in caps:
+        if cap <= 0.0:
+            raise InputError(
+                f"{m.signal}: friction and a speed of {speed:.4g} rad/s leave nothing of"
+                f" {options.margin:g} times its limit, {m.limit:g} {m.unit}"
+            )
+    rows = np.array([*turning / (speed / _STEADY), *(m.response / cap for cap, m in caps)])
+    size = 1.0 / np.abs(rows).max(axis=0)
+    if options.seed is None:
+        phases = low_peaks(rows * size, lines)
+    else:
+        phases = np.random.default_rng(options.seed).uniform(0.0, 2.0 * math.pi, len(lines))
+    sines = size * np.exp(1j * phases)
+    sines /= np.abs(waves(rows * sines, lines, n * max(1, math.ceil(8 * lines[-1] / n)))).max()
+    sines *= _continuous(limits, sines, lines, speed, options)
+    if options.speed is None:
+        peak = float(np.abs(waves(turning * sines, lines, n)).max())
+        speed = min(speed, max(_AMPLE * peak, _SLIDING))
+    sign = -1.0 if room is not None and room.down * room.per_speed > room.up * room.per_speed else 1.0
+    if options.speed is not None:
+        sign = math.copysign(1.0, options.speed)
+    return SizedSines(sines, sign * speed, tuple(limits), room)
+
+
 def _check(options: ExciteOptions) -> None:
     """Refuse numbers that are none of an excitation."""
     for name, low, high in (
@@ -441,7 +473,7 @@ def _lines(options: ExciteOptions, interval: float) -> NDArray[np.int64]:
 
 
 def _fastest(
-    options: ExciteOptions, limits: list[MoveLimit], room: TravelRoom | None, seconds: float
+    options: ExciteOptions, limits: Sequence[MoveLimit], room: TravelRoom | None, seconds: float
 ) -> float:
     """The largest mean speed of the motor that leaves room for as much beside it."""
     found = [
@@ -456,7 +488,7 @@ def _fastest(
 
 
 def _continuous(
-    limits: list[MoveLimit],
+    limits: Sequence[MoveLimit],
     sines: Complex,
     lines: NDArray[np.int64],
     speed: float,
@@ -479,7 +511,7 @@ def _continuous(
     return factor
 
 
-def _lead(moved: ExcitedAxis, limits: list[MoveLimit], speed: float) -> float:
+def _lead(moved: ExcitedAxis, limits: Sequence[MoveLimit], speed: float) -> float:
     """Duration of the start, so that it takes little torque [s], in whole samples."""
     masses = moved.masses.of(moved.axis)
     inertia = masses.motor + masses.load

@@ -20,12 +20,18 @@ Complex = NDArray[np.complex128]
 # A line counts as excited if the reference there is this share of its largest neighbours, within
 # this factor of frequency.
 _EXCITED, _NEIGHBOURS = 0.05, 1.3
-# Relative deviation above which a line tells nothing.
-_VAGUE = 0.5
+# Share of the largest line that one has at least: of a reference, whose lines fall with frequency;
+# of the input itself, whose lines a good excitation makes alike.
+_OF_LARGEST, _OF_INPUT = 1e-6, 5e-3
+# Relative deviation above which a line tells nothing, and how far a line stands above its noise, in
+# standard deviations of its mean: of noise alone 1 in 10,000 does so by chance in 6 periods.
+_VAGUE, _ABOVE = 0.3, 5.0
 # Share of the sampling rate up to which lines are used.
 _OF_RATE = 0.45
 # A first period is left out while it differs from the later ones by so many times what they do.
 _SETTLED = 3.0
+# Correlation of two Hann windows of which half is common.
+_ALIKE = 1.0 / 6.0
 # Segments into which a record without periods is cut, with half of each overlapping.
 _SEGMENTS = 8
 # Effective averages of Hann windows that overlap by half (Welch 1967; Bendat and Piersol).
@@ -222,11 +228,25 @@ def _drift(x: Array, period: int, count: int) -> float:
     return float(np.polyfit(np.arange(count) * period, each, 1)[0])
 
 
-def _spectra(x: Array, period: int, count: int) -> tuple[Complex, float]:
-    """Spectrum of each period, (count, lines), without the drift, and the drift per sample."""
-    rate = _drift(x, period, count)
-    level = (x - rate * np.arange(len(x))).reshape(count, period)
-    return np.asarray(np.fft.rfft(level, axis=1)), rate
+def _spectra(x: Array, period: int, count: int) -> Complex:
+    """Spectra at the lines of a period, a row for each stretch of it.
+
+    A stretch is two periods below a Hann window, half of which the next one shares. The window
+    reaches one line of two periods to either side, and lines lie two apart, so none sees another;
+    but what does not repeat, as an axis that drifts away, is not smeared over all of them.
+    """
+    if count < 3:
+        level = x - _drift(x, period, count) * np.arange(len(x))
+        return np.asarray(np.fft.rfft(level.reshape(count, period), axis=1))
+    window = 0.5 - 0.5 * np.cos(np.pi * np.arange(2 * period) / period)
+    rows = []
+    time = np.arange(2 * period) - period + 0.5
+    for k in range(count - 1):
+        part = x[k * period : (k + 2) * period]
+        part = part - part.mean()
+        part = part - time * float(time @ part) / float(time @ time)
+        rows.append(np.fft.rfft(part * window)[::2])
+    return np.asarray(rows)
 
 
 def _settled(signals: LoopSignals, source: Array, period: int) -> tuple[int, int, int]:
@@ -254,29 +274,34 @@ def _periods(signals: LoopSignals, period: int) -> MeasuredResponse:
     source = signals.input if signals.reference is None else signals.reference
     first, count, lost = _settled(signals, source, period)
     end = first + count * period
-    r, _ = _spectra(source[first:end], period, count)
-    u, _ = _spectra(signals.input[first:end], period, count)
-    y, rate = _spectra(signals.output[first:end], period, count)
+    r, u, y = (
+        _spectra(x[first:end], period, count) for x in (source, signals.input, signals.output)
+    )
+    rate = _drift(signals.output[first:end], period, count)
     line = np.arange(1, int(_OF_RATE * period) + 1)
     r, u, y = r[:, line], u[:, line], y[:, line]
     mean_r, mean_u, mean_y = (x.mean(axis=0) for x in (r, u, y))
-    excited = _excited(np.abs(mean_r), line)
+    least = _OF_INPUT if signals.reference is None else _OF_LARGEST
+    excited = _excited(np.abs(mean_r), line, least)
     with np.errstate(divide="ignore", invalid="ignore"):
         values = mean_y / mean_u
         # each period's error of the output beside what its input explains; the reference repeats
         rest = (y - mean_y) - values * (u - mean_u)
-        freedom = max(count - 1, 1)
-        error = np.sqrt(np.sum(np.abs(rest) ** 2, axis=0) / (freedom * count)) / np.abs(mean_u)
-        scatter = np.sum(np.abs(y - mean_y) ** 2, axis=0) / freedom
+        error = _of_mean(rest) / np.abs(mean_u)
+        scatter = np.sum(np.abs(y - mean_y) ** 2, axis=0) / max(len(y) - 1, 1)
         coherence = np.abs(mean_y) ** 2 / (np.abs(mean_y) ** 2 + scatter)
         loop = mean_u / mean_r
-    if count == 1:
+    if len(y) == 1:
         error, coherence = np.full(len(line), math.nan), np.full(len(line), math.nan)
     good = excited & np.isfinite(values) & ~(error > _VAGUE * np.abs(values))
+    if len(y) > 1:
+        excited &= np.abs(mean_r) > _ABOVE * _of_mean(r)
+        good &= excited & (np.abs(mean_u) > _ABOVE * _of_mean(u))
+        good &= np.abs(mean_y) > _ABOVE * _of_mean(y)
     seconds = period * signals.interval
     way = f"{count} periods of {seconds:.6g} s averaged"
     notes = [f"{lost} period{'s' * (lost != 1)} of transient left out"] if lost else []
-    if count == 1:
+    if len(y) == 1:
         notes.append("one period: nothing tells how sure the response is")
     dropped = int(np.sum(excited & ~good))
     if dropped:
@@ -300,12 +325,22 @@ def _periods(signals: LoopSignals, period: int) -> MeasuredResponse:
     return found.kept(good)
 
 
-def _excited(size: Array, line: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _of_mean(x: Complex) -> Array:
+    """Standard deviation of the mean of some stretches' lines."""
+    count = len(x)
+    if count == 1:
+        return np.full(x.shape[1], math.nan)
+    scatter = np.sum(np.abs(x - x.mean(axis=0)) ** 2, axis=0)
+    alike = 1.0 + 2.0 * (1.0 - 1.0 / count) * _ALIKE  # neighbours share half their samples
+    return np.asarray(np.sqrt(alike * scatter / (count * (count - 1))))
+
+
+def _excited(size: Array, line: NDArray[np.int64], least: float) -> NDArray[np.bool_]:
     """Lines at which the reference has something."""
     low = np.searchsorted(line, line / _NEIGHBOURS)
     high = np.searchsorted(line, line * _NEIGHBOURS, side="right")
     largest = np.array([size[a:b].max() for a, b in zip(low, high, strict=True)])
-    floor = 1e-6 * float(size.max(initial=0.0))
+    floor = least * float(size.max(initial=0.0))
     return np.asarray((size > _EXCITED * largest) & (size > floor))
 
 

@@ -12,7 +12,7 @@ is the motion per torque; the antiresonance is sqrt(k/J2), the resonance sqrt(k 
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,9 @@ VAGUE = 0.3
 _LEAST = 2e-3
 # Two masses are told if they leave so much less than one does.
 _BETTER = 0.5
+_FAR = 60.0  # logarithms beyond which nothing changes
+_NEAR = 6  # frequencies to either side whose differences weigh one
+_WINDOW = np.ones(2 * _NEAR + 1) / (2 * _NEAR + 1)
 _STARTS, _BEST = 14, 4  # frequencies at which a search begins, and how many are followed
 
 
@@ -152,8 +155,9 @@ class _Problem:
     scale: float  # [s] of a delay of 1
 
     def model(self, x: Array) -> MassModel:
-        whole, viscous = math.exp(x[0]), x[1] * math.exp(x[0])
-        delay = x[2] * self.scale
+        x = np.clip(x, -_FAR, _FAR)
+        whole, viscous = math.exp(x[0]), float(x[1]) * math.exp(x[0])
+        delay = float(x[2]) * self.scale
         left = viscous - self.motor_viscous
         if len(x) == 3:
             return MassModel(whole, 0.0, math.inf, 0.0, self.motor_viscous, left, delay)
@@ -204,11 +208,15 @@ def fit_masses(
     rough = 0.05 * size if not known.any() else known
     weight = 1.0 / np.hypot(rough, _LEAST * size)
     scale = 1.0 / float(measured.omega.max())
-    problem = _Problem(
-        measured.omega, measured.values, weight, motor_viscous, load, scale
-    )
+    problem = _Problem(measured.omega, measured.values, weight, motor_viscous, load, scale)
+    first = _search(problem, _starts(problem, True), "soft_l1")
+    # what no linear model explains (friction that is no line) repeats in every period: it is seen
+    # in what is left around a frequency only
+    rest = apart(measured.values, problem.model(first[0]).response(measured.omega, load))
+    near = np.sqrt(np.convolve(np.pad(rest**2, _NEAR, "edge"), _WINDOW, "valid"))
+    problem = replace(problem, weight=1.0 / np.maximum(1.0 / weight, near * size))
     one = _search(problem, _starts(problem, False))
-    two = _search(problem, _starts(problem, True))
+    two = _search(problem, [first[0], *_starts(problem, True)])
     alone, both = (_left(problem, x) for x in (one[0], two[0]))
     model = problem.model(two[0])
     low, high = float(measured.omega.min()), float(measured.omega.max())
@@ -270,13 +278,15 @@ def _starts(problem: _Problem, two: bool) -> list[Array]:
     return [x for _, x in sorted(guesses, key=lambda pair: pair[0])[:_BEST]]
 
 
-def _search(problem: _Problem, starts: list[Array]) -> tuple[Array, Array]:
+def _search(
+    problem: _Problem, starts: list[Array], loss: str = "linear"
+) -> tuple[Array, Array]:
     """The best of all searches, and its derivatives."""
     from scipy.optimize import least_squares
 
     best = None
     for x in starts:
-        found = least_squares(problem.rest, x, x_scale="jac", loss="linear", max_nfev=200)
+        found = least_squares(problem.rest, x, x_scale="jac", loss=loss, max_nfev=200)
         if best is None or found.cost < best.cost:
             best = found
     assert best is not None
