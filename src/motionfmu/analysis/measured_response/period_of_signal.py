@@ -14,6 +14,7 @@ _PARTS = ((0.4, 1.0), (0.25, 0.85), (0.1, 0.6))
 _SAME, _OTHER = 0.02, 0.25
 # Deviation of a repeat, of the signal's own, beyond which a sample is no part of it.
 _AWAY = 0.25
+_SPANS = 16  # of a period, over which that is taken
 _FEWEST = 16  # samples of a period
 
 
@@ -78,7 +79,10 @@ def whole_periods(signal: Array, period: int, name: str) -> WholePeriods:
     middle = signal[len(signal) // 4 : 3 * len(signal) // 4]
     line = np.polyfit(np.arange(len(middle)), middle, 1)
     size = float(np.std(middle - np.polyval(line, np.arange(len(middle)))))
-    good = np.abs(step - drift) <= _AWAY * size
+    wide = max(1, period // _SPANS)  # noise of a sample is no deviation
+    around = np.pad((step - drift) ** 2, (wide // 2, wide - 1 - wide // 2), "edge")
+    mean = np.convolve(around, np.full(wide, 1.0 / wide), "valid")
+    good = np.sqrt(mean) <= _AWAY * size
     edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]).astype(int)))
     runs = edges.reshape(-1, 2)
     lengths = runs[:, 1] - runs[:, 0] if len(runs) else np.zeros(0, int)

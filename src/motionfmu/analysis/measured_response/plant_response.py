@@ -148,7 +148,10 @@ def model_response(axis: AxisModel, masses: PlantMasses, pair: tuple[str, str], 
         return _at(system, omega)[0]
     component = source.partition(".")[0]
     block = axis.blocks[component]
-    entries = block.inputs if isinstance(block, Sampled) else ()
+    inputs = block.inputs if isinstance(block, Sampled) else ()
+    # a signal added to a feedback would be in what the drive shows of the motion: commands first
+    fed = {n for n in inputs if axis.wires.get((component, n), ("",))[0] == masses.component}
+    entries = sorted(inputs, key=lambda n: n in fed)
     best: Any = None
     for name in entries:
         system = axis.system(f"{component}.{name}", [source, output])

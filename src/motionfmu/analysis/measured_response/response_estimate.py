@@ -32,8 +32,9 @@ _OF_RATE = 0.45
 _SETTLED = 3.0
 # Correlation of two Hann windows of which half is common.
 _ALIKE = 1.0 / 6.0
-# Segments into which a record without periods is cut, with half of each overlapping.
-_SEGMENTS = 8
+# Segments into which a record without periods is cut, with half of each overlapping: at least and at
+# most, and the root of its samples over this.
+_SEGMENTS, _ROOT = (8, 64), 8.0
 # Effective averages of Hann windows that overlap by half (Welch 1967; Bendat and Piersol).
 _OVERLAP = 0.95
 # Coherence of reference and output below which a frequency without periods tells nothing.
@@ -349,10 +350,11 @@ def _windows(signals: LoopSignals) -> MeasuredResponse:
     from scipy.signal import csd
 
     source = signals.input if signals.reference is None else signals.reference
-    size = 2 * len(source) // (_SEGMENTS + 1)
+    segments = round(min(max(math.sqrt(len(source)) / _ROOT, _SEGMENTS[0]), _SEGMENTS[1]))
+    size = 2 * len(source) // (segments + 1)
     if size < 16:
         raise InputError(f"{signals.name}: {len(source)} samples are too few")
-    count = _OVERLAP * _SEGMENTS
+    count = _OVERLAP * segments
 
     def density(a: Array, b: Array) -> Complex:
         _, found = csd(
@@ -380,7 +382,7 @@ def _windows(signals: LoopSignals) -> MeasuredResponse:
         values,
         error,
         coherence,
-        f"{_SEGMENTS} Hann windows of {size * signals.interval:.4g} s averaged",
+        f"{segments} Hann windows of {size * signals.interval:.4g} s averaged",
         signals.name,
         (),
         loop,

@@ -26,12 +26,15 @@ Complex = NDArray[np.complex128]
 VAGUE = 0.3
 # Relative error that no measured response is without: what a linear model leaves.
 _LEAST = 2e-3
-# Two masses are told if they leave so much less than one does.
-_BETTER = 0.5
+# Two masses are told if one leaves so much more of the weighted squares, in units of what is left
+# of each: three quantities more take 3 of noise, and 50 by chance never.
+_BETTER = 50.0
 _FAR = 60.0  # logarithms beyond which nothing changes
+_SHARES = ("motor", "load", "stiffness", "damping", "load_viscous", "ratio", "antiresonance")
+_NOTHING = 1e-9  # of an information of 1: nothing is known
 _NEAR = 6  # frequencies to either side whose differences weigh one
 _WINDOW = np.ones(2 * _NEAR + 1) / (2 * _NEAR + 1)
-_STARTS, _BEST = 14, 4  # frequencies at which a search begins, and how many are followed
+_STARTS, _BEST = 60, 4  # frequencies at which a search begins, and how many are followed
 
 
 @dataclass(frozen=True)
@@ -206,7 +209,7 @@ def fit_masses(
     size = np.abs(measured.values)
     known = np.where(np.isfinite(measured.deviation), measured.deviation, 0.0)
     rough = 0.05 * size if not known.any() else known
-    weight = 1.0 / np.hypot(rough, _LEAST * size)
+    weight = math.sqrt(2.0) / np.hypot(rough, _LEAST * size)  # of the real and imaginary part
     scale = 1.0 / float(measured.omega.max())
     problem = _Problem(measured.omega, measured.values, weight, motor_viscous, load, scale)
     first = _search(problem, _starts(problem, True), "soft_l1")
@@ -214,20 +217,21 @@ def fit_masses(
     # in what is left around a frequency only
     rest = apart(measured.values, problem.model(first[0]).response(measured.omega, load))
     near = np.sqrt(np.convolve(np.pad(rest**2, _NEAR, "edge"), _WINDOW, "valid"))
-    problem = replace(problem, weight=1.0 / np.maximum(1.0 / weight, near * size))
+    problem = replace(problem, weight=1.0 / np.maximum(1.0 / weight, math.sqrt(0.5) * near * size))
     one = _search(problem, _starts(problem, False))
-    two = _search(problem, [first[0], *_starts(problem, True)])
+    two = _search(problem, [first[0], *_starts(problem, True)[:1]])
     alone, both = (_left(problem, x) for x in (one[0], two[0]))
     model = problem.model(two[0])
     low, high = float(measured.omega.min()), float(measured.omega.max())
     seen = low < model.antiresonance < 1.05 * high if not load else low < model.resonance < high
-    told = bool(both[1] < _BETTER * alone[1] and seen)
+    gained = 2 * n * ((alone[1] / max(both[1], 1e-300)) ** 2 - 1.0)
+    told = bool(gained > _BETTER and seen)
     x, jac = two if told else one
     model = problem.model(x)
     # a deviation is that of the noise, or of what the model leaves, whichever is larger
     freedom = max(2 * n - len(x), 1)
     chi = float(np.sum(problem.rest(x) ** 2)) / freedom
-    covariance = np.linalg.pinv(jac.T @ jac) * max(chi, 1.0 if known.any() else 0.0)
+    covariance = _covariance(jac) * max(chi, 1.0 if known.any() else 0.0)
     deviations, why = _deviations(problem, x, covariance, (low, high))
     spread = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
     return MassFit(
@@ -239,6 +243,14 @@ def fit_masses(
         alone[0],
         covariance / np.outer(spread, spread),
     )
+
+
+def _covariance(jac: Array) -> Array:
+    """Inverse of the information; what it says nothing of gets a large variance, not none."""
+    size = np.maximum(np.linalg.norm(jac, axis=0), 1e-300)
+    values, ways = np.linalg.eigh((jac / size).T @ (jac / size))
+    inverse = ways @ np.diag(1.0 / np.maximum(values, _NOTHING)) @ ways.T
+    return np.asarray(inverse / np.outer(size, size))
 
 
 def _left(problem: _Problem, x: Array) -> tuple[float, float]:
@@ -265,7 +277,7 @@ def _starts(problem: _Problem, two: bool) -> list[Array]:
     dip = float(omega[int(np.argmin(push))])
     peak = float(omega[int(np.argmax(push))])
     guesses = []
-    for anti, factor in itertools.product([*places, dip], (1.1, 1.3, 1.7, 2.5, 4.0, 0.0)):
+    for anti, factor in itertools.product([*places, dip], (1.03, 1.1, 1.3, 1.7, 2.5, 4.0, 0.0)):
         high = peak if factor == 0.0 else factor * anti
         if high <= 1.02 * anti:
             continue
@@ -336,6 +348,9 @@ def _deviations(
             why[name] = f"its deviation is {100 * min(spread / max(abs(value), 1e-300), 99):.0f} %"
         elif name == "load_viscous" and value < 0.0:
             why[name] = "it comes out negative"
+    if problem.load:  # its response is told by the sum of the inertias, the resonance and damping
+        for name in _SHARES:
+            why.setdefault(name, "the motion of the load alone does not tell the motor's share")
     if "resonance" in at and at["resonance"] > 1.3 * band[1] and not problem.load:
         for name in ("motor", "ratio", "resonance"):
             why.setdefault(name, "the resonance lies above the band")
