@@ -107,9 +107,7 @@ def test_windows_are_those_of_scipy():
     frequency, ry = signal.csd(
         signals.reference, signals.output, 1 / STEP, nperseg=size, detrend="linear"
     )
-    _, ru = signal.csd(
-        signals.reference, signals.input, 1 / STEP, nperseg=size, detrend="linear"
-    )
+    _, ru = signal.csd(signals.reference, signals.input, 1 / STEP, nperseg=size, detrend="linear")
     _, same = signal.coherence(
         signals.reference, signals.output, 1 / STEP, nperseg=size, detrend="linear"
     )
@@ -318,9 +316,7 @@ def test_exact_responses_of_other_values_give_those_values():
     axis, masses = axis_of(scenario(**ELASTIC), 1, {}, 30.0)
     signals = "drives.torque", "drives.speed"
     values = model_response(axis, masses, signals, OMEGA)
-    exact_ = MeasuredResponse(
-        OMEGA, values, np.full(len(OMEGA), math.nan), 0 * OMEGA, "made", "x"
-    )
+    exact_ = MeasuredResponse(OMEGA, values, np.full(len(OMEGA), math.nan), 0 * OMEGA, "made", "x")
     found = found_response(scenario(**WRONG), exact_, signals)
     for name, value in ELASTIC.items():
         assert found.settings[f"machine.{name}[1]"] == pytest.approx(value, rel=2e-3), name

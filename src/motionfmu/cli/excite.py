@@ -70,17 +70,17 @@ def excite(  # noqa: PLR0913  (each is an option of the command)
 
 def _scenario(path: Path) -> "Scenario":
     """The scenario of a path or name, or a machine's own tables as one."""
-    import motionfmu
+    from motionfmu import run
     from motionfmu.scenarios import package_files
 
     file = path / "machine.toml" if path.is_dir() else path
     if file.is_file() and file.name == "machine.toml":
         machine = str(file.parent.absolute())
-        return motionfmu.scenario({"machine": machine, "stop": 1.0}, name=file.parent.absolute().name)
+        return run.scenario({"machine": machine, "stop": 1.0}, name=file.parent.absolute().name)
     name = str(path)
     if name in package_files.machines() and package_files.scenario(path) is None:
-        return motionfmu.scenario({"machine": name, "stop": 1.0}, name=name)
-    return motionfmu.load(path)
+        return run.scenario({"machine": name, "stop": 1.0}, name=name)
+    return run.load(path)
 
 
 def _made(

@@ -35,7 +35,12 @@ def band_of(text: str | None) -> tuple[float | None, float | None]:
     except ValueError:
         ends = (None, None)
     sizes = [x for x in ends if x is not None]
-    if not colon or not sizes or not all(0.0 < x < 1e6 for x in sizes) or sizes != sorted(set(sizes)):
+    if (
+        not colon
+        or not sizes
+        or not all(0.0 < x < 1e6 for x in sizes)
+        or sizes != sorted(set(sizes))
+    ):
         raise InputError(f"--band {text}: LOW:HIGH in Hz wanted, as 5:400")
     return ends[0], ends[1]
 

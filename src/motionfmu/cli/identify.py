@@ -28,12 +28,15 @@ if TYPE_CHECKING:
     from motionfmu.run import Scenario
 
 
+# CCN 18: an option that is given replaces that of the file, one after the other.
 @app.command()
 def identify(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
     record: Annotated[
         list[Path],
-        typer.Option(help="A measured record: CSV, Parquet, .mat, a result folder; of --frf several."),
+        typer.Option(
+            help="A measured record: CSV, Parquet, .mat, a result folder; of --frf several."
+        ),
     ],
     machine: OnMachine = None,
     axis: Annotated[int | None, typer.Option(help="Axis of the scenario, from 1.")] = None,
@@ -60,7 +63,9 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     ] = None,
     frf: Annotated[
         bool,
-        typer.Option("--frf", help="Two masses from the frequency response, or from a table of it."),
+        typer.Option(
+            "--frf", help="Two masses from the frequency response, or from a table of it."
+        ),
     ] = False,
     period: Annotated[
         float | None, typer.Option(metavar="S", help="--frf: period of the excitation, 0 for none.")

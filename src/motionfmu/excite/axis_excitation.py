@@ -198,6 +198,8 @@ class ExcitedAxis:
         block = self.axis.blocks[self.port[0]]
         if isinstance(block, Sampled) and self.port[1] in block.commands and not inside:
             raise InputError(f"{self.input} arises inside: nothing can be driven there")
+        if self.port[0] == self.masses.component:
+            raise InputError(f"{self.input} is the plant's own: no loop would hold the axis")
         self.slow = np.array([_SLOW, 2.0 * _SLOW])
         angle = self.of(self.position, self.slow)
         if not np.abs(angle).min() > 0.0:
@@ -213,7 +215,9 @@ class ExcitedAxis:
             )
         torque = self.axis.system(self.input, self.source, cut=self.input)
         net = self.axis.net(self.input, {})
-        ends = [self.axis.port(n, self.axis.outputs, "output") for n in (self.source, self.position)]
+        ends = [
+            self.axis.port(n, self.axis.outputs, "output") for n in (self.source, self.position)
+        ]
         self.used = net.used([self.port], ends) | {c for c, _ in (self.port, *ends)}
         self.interval = float(torque.dt)
 
@@ -248,6 +252,7 @@ class ExcitedAxis:
         both = self.of(self.position, omega), self.of(load, omega) / self.masses.ratio
         return np.asarray(np.array(both) * 1j * omega)
 
+    # CCN 17: limits of the machine and of the drive's law, each with what it does not hold for.
     def limits(self, omega: Array) -> list[MoveLimit]:
         """What limits the signals that the input moves: by the machine, and by the drive's law."""
         found: dict[str, MoveLimit] = {}
@@ -396,11 +401,10 @@ class SizedSines:
     room: TravelRoom | None
 
 
-# CCN 16: each limit is met in its own way: by the mean, by the peak, by the RMS, by the way.
 def multisine_of(moved: ExcitedAxis, lines: NDArray[np.int64], n: int) -> SizedSines:
     """Sines at whole cycles per period of n samples, about the speed that suits them best."""
     options = moved.options
-    omega = 2.0 * math.pi * lines / options.period
+    omega: Array = np.asarray(2.0 * math.pi * lines / options.period, dtype=np.float64)
     limits = moved.limits(omega)
     if not limits:
         raise InputError(f"{moved.input}: nothing limits what it moves: [limits] is missing")
@@ -433,7 +437,9 @@ def multisine_of(moved: ExcitedAxis, lines: NDArray[np.int64], n: int) -> SizedS
     if options.speed is None:
         peak = float(np.abs(waves(turning * sines, lines, n)).max())
         speed = min(speed, max(_AMPLE * peak, _SLIDING))
-    sign = -1.0 if room is not None and room.down * room.per_speed > room.up * room.per_speed else 1.0
+    sign = (
+        -1.0 if room is not None and room.down * room.per_speed > room.up * room.per_speed else 1.0
+    )
     if options.speed is not None:
         sign = math.copysign(1.0, options.speed)
     return SizedSines(sines, sign * speed, tuple(limits), room)
@@ -461,7 +467,9 @@ def _lines(options: ExciteOptions, interval: float) -> NDArray[np.int64]:
     most = _MOST / interval
     high = min(_HIGH, _OF_RATE / interval) if options.high is None else options.high
     if high > most:
-        raise InputError(f"high = {high:g} Hz: {most:g} Hz is the most at samples of {interval:g} s")
+        raise InputError(
+            f"high = {high:g} Hz: {most:g} Hz is the most at samples of {interval:g} s"
+        )
     first = max(1, math.ceil(options.low * options.period - 1e-9))
     last = math.floor(high * options.period + 1e-9)
     if last - first < 7:
@@ -522,9 +530,7 @@ def _lead(moved: ExcitedAxis, limits: Sequence[MoveLimit], speed: float) -> floa
     return math.ceil(seconds / moved.interval) * moved.interval
 
 
-def _command(
-    moved: ExcitedAxis, one: Array, speed: float, lead: float
-) -> tuple[Array, Array]:
+def _command(moved: ExcitedAxis, one: Array, speed: float, lead: float) -> tuple[Array, Array]:
     """The command over time: start, a period to settle, those measured, end; and the times."""
     n, interval = len(one), moved.interval
     rise = round(lead / interval)
@@ -552,7 +558,7 @@ def _move(
 def _crests(
     moved: ExcitedAxis, sines: Complex, lines: NDArray[np.int64], n: int
 ) -> dict[str, float]:
-    omega = 2.0 * math.pi * lines / moved.options.period
+    omega: Array = np.asarray(2.0 * math.pi * lines / moved.options.period, dtype=np.float64)
     rows = {moved.input: np.ones(len(lines)), moved.source: moved.of(moved.source, omega)}
     return {name: crest(waves(row * sines, lines, n)) for name, row in rows.items()}
 

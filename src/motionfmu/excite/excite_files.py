@@ -96,7 +96,16 @@ def toml_of(about: str, tables: Mapping[str, Any]) -> str:
 
 
 def write_scenario(made: AxisExcitation, folder: Path) -> None:
-    """Write scenario.toml, the command and identify.toml into a folder of their own."""
+    """Write a scenario of an excitation into a new folder.
+
+    It has scenario.toml, the command as excitation.csv, and identify.toml for its record.
+
+    Parameters
+    ----------
+    made : AxisExcitation
+    folder : Path
+        It must not be there.
+    """
     folder.mkdir()
     about = (
         f"Axis {made.axis.axis} of {made.axis.scenario.name}, excited at {made.input}:"

@@ -78,7 +78,7 @@ class _Plane:
 
 
 def part_program(made: AxisExcitation) -> PositionProgram | None:
-    """Make a part program of an axis, at the frequencies that a path can have.
+    """Make a part program at frequencies that a path can have.
 
     Parameters
     ----------
@@ -140,6 +140,7 @@ def _commanded(made: AxisExcitation) -> ExcitedAxis | None:
     return None
 
 
+# CCN 16: what is no straight axis with a travel is passed over, condition by condition.
 def _plane(made: AxisExcitation) -> _Plane | None:
     """The axis and the first other one; None if there is none."""
     scenario = made.axis.scenario
@@ -160,7 +161,10 @@ def _plane(made: AxisExcitation) -> _Plane | None:
         return None
     other = others[0]
     scale = [1e3 if r.unit == "m" else 1.0 for r in (own, other)]
-    ends = [(s * float(r.low or 0), s * float(r.high or 0)) for r, s in zip((own, other), scale, strict=True)]
+    ends = [
+        (s * float(r.low or 0), s * float(r.high or 0))
+        for r, s in zip((own, other), scale, strict=True)
+    ]
     return _Plane(
         own.axis.name,
         other.axis.name,
@@ -191,7 +195,7 @@ def _program(
     px, py = x[at], y[at]
     a, b = plane.name, plane.other
     text = [
-        f"({a} by a multisine of {lines[0] / period:g} to {lines[-1] / period:g} Hz about a steady speed,)",
+        f"({a} by a multisine of {lines[0] / period:g} to {lines[-1] / period:g} Hz)",
         f"({periods} periods of {period:g} s; {b} carries the time at one feed.)",
         f"G21 G90 G94 G64 P{_TOLERANCE:g}",
         f"G0 {a}{px[0]:.4f} {b}{py[0]:.4f}",
@@ -199,7 +203,7 @@ def _program(
         *(f"G1 {a}{u:.4f} {b}{v:.4f}" for u, v in zip(px[1:], py[1:], strict=True)),
         "M2",
     ]
-    times = at[:-1] * step
+    times: Array = np.asarray(at[:-1] * step, dtype=np.float64)
     return PositionProgram(
         "\n".join(text) + "\n",
         times,

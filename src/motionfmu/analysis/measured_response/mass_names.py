@@ -65,24 +65,7 @@ def names_in(fmu: str) -> MassNames | None:
 
 
 class PlantMasses:
-    """The plant of an axis whose FMU says what its two masses are.
-
-    Parameters
-    ----------
-    axis : AxisModel
-
-    Raises
-    ------
-    InputError
-        No plant of the scenario says so, or several do.
-
-    Attributes
-    ----------
-    component : str
-    names : MassNames
-    ratio : float
-        Motion of the load per motion of the motor.
-    """
+    """The plant of an axis whose FMU says what its two masses are; an InputError if none does."""
 
     def __init__(self, axis: AxisModel) -> None:
         components = axis.scenario.document.body.component

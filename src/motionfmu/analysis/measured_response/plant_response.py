@@ -65,7 +65,7 @@ class PlantParameter:
 
 @dataclass(frozen=True)
 class FoundResponse:
-    """Two masses of a plant found from a measured response, and what they explain.
+    """Two masses of a plant, found from a measured response.
 
     Attributes
     ----------
@@ -139,7 +139,9 @@ def source_of(axis: AxisModel, masses: PlantMasses, name: str) -> str:
     return source
 
 
-def model_response(axis: AxisModel, masses: PlantMasses, pair: tuple[str, str], omega: Array) -> Any:
+def model_response(
+    axis: AxisModel, masses: PlantMasses, pair: tuple[str, str], omega: Array
+) -> Any:
     """Output per input of the linear model at frequencies; NaN beyond its sampling."""
     source, output = pair
     drive = masses.signal(masses.names.drive)
@@ -160,8 +162,9 @@ def model_response(axis: AxisModel, masses: PlantMasses, pair: tuple[str, str], 
             best = both[1] / both[0]
             break
     if best is None:
-        raise InputError(f"{axis.scenario.document.file}: nothing that {component} reads moves"
-                         f" {output}")
+        raise InputError(
+            f"{axis.scenario.document.file}: nothing that {component} reads moves {output}"
+        )
     return best
 
 
@@ -205,7 +208,7 @@ def found_response(
     axis: int = 1,
     set: Mapping[str, Any] | None = None,
 ) -> FoundResponse:
-    """Find the two masses of a scenario's plant in a measured response.
+    """Find two masses of a plant in its measured response.
 
     Parameters
     ----------
@@ -307,9 +310,7 @@ def _of_load(axis: AxisModel, masses: PlantMasses, pair: tuple[str, str]) -> boo
     return not motor.issuperset(np.flatnonzero(row))
 
 
-def _parameters(
-    axis: AxisModel, masses: PlantMasses, fit: MassFit
-) -> tuple[PlantParameter, ...]:
+def _parameters(axis: AxisModel, masses: PlantMasses, fit: MassFit) -> tuple[PlantParameter, ...]:
     """The plant's parameters that are two masses, before and found."""
     n = masses.names
     names = {

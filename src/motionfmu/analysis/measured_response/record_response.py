@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -52,11 +52,11 @@ class ResponseOptions:
 
     columns: Mapping[str, ColumnUse]
     axis: int = 1
-    estimate: EstimateOptions = EstimateOptions()
+    estimate: EstimateOptions = field(default_factory=EstimateOptions)
 
 
 @dataclass(frozen=True)
-class _Roles:
+class _ColumnRoles:
     """Columns of a record by what they are."""
 
     reference: str | None
@@ -70,7 +70,7 @@ def identify_response(
     options: ResponseOptions,
     set: Mapping[str, Any] | None = None,
 ) -> FoundResponse:
-    """Find two masses in records of a closed loop, or in a table of its response.
+    """Find two masses in records of a loop, or in a table.
 
     Parameters
     ----------
@@ -137,7 +137,7 @@ def _in_band(measured: MeasuredResponse, options: EstimateOptions) -> MeasuredRe
 
 def _roles(
     record: AxisRecord, uses: Mapping[str, ColumnUse], of: tuple[AxisModel, PlantMasses]
-) -> _Roles:
+) -> _ColumnRoles:
     """Sort the columns; an InputError says what is missing or too much."""
     model, masses = of
     drive = masses.signal(masses.names.drive)
@@ -156,20 +156,25 @@ def _roles(
             kinds["output"].append(name)
         else:
             model.port(use.signal, [*model.inputs, *model.outputs], "signal")
-    for kind, told in (("input", f"what moves the plant, {both}"), ("output", "a position or speed")):
+    for kind, told in (
+        ("input", f"what moves the plant, {both}"),
+        ("output", "a position or speed"),
+    ):
         if not kinds[kind]:
-            raise InputError(f"{record.name}: no column is {told}: --column COLUMN=SIGNAL says which")
+            raise InputError(
+                f"{record.name}: no column is {told}: --column COLUMN=SIGNAL says which"
+            )
     for kind, names in kinds.items():
         if len(names) > 1:
             raise InputError(
                 f"{record.name}: {' and '.join(names)} are both {kind} of the response: one wanted"
             )
     first = {kind: names[0] if names else None for kind, names in kinds.items()}
-    return _Roles(first["reference"], str(first["input"]), str(first["output"]))
+    return _ColumnRoles(first["reference"], str(first["input"]), str(first["output"]))
 
 
 def _signals(
-    record: AxisRecord, roles: _Roles, options: ResponseOptions, model: AxisModel
+    record: AxisRecord, roles: _ColumnRoles, options: ResponseOptions, model: AxisModel
 ) -> LoopSignals:
     """The columns in the units of their signals; a reference is an instrument in any unit."""
 

@@ -32,8 +32,8 @@ _OF_RATE = 0.45
 _SETTLED = 3.0
 # Correlation of two Hann windows of which half is common.
 _ALIKE = 1.0 / 6.0
-# Segments into which a record without periods is cut, with half of each overlapping: at least and at
-# most, and the root of its samples over this.
+# Segments into which a record without periods is cut, with half of each overlapping: at least and
+# at most, and the root of its samples over this.
 _SEGMENTS, _ROOT = (8, 64), 8.0
 # Effective averages of Hann windows that overlap by half (Welch 1967; Bendat and Piersol).
 _OVERLAP = 0.95
@@ -140,9 +140,7 @@ class MeasuredResponse:
         -------
         MeasuredResponse
         """
-        parts = {
-            n: getattr(self, n)[which] for n in ("omega", "values", "deviation", "coherence")
-        }
+        parts = {n: getattr(self, n)[which] for n in ("omega", "values", "deviation", "coherence")}
         return replace(self, **parts, loop=None if self.loop is None else self.loop[which])
 
     def scaled(self, factor: Complex | float) -> "MeasuredResponse":
@@ -156,9 +154,7 @@ class MeasuredResponse:
         -------
         MeasuredResponse
         """
-        return replace(
-            self, values=self.values * factor, deviation=self.deviation * np.abs(factor)
-        )
+        return replace(self, values=self.values * factor, deviation=self.deviation * np.abs(factor))
 
 
 def estimate(
@@ -205,8 +201,8 @@ def estimate(
     found = _windows(signals) if period is None else _periods(signals, period)
     if signals.reference is None and period is None:  # else the mean of periods has no noise
         note = (
-            "no reference and no periods: noise that goes round the loop biases the response towards"
-            " that of the controller"
+            "no reference and no periods: noise that goes round the loop biases the response"
+            " towards that of the controller"
         )
         found = replace(found, notes=(note, *found.notes))
     hertz = found.omega / (2.0 * math.pi)
@@ -279,7 +275,7 @@ def _periods(signals: LoopSignals, period: int) -> MeasuredResponse:
         _spectra(x[first:end], period, count) for x in (source, signals.input, signals.output)
     )
     rate = _drift(signals.output[first:end], period, count)
-    line = np.arange(1, int(_OF_RATE * period) + 1)
+    line = np.arange(1, int(_OF_RATE * period) + 1, dtype=np.int64)
     r, u, y = r[:, line], u[:, line], y[:, line]
     mean_r, mean_u, mean_y = (x.mean(axis=0) for x in (r, u, y))
     least = _OF_INPUT if signals.reference is None else _OF_LARGEST
@@ -307,7 +303,7 @@ def _periods(signals: LoopSignals, period: int) -> MeasuredResponse:
     dropped = int(np.sum(excited & ~good))
     if dropped:
         notes.append(f"{dropped} of {int(excited.sum())} excited lines are lost in noise")
-    omega = 2.0 * math.pi * line / seconds
+    omega: Array = np.asarray(2.0 * math.pi * line / seconds, dtype=np.float64)
     mean_y = np.where(good, mean_y, 0.0)
     found = MeasuredResponse(
         omega,
@@ -378,7 +374,7 @@ def _windows(signals: LoopSignals) -> MeasuredResponse:
     rate = float(np.polyfit(np.arange(len(y)) * signals.interval, y, 1)[0])
     band = np.where(good, np.abs(ry) ** 2 / rr, 0.0)  # of the output, what the reference explains
     found = MeasuredResponse(
-        2.0 * math.pi * hertz,
+        np.asarray(2.0 * math.pi * hertz, dtype=np.float64),
         values,
         error,
         coherence,
@@ -395,7 +391,9 @@ def _windows(signals: LoopSignals) -> MeasuredResponse:
 
 
 def together(found: Sequence[MeasuredResponse]) -> MeasuredResponse:
-    """The mean of responses of several records at the frequencies that all have.
+    """The mean of responses of several records.
+
+    It is taken at the frequencies that all have.
 
     Their scatter, which has what is not linear in it where their phases differ, is in the
     deviation.

@@ -27,6 +27,7 @@ _GAINS = {"gain", "magnitude", "mag", "amplitude", "ampl", "amplitudengang", "be
 _PHASES = {"phase", "phi", "phasengang", "angle"}
 _COHERENCES = {"coherence", "kohärenz", "coh", "gamma2", "γ²"}
 _REALS, _IMAGINARIES = {"real", "re", "real part"}, {"imag", "im", "imaginary", "imaginary part"}
+_QUOTIENT = re.compile(r"\((.*)\)\s*/\s*\((.*)\)")
 _DECIBEL = re.compile(r"\s*[(\[]?\s*db\s*[)\]]?$", re.IGNORECASE)
 
 
@@ -72,9 +73,7 @@ def response_table(file: Path) -> ResponseTable | None:
     real, imaginary = _find(table, _REALS), _find(table, _IMAGINARIES)
     if frequency is None or (gain is None and real is None):
         return None
-    return ResponseTable(
-        table, frequency, gain, phase, real, imaginary, _find(table, _COHERENCES)
-    )
+    return ResponseTable(table, frequency, gain, phase, real, imaginary, _find(table, _COHERENCES))
 
 
 def _column(table: RawTable, k: int) -> Array:
@@ -128,15 +127,15 @@ def read_response(
     pair, factor = _pair(table, kept, uses, ports)
     if found.gain is not None:
         if found.phase is None:
-            raise InputError(f"{table.name}: {name} without a phase: a column phase [deg] wanted")
+            raise InputError(f"{table.name}: {name} without a phase: a column phase [°] wanted")
         size = _column(table, kept)
         decibel = _is_decibel(table, kept)
         size = 10.0 ** (size / 20.0) if decibel else size
         bad = np.flatnonzero(size <= 0.0)
         if len(bad):
             raise InputError(
-                f"{table.where(int(bad[0]), kept)}: {name} = {size[bad[0]]:g}: above 0 wanted; a gain"
-                " in decibels says [dB]"
+                f"{table.where(int(bad[0]), kept)}: {name} = {size[bad[0]]:g}: above 0 wanted;"
+                " a gain in decibels says [dB]"
             )
         angle = _in_unit(table, found.phase, "rad", math.pi / 180.0)
         values = size * np.exp(1j * angle)
@@ -182,36 +181,38 @@ def _pair(
     output, stroke, source = (part.strip() for part in use.signal.partition("/"))
     if not stroke or "." not in source or "." not in output:
         raise InputError(f"--column {name}={use.signal}: OUTPUT/INPUT wanted, as {ask}")
-    both = [_unit(ports, s) for s in (output, source)]
-    unit = table.units[column]
     if use.scale is not None:
         return (source, output), use.scale
+    return (source, output), _factor(table, column, [_unit(ports, s) for s in (output, source)])
+
+
+def _factor(table: RawTable, column: int, both: list[str]) -> float:
+    """Of a gain in its own unit, to those of its output and input, `both`."""
+    name, unit = table.names[column], table.units[column]
     if unit is None or unit.strip() in ("", "1", "-") or _is_decibel(table, column):
-        return (source, output), 1.0
-    wanted = "/".join([both[0], both[1].replace(".", "/")])
-    try:
-        own, there = quantity(unit.replace("(", "").replace(")", "")), units.parse(wanted)
-    except ValueError as error:
-        raise InputError(f"{table.where(-1, column)}: {name}: {error}") from None
-    # N.m divides twice in FMI's spelling: rad/s/N/m; a drive writes rad/s/Nm or (rad/s)/(N.m)
-    exponents = own.exponents
-    if exponents != there.exponents:
-        own = _divided(unit) or own
-    if own.exponents != there.exponents:
-        told = f"{name} is in [{unit}], {output} per {source} is in [{both[0]}]/[{both[1]}]"
-        raise InputError(f"{table.where(-1, column)}: {told}: say its scale")
-    return (source, output), own.factor / there.factor
+        return 1.0
+    there, own = _divided("/".join(f"({u})" for u in both)), _divided(unit)
+    if there is None or own is None or own.exponents != there.exponents:
+        shown = "/".join(f"[{units.spelled(u)}]" for u in both)
+        told = f"{name} is in [{unit}], the response of its signals in {shown}: say its scale"
+        raise InputError(f"{table.where(-1, column)}: {told}")
+    return own.factor / there.factor
 
 
 def _divided(unit: str) -> units.Unit | None:
-    """A quotient of two units, the lower one in brackets or last."""
+    """A unit, or a quotient of two whose parts may stand in brackets: ``(rad/s)/(N.m)``."""
     upper, stroke, lower = unit.rpartition("/")
+    found = _QUOTIENT.fullmatch(unit.strip())
+    if found:
+        upper, stroke, lower = found[1], "/", found[2]
     try:
+        if not stroke:
+            return quantity(unit)
         a, b = quantity(upper.strip("() ") or "1"), quantity(lower.strip("() "))
     except ValueError:
         return None
     exponents = tuple(x - y for x, y in zip(a.exponents, b.exponents, strict=True))
-    return units.Unit(unit, a.factor / b.factor, exponents) if stroke else None
+    return units.Unit(unit, a.factor / b.factor, exponents)
 
 
 def _unit(ports: Mapping[str, Mapping[str, Port]], signal: str) -> str:

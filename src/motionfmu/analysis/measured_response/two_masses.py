@@ -39,7 +39,9 @@ _STARTS, _BEST = 60, 4  # frequencies at which a search begins, and how many are
 
 @dataclass(frozen=True)
 class MassModel:
-    """Two masses, a spring, a damper, friction and a delay, on the side of the drive.
+    """Two masses with a spring, friction and a delay.
+
+    All on the side of the drive.
 
     Attributes
     ----------
@@ -147,7 +149,7 @@ class MassFit:
 
 
 @dataclass(frozen=True)
-class _Problem:
+class _MassProblem:
     """Weighted residuals of a model in logarithms of its quantities."""
 
     omega: Array
@@ -211,7 +213,7 @@ def fit_masses(
     rough = 0.05 * size if not known.any() else known
     weight = math.sqrt(2.0) / np.hypot(rough, _LEAST * size)  # of the real and imaginary part
     scale = 1.0 / float(measured.omega.max())
-    problem = _Problem(measured.omega, measured.values, weight, motor_viscous, load, scale)
+    problem = _MassProblem(measured.omega, measured.values, weight, motor_viscous, load, scale)
     first = _search(problem, _starts(problem, True), "soft_l1")
     # what no linear model explains (friction that is no line) repeats in every period: it is seen
     # in what is left around a frequency only
@@ -253,7 +255,7 @@ def _covariance(jac: Array) -> Array:
     return np.asarray(inverse / np.outer(size, size))
 
 
-def _left(problem: _Problem, x: Array) -> tuple[float, float]:
+def _left(problem: _MassProblem, x: Array) -> tuple[float, float]:
     """RMS of what is left of the values, and of the weighted residuals."""
     rest = apart(problem.values, problem.model(x).response(problem.omega, problem.load))
     weighted = np.mean(problem.rest(x) ** 2)
@@ -265,7 +267,7 @@ def apart(a: Complex, b: Complex) -> Array:
     return np.asarray(np.abs(a - b) / np.maximum(np.abs(a), np.abs(b)))
 
 
-def _starts(problem: _Problem, two: bool) -> list[Array]:
+def _starts(problem: _MassProblem, two: bool) -> list[Array]:
     """Guesses; those of two masses that leave least of the magnitudes."""
     omega = problem.omega
     push = np.abs(problem.values) * omega * omega  # acceleration per torque
@@ -291,7 +293,7 @@ def _starts(problem: _Problem, two: bool) -> list[Array]:
 
 
 def _search(
-    problem: _Problem, starts: list[Array], loss: str = "linear"
+    problem: _MassProblem, starts: list[Array], loss: str = "linear"
 ) -> tuple[Array, Array]:
     """The best of all searches, and its derivatives."""
     from scipy.optimize import least_squares
@@ -323,8 +325,9 @@ def _quantities(model: MassModel) -> dict[str, float]:
     return found
 
 
+# CCN 16: each reason for which a quantity is not told is a branch.
 def _deviations(
-    problem: _Problem, x: Array, covariance: Array, band: tuple[float, float]
+    problem: _MassProblem, x: Array, covariance: Array, band: tuple[float, float]
 ) -> tuple[dict[str, float], dict[str, str]]:
     """Deviations of all quantities, and why one is not told."""
     at = _quantities(problem.model(x))

@@ -39,8 +39,8 @@ _POINTS = 600
 # Half width of the band, in standard deviations.
 BAND = 2.0
 FOOTER = (
-    "The response is the mean output over the mean input, both taken by the reference, so noise that"
-    " goes round the loop does not bias it; the band is two standard deviations. Models are the"
+    "The response is the mean output over the mean input, both taken by the reference, so that no"
+    " noise in the loop biases it; the band is two standard deviations. Models are the"
     " scenario's own linear one, with the sampling, holds and lags of its FMUs, with the values"
     " before and with those found. Every number is in"
     ' <a href="result.json">result.json</a>; use the values with'
@@ -198,7 +198,9 @@ def _bode(found: FoundResponse) -> Diagram:
     if known.any():
         name = "± 2 standard deviations"
         sizes.append(
-            BandMark(hertz, level + _decibel(1 - share), level + _decibel(1 + share), name, MEASURED)
+            BandMark(
+                hertz, level + _decibel(1 - share), level + _decibel(1 + share), name, MEASURED
+            )
         )
         angles.append(BandMark(hertz, lag - turn, lag + turn, name, MEASURED))
     for name, color, dash in (("before", BEFORE, DASH), ("found", FOUND, "solid")):
