@@ -66,6 +66,12 @@ def test_period_is_found_in_noise_and_drift(period, drift):
     assert whole_periods(x, period, "x").count == 5
 
 
+def test_a_slow_signal_does_not_repeat_at_once():
+    # neighbours of a slow signal are alike, too
+    x = np.tile(multisine(1000, np.arange(1, 4), np.random.default_rng(5)), 4)
+    assert period_of(x) == 1000
+
+
 def test_noise_and_a_chirp_have_no_period():
     rng = np.random.default_rng(1)
     time = np.arange(4000) * STEP
@@ -117,22 +123,23 @@ def test_windows_are_those_of_scipy():
 
 
 def test_a_wandering_output_is_not_smeared_over_the_lines():
-    # an integrator that noise of its input, which is recorded, makes wander from period to period
+    # a mass: noise of its torque, which is recorded, makes it wander from period to period
     rng = np.random.default_rng(8)
     n, lines = 1000, np.arange(4, 300)
     u = np.tile(multisine(n, lines, rng), 8) + 0.3 * rng.standard_normal(8 * n)
-    y = np.cumsum(np.concatenate([[0.0], u]))[:-1]
-    found = estimate(LoopSignals(None, u, y, STEP))
-    high = found.omega > 2 * np.pi * 100
+    y = np.cumsum(np.cumsum(np.concatenate([[0.0, 0.0], u])))[:-2]
+    y = y - np.linspace(0.0, y[-1], len(y))
+    found = estimate(LoopSignals(None, u, y, STEP, "mass"), EstimateOptions(low=100.0))
 
     def wrong(values):
         z = np.exp(1j * found.omega * STEP)
-        return float(np.sqrt(np.mean(np.abs(values * (z - 1.0) - 1.0)[high] ** 2)))
+        return float(np.sqrt(np.mean(np.abs(values * (z - 1.0) ** 2 - 1.0) ** 2)))
 
     k = np.rint(found.omega * n * STEP / 2 / np.pi).astype(int)
-    plain = np.fft.rfft(y[n:].reshape(-1, n).mean(0)) / np.fft.rfft(u[n:].reshape(-1, n).mean(0))
-    assert wrong(found.values) < 0.01
-    assert wrong(plain[k]) > 0.05
+    both = [np.fft.rfft(x[n:].reshape(-1, n).mean(0)) for x in (u, y)]
+    assert len(k) == 200
+    assert wrong(found.values) < 1e-3
+    assert wrong(both[1][k] / both[0][k]) > 0.5
 
 
 def test_records_with_other_phases_are_averaged():
@@ -325,6 +332,21 @@ def test_exact_responses_of_other_values_give_those_values():
     loop = axis.loop("drives.phase")
     [mine] = found.loops
     np.testing.assert_allclose(mine.measured, exact(loop, mine.omega), rtol=1e-6)
+
+
+def test_loops_inside_loops_have_the_measured_plant_too():
+    mill = motionfmu.scenario({"machine": "mill3", "stop": 1.0}, name="mill3")
+    true = {"machine.screw_stiffness": 5e7, "machine.table_mass": 200.0}
+    axis, masses = axis_of(mill, 1, true)
+    pair = "drives.torque", "machine.motor_phase"
+    values = model_response(axis, masses, pair, OMEGA)
+    unknown = np.full(len(OMEGA), math.nan)
+    found = found_response(mill, MeasuredResponse(OMEGA, values, unknown, unknown, "", "x"), pair)
+    assert [loop.at for loop in found.loops] == ["card.enc_phase", "drives.phase"]
+    for loop, cut in zip(found.loops, ((), ("card.enc_phase",)), strict=True):
+        right = exact(axis.loop(loop.at, cut), loop.omega)
+        np.testing.assert_allclose(loop.measured, right, rtol=1e-6)
+        assert np.abs(exact(loop.before, loop.omega) / right - 1.0).max() > 0.3
 
 
 COLUMN = {"gain": ColumnUse("machine.motor_speed/drives.torque")}

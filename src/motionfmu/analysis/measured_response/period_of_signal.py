@@ -11,9 +11,10 @@ Array = NDArray[np.float64]
 # Parts of a record in which a period is looked for: a lead-in comes first, a run-out last.
 _PARTS = ((0.4, 1.0), (0.25, 0.85), (0.1, 0.6))
 # Share of a signal's variance that a repeat may differ by, and what a repeat is told from.
-_SAME, _OTHER = 0.02, 0.25
-# Deviation of a repeat, of the signal's own, beyond which a sample is no part of it.
-_AWAY = 0.25
+_SAME, _OTHER = 0.1, 0.25
+# Deviation of a repeat, of the signal's own, beyond which a sample is no part of it; in noise more,
+# of the usual deviation, and at most.
+_AWAY, _USUAL, _MOST = 0.25, 1.5, 0.7
 _SPANS = 16  # of a period, over which that is taken
 _FEWEST = 16  # samples of a period
 
@@ -82,7 +83,8 @@ def whole_periods(signal: Array, period: int, name: str) -> WholePeriods:
     wide = max(1, period // _SPANS)  # noise of a sample is no deviation
     around = np.pad((step - drift) ** 2, (wide // 2, wide - 1 - wide // 2), "edge")
     mean = np.convolve(around, np.full(wide, 1.0 / wide), "valid")
-    good = np.sqrt(mean) <= _AWAY * size
+    usual = float(np.median(np.sqrt(mean)))
+    good = np.sqrt(mean) <= max(_AWAY * size, min(_USUAL * usual, _MOST * size))
     edges = np.flatnonzero(np.diff(np.concatenate([[False], good, [False]]).astype(int)))
     runs = edges.reshape(-1, 2)
     lengths = runs[:, 1] - runs[:, 0] if len(runs) else np.zeros(0, int)
