@@ -334,6 +334,22 @@ def test_exact_responses_of_other_values_give_those_values():
     np.testing.assert_allclose(mine.measured, exact(loop, mine.omega), rtol=1e-6)
 
 
+def test_of_one_mass_the_load_has_what_the_motor_leaves():
+    stiff = {"screw_stiffness": 1e10, "screw_damping": 1e6, "motor_inertia": 4.65e-4}
+    axis, masses = axis_of(scenario(**stiff, table_mass=120.0), 1, {})
+    low = OMEGA[:48]  # to 100 Hz, far below the antiresonance at 1.45 kHz
+    pair = "drives.torque", "machine.motor_phase"
+    values = model_response(axis, masses, pair, low)
+    unknown = np.full(len(low), math.nan)
+    measured_ = MeasuredResponse(low, values, unknown, unknown, "", "x")
+    found = found_response(scenario(**stiff, table_mass=60.0), measured_, pair)
+    assert not found.fit.two
+    assert found.settings == pytest.approx({"machine.table_mass[1]": 120.0}, rel=0.01)
+    heavy = found_response(scenario(**stiff | {"motor_inertia": 1e-2}), measured_, pair)
+    assert heavy.settings == {}
+    assert all("only the sum" in p.why or "one mass" in p.why for p in heavy.parameters[:4])
+
+
 def test_loops_inside_loops_have_the_measured_plant_too():
     mill = motionfmu.scenario({"machine": "mill3", "stop": 1.0}, name="mill3")
     true = {"machine.screw_stiffness": 5e7, "machine.table_mass": 200.0}

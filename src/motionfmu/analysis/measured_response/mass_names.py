@@ -12,6 +12,8 @@ from motionfmu.base.errors import InputError
 from motionfmu.scenarios import fmus
 
 FILE = "two_masses.toml"
+# Deviations above 0 that what is left for the load of one mass is told from.
+VAGUE_LOAD = 3.0
 
 
 class MotorSide(BaseModel):
@@ -102,8 +104,16 @@ class PlantMasses:
         )
 
     def settings(self, fit: MassFit) -> dict[str, tuple[float, float]]:
-        """Values and deviations of the plant's parameters that a fit tells, by name."""
+        """Values and deviations of the plant's parameters that a fit tells, by name.
+
+        Of one mass the sum is told: the motor keeps what a data sheet says, the load has the rest.
+        """
         n, per, m = self.names, self.ratio * self.ratio, fit.model
+        if not fit.two:
+            rest = m.motor - float(self.axis.value(self.signal(n.motor.inertia)))
+            deviation = fit.deviations["motor"]
+            told = fit.told("motor") and rest > VAGUE_LOAD * deviation
+            return {n.load.inertia: (rest / per, deviation / per)} if told else {}
         rows = {
             "motor": (n.motor.inertia, m.motor, 1.0),
             "load": (n.load.inertia, m.load, per),

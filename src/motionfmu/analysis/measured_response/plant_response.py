@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 # [rad/s] of the motor about which a model is linear where nothing says its speed.
 _SPEED = 10.0
+SUM_ALONE = "one mass: only the sum of the inertias is told"
 _ROUNDS = 3  # of fits, each with the model of the one before
 _RESTING = 2.0  # a motion whose RMS speed is more than its mean over this turns back
 # [rad/s] at which a motion is slow, to tell a position from a speed.
@@ -326,6 +327,7 @@ def _parameters(axis: AxisModel, masses: PlantMasses, fit: MassFit) -> tuple[Pla
     for key, name in names.items():
         before = float(axis.value(masses.signal(name)))
         value, deviation = told.get(name, (before, math.inf))
+        why = "" if name in told else fit.why.get(key) or SUM_ALONE
         port = ports[name]
         title = port.doc
         found.append(
@@ -336,7 +338,7 @@ def _parameters(axis: AxisModel, masses: PlantMasses, fit: MassFit) -> tuple[Pla
                 before,
                 value,
                 deviation,
-                fit.why.get(key, ""),
+                why,
             )
         )
     return tuple(found)

@@ -34,6 +34,7 @@ _SHARES = ("motor", "load", "stiffness", "damping", "load_viscous", "ratio", "an
 _NOTHING = 1e-9  # of an information of 1: nothing is known
 _NEAR = 6  # frequencies to either side whose differences weigh one
 _WINDOW = np.ones(2 * _NEAR + 1) / (2 * _NEAR + 1)
+_SMALL = 0.01  # share of the other mass, below which one is none
 _STARTS, _BEST = 60, 4  # frequencies at which a search begins, and how many are followed
 
 
@@ -227,7 +228,8 @@ def fit_masses(
     low, high = float(measured.omega.min()), float(measured.omega.max())
     seen = low < model.antiresonance < 1.05 * high if not load else low < model.resonance < high
     gained = 2 * n * ((alone[1] / max(both[1], 1e-300)) ** 2 - 1.0)
-    told = bool(gained > _BETTER and seen)
+    shown = min(model.load, model.motor) > _SMALL * max(model.load, model.motor)
+    told = bool(gained > _BETTER and seen and shown)
     x, jac = two if told else one
     model = problem.model(x)
     # a deviation is that of the noise, or of what the model leaves, whichever is larger

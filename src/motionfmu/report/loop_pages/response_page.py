@@ -94,10 +94,11 @@ def words(found: FoundResponse) -> list[str]:
     """What the response shows, in sentences."""
     fit, m = found.fit, found.fit.model
     if not fit.two:
-        whole = m.motor + m.load
+        sure = fit.deviations["motor"]
         return [
-            f"One mass of {figure(whole)} on the side of the motor explains the response within"
-            f" {100 * fit.alone:.2g} %."
+            f"One mass explains the response within {100 * fit.alone:.2g} %: {m.motor:.4g} ±"
+            f" {sure:.2g} on the side of the motor, where the scenario has"
+            f" {found.old.motor + found.old.load:.4g}."
         ]
     hertz = [w / (2.0 * math.pi) for w in (m.antiresonance, m.resonance)]
     parts = [
@@ -121,6 +122,11 @@ def words(found: FoundResponse) -> list[str]:
     return parts
 
 
+def _short(value: float) -> str:
+    """A number that may be very small or very large."""
+    return figure(value) if 1e-2 <= abs(value) < 1e6 or value == 0.0 else f"{value:.4g}"
+
+
 def _sure(value: float, deviation: float) -> str:
     if not math.isfinite(deviation) or deviation <= 0.0:
         return figure(value)
@@ -141,7 +147,7 @@ def _cards(found: FoundResponse) -> str:
     if not fit.two:
         whole = m.motor + m.load
         before = old.motor + old.load
-        return cards([("Inertia at the motor", figure(whole), f"before {figure(before)}")])
+        return cards([("Inertia at the motor", f"{whole:.4g}", f"before {before:.4g}")])
     rows = []
     for title, key, value, before in (
         ("Antiresonance", "antiresonance", m.antiresonance, old.antiresonance),
@@ -168,7 +174,7 @@ def _values(found: FoundResponse) -> str:
         if p.told and abs(p.value) < 1e-2:
             value = f"{p.value:.5g} ± {p.deviation:.2g}"
         share = f"{100 * abs(p.deviation / p.value):.2g} %" if p.told and p.value else ""
-        rows.append([title, spelled(p.unit), figure(p.before), value, share])
+        rows.append([title, spelled(p.unit), _short(p.before), value, share])
     return table(["quantity", "unit", "before", "found", "deviation"], rows, 2)
 
 
