@@ -11,7 +11,7 @@ from motionfmu.excite import AxisExcitation, PositionProgram
 from motionfmu.report.diagram import Diagram, Mark, PointMark, SamplesMark, Scale, one
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, facts, overrides, table
-from motionfmu.report.numbers import figure
+from motionfmu.report.numbers import figure, label
 from motionfmu.report.samples import Samples
 from motionfmu.report.style import AXES
 
@@ -86,7 +86,7 @@ def _cards(made: AxisExcitation) -> str:
 
 def _facts(made: AxisExcitation) -> str:
     rows = [
-        ("Input", f"{escape(made.input)} [{spelled(made.unit)}]"),
+        ("Input", escape(label(made.input, made.unit))),
         ("Samples", f"{len(made.time)}, {1e6 * made.interval:.4g} µs apart"),
         ("Files", "excitation.csv, scenario/: time [s], command"),
     ]
