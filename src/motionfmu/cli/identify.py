@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     FAILED,
@@ -27,11 +28,15 @@ if TYPE_CHECKING:
     from motionfmu.run import Scenario
 
 
+# CCN 18: an option that is given replaces that of the file, one after the other.
 @app.command()
 def identify(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
     record: Annotated[
-        Path, typer.Option(help="A measured record: CSV, Parquet, .mat, a result folder.")
+        list[Path],
+        typer.Option(
+            help="A measured record: CSV, Parquet, .mat, a result folder; of --frf several."
+        ),
     ],
     machine: OnMachine = None,
     axis: Annotated[int | None, typer.Option(help="Axis of the scenario, from 1.")] = None,
@@ -56,15 +61,31 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     file: Annotated[
         Path | None, typer.Option("--problem", help="Options; else identify.toml beside the PATH.")
     ] = None,
+    frf: Annotated[
+        bool,
+        typer.Option(
+            "--frf", help="Two masses from the frequency response, or from a table of it."
+        ),
+    ] = False,
+    period: Annotated[
+        float | None, typer.Option(metavar="S", help="--frf: period of the excitation, 0 for none.")
+    ] = None,
+    band: Annotated[
+        str | None, typer.Option(metavar="LOW:HIGH", help="--frf: frequencies that count [Hz].")
+    ] = None,
     as_given: Annotated[
         bool, typer.Option("--controller-as-given", help="Take no gains from the record.")
     ] = False,
     set_: Set = [],  # noqa: B006
     folder: Folder = None,
 ) -> None:
-    """Find an axis' mass and friction from a record; write found.toml and a report."""
+    """Find an axis' mass and friction from a record; write found.toml and a report.
+
+    With --frf inertias, stiffness and damping of two masses from a closed loop's response.
+    """
     needed("tune")
     from motionfmu import records
+    from motionfmu.cli.frf import ResponseAsked, identify_frf
     from motionfmu.identify import axis_record, identify_file
     from motionfmu.report import result_folder
 
@@ -78,8 +99,14 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     tables |= {k: v for k, v in (("free", free), ("fix", fix), ("laws", law)) if v}
     tables |= {"controller": False} if as_given else {}
     options = identify_file.options(tables, str(place or "--column"))
-    measured = axis_record.of_record(records.record(record))
     target = result_folder.usable(folder or results(scenario.name, "identify"))
+    if frf:
+        asked = ResponseAsked(record, period, band)
+        identify_frf(scenario, asked, options, settings(set_), target)
+        return
+    if len(record) > 1 or period is not None or band is not None:
+        raise InputError("several --record, --period and --band go with --frf")
+    measured = axis_record.of_record(records.record(record[0]))
     found, run = _identify(scenario, measured, options, settings(set_))
     _write(target, found, run)
     _tell(found, run)
