@@ -62,10 +62,12 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     set_: Set = [],  # noqa: B006
     folder: Folder = None,
 ) -> None:
-    """Find an axis' mass and friction from a record; write found.toml and a report."""
+    """Find an axis' or an arm's values from a record; write found.toml and a report."""
     needed("tune")
     from motionfmu import records
+    from motionfmu.cli.identify_arm import identify_arm_of
     from motionfmu.identify import axis_record, identify_file
+    from motionfmu.identify.arm import arm_plant
     from motionfmu.report import result_folder
 
     scenario = loaded(path, machine)
@@ -77,6 +79,10 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     tables |= {"axis": axis} if axis is not None else {}
     tables |= {k: v for k, v in (("free", free), ("fix", fix), ("laws", law)) if v}
     tables |= {"controller": False} if as_given else {}
+    if arm_plant.component_of(scenario) is not None:
+        target = result_folder.usable(folder or results(scenario.name, "identify"))
+        asked = tables, str(place or "--column")
+        return identify_arm_of(scenario, record, asked, settings(set_), target)
     options = identify_file.options(tables, str(place or "--column"))
     measured = axis_record.of_record(records.record(record))
     target = result_folder.usable(folder or results(scenario.name, "identify"))
