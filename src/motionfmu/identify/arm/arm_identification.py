@@ -16,6 +16,7 @@ from motionfmu.identify.arm.gear_windup import GearFound, GearSamples, gear_foun
 from motionfmu.identify.arm.joint_equation import (
     JointEquation,
     base_of,
+    dropped,
     joint_equation,
     joint_motion,
 )
@@ -148,7 +149,8 @@ def identify_arm(
     plant = arm_plant(scenario, set or {})
     data = arm_record(plant, record, options.columns)
     base = base_of(plant)
-    links, gears, torque = None, {}, data.torque
+    torque = data.torque
+    gears: dict[int, GearFound] = {}
     for step in range(_PASSES):
         progress("torques", 0.1 + 0.4 * step)
         now = replace(data, torque=torque)
@@ -170,7 +172,8 @@ def identify_arm(
     links = possible_links(plant, base, (found.values[:n], found.covariance[:n, :n]), own)
     quantities = _quantities(plant, equation, found)
     settings = _settings(plant, equation, found, gears, links)
-    notes = (*data.notes, *_notes(plant, equation, (found, gears, links), chosen))
+    told = _notes(plant, equation, (found, gears, links), chosen, data.seen)
+    notes = (*data.notes, *told)
     return IdentifiedArm(
         plant, data, equation, quantities[:n], quantities[n:], gears, links, found,
         tuple(tried), chosen, settings, notes, options.keep,
@@ -214,7 +217,7 @@ def _fine(data: ArmRecord, values: Array, every: int) -> Array:
     return np.asarray(make_interp_spline(data.time[::every], values, k=3)(data.time))
 
 
-def _gear(  # noqa: PLR0913, PLR0917  (all that a gear is between)
+def _gear(  # noqa: PLR0913  (all that a gear is between)
     plant: ArmPlant,
     data: ArmRecord,
     equation: JointEquation,
@@ -241,7 +244,7 @@ def _gear(  # noqa: PLR0913, PLR0917  (all that a gear is between)
         acceleration=acceleration[there, k],
         motor=data.motor[there, k],
         doubt=float(found.sizes[k]),
-        merged=bool(_dropped(plant, equation)[k]),
+        merged=bool(dropped(plant, equation.base)[k]),
         begin=(min(before, both), float(plant.of(plant.table.gears.damping)[k])),
         most=both,
         lost=float(plant.of(plant.table.gears.lost)[k]),
@@ -252,12 +255,6 @@ def _gear(  # noqa: PLR0913, PLR0917  (all that a gear is between)
 def _behind(equation: JointEquation, found: TorqueFit) -> Array:
     """Values of the columns of joints."""
     return found.values[len(equation.base.kept) :]
-
-
-def _dropped(plant: ArmPlant, equation: JointEquation) -> NDArray[np.bool_]:
-    """Joints whose motor's inertia is a part of another base parameter."""
-    first = 10 * plant.count
-    return np.array([first + k not in equation.base.kept for k in range(plant.count)])
 
 
 def _asked(
@@ -271,7 +268,7 @@ def _asked(
     places = base.kept[base.kept < 10 * plant.count]
     own = found.values[: len(base.kept)][base.kept < 10 * plant.count]
     columns = regressor(plant.axes, plant.origins, plant.gravity, motion)[:, :, places]
-    motors = np.where(_dropped(plant, equation), plant.of(plant.table.motors.inertia), 0.0)
+    motors = np.where(dropped(plant, equation.base), plant.of(plant.table.motors.inertia), 0.0)
     return np.asarray(columns @ own - motors * plant.ratio**2 * motion[2])
 
 
@@ -297,11 +294,11 @@ def _motors_told(
     plant: ArmPlant, equation: JointEquation, gears: Mapping[int, GearFound]
 ) -> dict[int, tuple[float, float]]:
     """Inertias of motors at the joint that only wind-up tells, with deviations."""
-    dropped = _dropped(plant, equation)
+    merged = dropped(plant, equation.base)
     before = plant.of(plant.table.motors.inertia) * plant.ratio**2
     told = {}
     for k, gear in gears.items():
-        if dropped[k]:
+        if merged[k]:
             more, deviation = gear.values["inertia"]
             if 0.0 < deviation < _TOLD * before[k]:
                 told[k] = float(before[k] - more), deviation
@@ -322,9 +319,7 @@ def _quantities(
         was = float(before[k]) if k < n else _before(plant, equation, int(place))
         text = base.text(k) if k < n else ""
         told = 0.0 < deviation <= _TOLD * abs(value)
-        rows.append(
-            ArmQuantity(name, text, equation.unit(int(place)), was, value, deviation, told)
-        )
+        rows.append(ArmQuantity(name, text, equation.unit(int(place)), was, value, deviation, told))
     return tuple(rows)
 
 
@@ -388,7 +383,7 @@ def _of_gears(plant: ArmPlant, gears: Mapping[int, GearFound]) -> dict[str, Arra
     if not gears:
         return {}
     table = plant.table.gears
-    names = (*table.stiffness, *table.knees, table.damping, table.lost, table.zero)
+    names = (*table.stiffness, *table.knees, table.lost, table.zero)
     names = (*names, *table.amplitudes, *table.phases)
     values = {name: plant.of(name).copy() for name in names}
     for k, gear in gears.items():
@@ -399,8 +394,6 @@ def _of_gears(plant: ArmPlant, gears: Mapping[int, GearFound]) -> dict[str, Arra
             values[table.knees[0]][k] = gear.knees[0]
             for name in table.knees[1:]:
                 values[name][k] = max(values[name][k], gear.knees[0])
-        if gear.told("damping"):
-            values[table.damping][k] = gear.values["damping"][0]
         values[table.lost][k] = max(gear.values["lost"][0], 0.0)
         values[table.zero][k] = gear.values["zero"][0]
         for turn, (size, phase) in enumerate(zip(table.amplitudes, table.phases, strict=True), 1):
@@ -416,8 +409,9 @@ def _notes(
     equation: JointEquation,
     found: tuple[TorqueFit, Mapping[int, GearFound], PossibleLinks],
     chosen: TriedLaw,
+    seen: NDArray[np.bool_],
 ) -> list[str]:
-    """What is to be known, in words."""
+    """What is to be known, in words; `seen` are joints with an encoder behind the gear."""
     fitted, gears, links = found
     base = equation.base
     notes = []
@@ -426,8 +420,8 @@ def _notes(
     beside = sorted({n for n, _ in chosen.laws} - {"stribeck"})
     if beside:
         notes.append(
-            f"The class of the arm has no such law: {', '.join(beside)}. It is left out of found.toml;"
-            " the run along the record has it as a torque from outside."
+            f"The class of the arm has no such law: {', '.join(beside)}. It is left out of"
+            " found.toml; the run along the record has it as a torque from outside."
         )
     bad = [k + 1 for k in range(plant.count) if not equation.moving[:, k].any()]
     if bad:
@@ -445,7 +439,15 @@ def _notes(
             f"No links of the plant's kind make all base parameters: one is off by"
             f" {links.misfit:.3g} of its deviations."
         )
+    bare = [str(k + 1) for k in range(plant.count) if seen[k] and k not in gears]
+    if bare:
+        notes.append(f"Joints {', '.join(bare)}: the record does not load the gear enough.")
     for k, gear in gears.items():
+        if not np.isfinite(gear.values["lost"][1]):
+            notes.append(
+                f"Joint {k + 1} is loaded one way only: lost motion and the zeros of its encoders"
+                " are not told apart."
+            )
         if gear.values["lost"][0] < 0.0:
             notes.append(
                 f"Joint {k + 1}: the gear is softer at small torques than a gap makes it; lost"

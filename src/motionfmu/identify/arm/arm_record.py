@@ -71,9 +71,7 @@ class ArmRecord:
 def arm_record(plant: ArmPlant, record: Record, columns: Mapping[str, ArmColumn]) -> ArmRecord:
     """Take the columns of a record."""
     names = plant.table.signals
-    wanted = {
-        plant.signal(v): v for v in (names.torque, names.motor, names.link, names.phase)
-    }
+    wanted = {plant.signal(v): v for v in (names.torque, names.motor, names.link, names.phase)}
     taken: dict[str, tuple[str, Array]] = {}
     for column, use in columns.items():
         if use.signal not in wanted:

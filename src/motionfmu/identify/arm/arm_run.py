@@ -23,8 +23,8 @@ from motionfmu.scenarios import fmus
 from motionfmu.scenarios.values import settings
 
 Array = NDArray[np.float64]
-# [Hz] of the loops, [s] between two of their steps at most, and from when on the arm is compared: it
-# begins at rest, the record need not.
+# [Hz] of the loops, [s] between two of their steps at most, and from when on the arm is compared:
+# it begins at rest, the record need not.
 _LOOP, _STEP, _SETTLED = 2.0, 1e-3, 1.0
 _FMI = 3
 
@@ -95,7 +95,8 @@ def held_arm(
     inertia = _seen(found)
     run = _Driven(plant, values, angle[0])
     try:
-        added, motor, link = _along(run, record.time, (record.torque - outside, angle, speed), inertia, progress)
+        wanted = record.torque - outside, angle, speed
+        added, motor, link = _along(run, record.time, wanted, inertia, progress)
     finally:
         run.close()
     stretch = found.equation.stretch
@@ -211,7 +212,7 @@ def _along(
     progress: Callable[[float], None],
 ) -> tuple[Array, Array, Array]:
     """What the loops add, motors and links at the samples."""
-    torque, angle, speed = record
+    torque = record[0]
     parts = max(1, int(np.ceil((time[1] - time[0]) / _STEP - 1e-9)))
     size = (time[-1] - time[0]) / ((len(time) - 1) * parts)
     size = round(size * 1e9) / 1e9

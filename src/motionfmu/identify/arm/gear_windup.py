@@ -11,6 +11,7 @@ is found by repetition: its signs decide on which side of the lost motion a gear
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +29,12 @@ _BEYOND = 0.05
 _NEWS = 12.0
 # Repetitions of T, and the change of it that is none, as a share of its RMS.
 _AGAIN, _DONE = 15, 3e-4
-# A gear is not through its lost motion before its damping has had so many times what that takes.
+# A gear is through its lost motion when its damping has had so many times what that takes.
 _THROUGH = 2.0
 # Share of the samples that must load a gear either way for its lost motion to be told.
 _EITHER = 0.02
+# Torque and speed of one sign at more than this share of the samples: hysteresis is lost motion.
+_ALIKE = 0.97
 _MOST = 0.02  # lag of Newey and West, as a share of the samples
 _TOLD = 0.3
 
@@ -68,8 +71,8 @@ class GearFound:
         Of each slope [N.m/rad].
     values : mapping
         Value and deviation by name: lost [rad], hysteresis [rad], zero [rad], viscous
-        [N.m.s/rad] of the link, damping [N.m.s/rad], inertia [kg.m2] that is the link's rather than the motor's,
-        amplitude 1, amplitude 2 [rad], phase 1, phase 2 [rad].
+        [N.m.s/rad] of the link, damping [N.m.s/rad], inertia [kg.m2] that is the link's rather
+        than the motor's, amplitude 1, amplitude 2 [rad], phase 1, phase 2 [rad].
     secant : float
         Torque over wind-up at the largest torque, lost motion included [N.m/rad].
     share : float
@@ -115,7 +118,7 @@ def _spring(torque: Array, knees: Sequence[float]) -> Array:
     """Parts of a torque between the knees, (n, slopes), and its sign."""
     size, sign = np.abs(torque), np.sign(torque)
     ends = [0.0, *knees, np.inf]
-    parts = [np.clip(size - a, 0.0, b - a) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    parts = [np.clip(size - a, 0.0, b - a) for a, b in pairwise(ends)]
     return np.column_stack([*(sign * p for p in parts), 0.5 * sign])
 
 
@@ -144,6 +147,7 @@ def _solve(
         torque = s.torque + beside @ more
         w = _columns(s, torque, knees)
         w[:, len(knees) + 1] *= _either(torque[rows])
+        w[:, len(knees) + 2] *= not _alike(torque[rows], s.speed[rows])
         length = np.linalg.norm(w[rows], axis=0)
         scale = np.where(length > 0.0, length, 1.0)
         normal = (w[rows] / scale).T @ (w[rows] / scale)
@@ -194,6 +198,11 @@ def _either(torque: Array) -> bool:
     """Whether a gear is loaded either way."""
     ahead = float(np.mean(torque > 0.0))
     return _EITHER < ahead < 1.0 - _EITHER
+
+
+def _alike(torque: Array, speed: Array) -> bool:
+    """Whether a gear is loaded by friction alone, so that torque and speed have one sign."""
+    return float(np.mean(torque * speed > 0.0)) > _ALIKE
 
 
 def _through(s: GearSamples, torque: Array) -> NDArray[np.bool_]:

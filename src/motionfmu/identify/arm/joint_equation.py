@@ -21,7 +21,7 @@ from motionfmu.identify.arm.zero_phase import ENDS, fastest, low_pass
 Array = NDArray[np.float64]
 # Corner of the low pass of angles: so many times the fastest motion, a least [Hz], and the most as
 # a share of the rate; that of both sides of the equation as a share of it.
-_FASTER, _LEAST, _OF_RATE, _EQUATION = 10.0, 8.0, 0.25, 0.5
+_FASTER, _LEAST, _OF_RATE, _EQUATION = 40.0, 20.0, 0.25, 0.2
 # Samples a period of the corner at which links are computed, and at which rows are kept.
 _COMPUTED, _KEPT = 8.0, 4.0
 # Speeds below this share of a joint's largest tell of rest, not of friction in motion.
@@ -76,9 +76,7 @@ class JointEquation:
     def chosen(self, laws: Sequence[tuple[str, int]]) -> NDArray[np.int64]:
         """Places of the base parameters, and of the columns of these laws of these joints."""
         n = len(self.base.kept)
-        there = [
-            n + k for k, c in enumerate(self.columns) if not c.law or (c.law, c.joint) in laws
-        ]
+        there = [n + k for k, c in enumerate(self.columns) if not c.law or (c.law, c.joint) in laws]
         return np.array([*range(n), *there], dtype=np.int64)
 
     def of_joints(self, places: NDArray[np.int64]) -> tuple[JointColumn, ...]:
@@ -96,15 +94,18 @@ class JointEquation:
     def unit(self, place: int) -> str:
         """Its unit."""
         n = len(self.base.kept)
-        return self.columns[place - n].unit if place >= n else self.base.units[self.base.kept[place]]
+        if place >= n:
+            return self.columns[place - n].unit
+        return self.base.units[self.base.kept[place]]
 
 
 def base_of(plant: ArmPlant) -> BaseParameters:
     """Base parameters of an arm: of ten of each link, and the inertia of each motor."""
     rng = np.random.default_rng(0)
     n = plant.count
-    motion = tuple(rng.uniform(-3.0, 3.0, (3, _STATES, n)))
-    links = regressor(plant.axes, plant.origins, plant.gravity, motion)  # type: ignore[arg-type]
+    q, v, a = rng.uniform(-3.0, 3.0, (3, _STATES, n))
+    motion = q, v, a
+    links = regressor(plant.axes, plant.origins, plant.gravity, motion)
     motors = np.eye(n)[None] * motion[2][:, None, :]
     names = [f"{s}{k + 1}" for k in range(n) for s in NAMES] + [f"J{k + 1}" for k in range(n)]
     units = [u for _ in range(n) for u in UNITS] + ["kg.m2"] * n
@@ -153,6 +154,7 @@ def joint_equation(
     columns, friction = _friction(plant, record, corner)
     rows = len(inertial)
     torque = low_pass(record.torque * plant.ratio, rate, stretch)[::every]
+    torque = torque - low_pass(_apart(plant, base, motion), rate / first, stretch)[::then]
     own = low_pass(friction, rate, stretch)[::every]
     matrix = np.zeros((rows, n, len(base.kept) + len(columns)))
     matrix[:, :, : len(base.kept)] = inertial
@@ -165,9 +167,19 @@ def joint_equation(
     cut = min(int(ENDS * rate / every / stretch), rows // 10)
     moving[:cut] = False
     moving[rows - cut :] = False
-    return JointEquation(
-        plant, base, columns, time, matrix, torque, moving, kept, corner, stretch
-    )
+    return JointEquation(plant, base, columns, time, matrix, torque, moving, kept, corner, stretch)
+
+
+def dropped(plant: ArmPlant, base: BaseParameters) -> NDArray[np.bool_]:
+    """Joints whose motor's inertia is a part of another base parameter."""
+    return np.array([10 * plant.count + k not in base.kept for k in range(plant.count)])
+
+
+def _apart(plant: ArmPlant, base: BaseParameters, motion: JointMotion) -> Array:
+    """What motors take whose inertia counts as their links', as their gears give way."""
+    own = plant.of(plant.table.motors.inertia) * plant.ratio**2
+    apart = motion.motors[2] - motion.links[2]
+    return np.asarray(np.where(dropped(plant, base), own, 0.0) * apart)
 
 
 def _every(motion: JointMotion, every: int) -> JointMotion:

@@ -105,10 +105,9 @@ def possible_links(
         met = whiten @ (base.combine @ _standard(plant, m, c, i, j) - values)
         gears = [(j[k] * plant.ratio[k] ** 2 - x) / d for k, (x, d) in motors.items()]
         # a body: no moment of inertia is more than the other two together
-        more = np.maximum(2.0 * i - i.sum(axis=1, keepdims=True), 0.0) / scale[4 * n : 7 * n].reshape(
-            n, 3
-        )
-        return np.concatenate([met, gears, 1e3 * more.ravel(), z])
+        more = np.maximum(2.0 * i - i.sum(axis=1, keepdims=True), 0.0).ravel()
+        more = more / scale[4 * n : 7 * n]
+        return np.concatenate([met, gears, 1e3 * more, z])
 
     low = np.full(len(begin), -np.inf)
     low[:n] = low[4 * n :] = 0.0

@@ -101,9 +101,7 @@ def _products(equation: JointEquation, rows: slice) -> _Products:
     return _Products(*(np.array(part) for part in zip(*found, strict=True)))
 
 
-def _solved(
-    of: _Products, places: NDArray[np.int64], weights: Array
-) -> tuple[Array, Array, float]:
+def _solved(of: _Products, places: NDArray[np.int64], weights: Array) -> tuple[Array, Array, float]:
     """Values, inverse of the information, condition of the scaled columns."""
     matrix = np.einsum("j,jik->ik", weights, of.columns[:, places[:, None], places])
     right = weights @ of.torque[:, places]

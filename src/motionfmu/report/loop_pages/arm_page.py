@@ -8,10 +8,19 @@ from numpy.typing import NDArray
 from motionfmu.base.units import spelled
 from motionfmu.identify.arm.arm_files import law_names, with_deviation
 from motionfmu.identify.arm.arm_identification import ArmQuantity, IdentifiedArm
-from motionfmu.identify.arm.gear_windup import GearFound
 from motionfmu.identify.arm.arm_run import HeldArm
+from motionfmu.identify.arm.gear_windup import GearFound
 from motionfmu.identify.arm.torque_laws import BASE, LAWS, JointState
-from motionfmu.report.diagram import Diagram, LineMark, PointMark, SamplesMark, Scale, ends_of, one
+from motionfmu.report.diagram import (
+    Diagram,
+    LineMark,
+    Mark,
+    PointMark,
+    SamplesMark,
+    Scale,
+    ends_of,
+    one,
+)
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, table
 from motionfmu.report.numbers import figure
@@ -39,8 +48,8 @@ def arm_page(found: IdentifiedArm, run: HeldArm | None) -> str:
     page.section("Torques", _torque_note(found), _torques(page, found))
     if run is not None:
         note = (
-            "The arm's FMU with what was found, driven by the torques of the part kept back and held"
-            " to its motion by a loop of 2 Hz at each motor: what the loop adds, the model lacks."
+            "The arm's FMU with what was found, driven by the torques of the part kept back and"
+            " held to its motion by a loop of 2 Hz at each motor: what it adds, the model lacks."
         )
         page.section("The FMU along the record", note, _held(page, found, run))
     page.section("Base parameters", _base_note(found), _base(found))
@@ -87,8 +96,8 @@ def _torque_note(found: IdentifiedArm) -> str:
     return (
         f"{escape(record.name)}: {len(record.time)} samples at {record.rate:.4g} Hz,"
         f" {record.time[-1]:.4g} s. Angles pass below {e.corner:.3g} Hz, both sides of the equation"
-        f" below {e.stretch:.3g} Hz; {int(e.moving.sum())} rows. Unexplained: RMS of the residual over"
-        " that of the torque about its mean, on the part kept back, by what the other part tells."
+        f" below {e.stretch:.3g} Hz; {int(e.moving.sum())} rows. Unexplained: RMS of the residual"
+        " over that of the torque about its mean, on the part kept back, by what the rest tells."
     )
 
 
@@ -98,7 +107,8 @@ def _torques(page: Page, found: IdentifiedArm) -> str:
     ratio = found.plant.ratio
     for k in range(found.plant.count):
         left, size = found.kept[k], float(found.fit.sizes[k])
-        rows.append([f"joint {k + 1}", f"{100 * left:.3g} %", figure(size), figure(size / ratio[k])])
+        cells = [f"{100 * left:.3g} %", figure(size), figure(size / ratio[k])]
+        rows.append([f"joint {k + 1}", *cells])
         curves = [
             SamplesMark(Samples(e.time, x[:, k]), label, color, _WIDTH)
             for x, label, color in (
@@ -137,9 +147,9 @@ def _base_note(found: IdentifiedArm) -> str:
     none = ", ".join(found.equation.base.none)
     left = f" No torque depends on {escape(none)}." if none else ""
     return (
-        "What torques tell are sums of masses m, first moments mx, my, mz, moments of inertia Ixx to"
-        " Izz about the joint and inertias J of the motors at the joint, in frames parallel to the"
-        f" base with the arm straight up.{left} What is known worse than to 30 % of itself is grey."
+        "What torques tell are sums of masses m, first moments mx, my, mz, moments of inertia Ixx"
+        " to Izz about the joint and inertias J of the motors at the joint, in frames parallel to"
+        f" the base with the arm straight up.{left} What is known worse than to 30 % of itself is grey."
     )
 
 
@@ -217,7 +227,7 @@ def _curve(found: IdentifiedArm, k: int) -> Diagram | None:
         if name != "balancer"
     )
     gap = int(np.searchsorted(line, 0.0))
-    marks = [
+    marks: list[Mark] = [
         PointMark(x, y, "record", RECORD, size=6.0),
         LineMark(np.insert(line, gap, np.nan), np.insert(law, gap, np.nan), "law", FOUND, 1.8),
     ]
@@ -229,14 +239,22 @@ def _gears(page: Page, found: IdentifiedArm) -> str:
     for k, gear in found.gears.items():
         rows.append([f"joint {k + 1}", *_gear_cells(gear)])
         arc = 180.0 * 60.0 / np.pi
-        marks = [
+        marks: list[Mark] = [
             PointMark(gear.points[0], arc * gear.points[1], "record", RECORD, size=3.0),
             LineMark(gear.curve[0], arc * gear.curve[1], "found", FOUND, 1.8),
         ]
-        diagram = one(Scale(f"Torque of joint {k + 1}", "N·m"), Scale("Wind-up", "′"), marks, 240)
+        diagram = one(
+            Scale(f"Torque of joint {k + 1}", "N·m"), Scale("Wind-up", "arcmin"), marks, 240
+        )
         parts.append(page.place(f"gear{k}", diagram))
-    heads = ["", "stiffness [N·m/rad]", "changes at [N·m]", "lost motion [′]", "hysteresis [′]"]
-    heads += ["link's friction [N·m·s/rad]", "left over [′]"]
+    heads = [
+        "",
+        "stiffness [N·m/rad]",
+        "changes at [N·m]",
+        "lost motion [arcmin]",
+        "hysteresis [arcmin]",
+    ]
+    heads += ["link's friction [N·m·s/rad]", "left over [arcmin]"]
     return table(heads, rows, 1) + "".join(parts)
 
 
