@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu import scenario
+from motionfmu.identify.arm.arm_plant import ArmPlant, arm_plant
 from motionfmu.records import Record
 
 STEP = 5e-5
@@ -23,6 +24,19 @@ DRIVES = {
     "drives.torque_limit": 30.0,
     "drives.error_limit": 1e4,
 }
+
+
+def plant_of(**values: Any) -> ArmPlant:
+    """The arm alone, with some values of its own."""
+    own = {
+        "stop": 1.0,
+        "step": 1e-4,
+        "component": {"arm": "robot_arm"},
+        "leave": ["arm.torque", "arm.force"],
+        "record": {"signals": ["arm.link_angle"]},
+        "set": {f"arm.{k}": v for k, v in values.items()},
+    }
+    return arm_plant(scenario(own, name="arm"), {})
 
 
 @dataclass(frozen=True)

@@ -85,7 +85,7 @@ def _tell(found: "IdentifiedArm", run: "HeldArm") -> None:
     for note in found.notes:
         out.print(note, markup=False, soft_wrap=True)
     laws = (f"{n} of {', '.join(map(str, on))}" for n, on in law_names(found).items())
-    print(f"laws beside Coulomb and viscous friction: {'; '.join(laws) or 'none'}")
+    print(f"laws beside Coulomb and viscous friction and an offset: {'; '.join(laws) or 'none'}")
     shares = " ".join(f"{100 * x:.2g}" for x in found.kept)
     print(f"torques left unexplained on the part kept back, by joint: {shares} %")
     shares = " ".join(f"{100 * x:.2g}" for x in run.shares)

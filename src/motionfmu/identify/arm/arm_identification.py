@@ -23,6 +23,7 @@ from motionfmu.identify.arm.joint_equation import (
 from motionfmu.identify.arm.link_regressor import regressor
 from motionfmu.identify.arm.possible_links import PossibleLinks, possible_links
 from motionfmu.identify.arm.torque_fit import TorqueFit, TriedLaw, choose, enough, fit
+from motionfmu.identify.arm.torque_laws import OFFSET
 from motionfmu.identify.arm.zero_phase import ENDS, low_pass
 from motionfmu.records import Record
 from motionfmu.run import Scenario
@@ -417,16 +418,20 @@ def _notes(
     notes = []
     if base.none:
         notes.append(f"No torque depends on {', '.join(base.none)}.")
-    beside = sorted({n for n, _ in chosen.laws} - {"stribeck"})
+    n = len(base.kept)
+    beside = {law for law, _ in chosen.laws} - {"stribeck"}
+    for k, place in enumerate(fitted.places[n:], n):
+        size, sure = abs(float(fitted.values[k])), _SURE * float(fitted.deviations[k])
+        if equation.columns[int(place) - n].term == OFFSET and size > sure:
+            beside.add(OFFSET)
     if beside:
         notes.append(
-            f"The class of the arm has no such law: {', '.join(beside)}. It is left out of"
+            f"The class of the arm has no such law: {', '.join(sorted(beside))}. It is left out of"
             " found.toml; the run along the record has it as a torque from outside."
         )
     bad = [k + 1 for k in range(plant.count) if not equation.moving[:, k].any()]
     if bad:
         notes.append(f"Joints {', '.join(map(str, bad))} do not move: nothing of them is told.")
-    n = len(base.kept)
     for k, place in enumerate(fitted.places[n:], n):
         column = equation.columns[int(place) - n]
         if column.term in ("coulomb", "viscous") and fitted.values[k] < -3.0 * fitted.deviations[k]:

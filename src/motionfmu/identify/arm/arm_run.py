@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from motionfmu.identify.arm.arm_identification import IdentifiedArm
 from motionfmu.identify.arm.arm_plant import ArmPlant
 from motionfmu.identify.arm.joint_equation import joint_motion, states
-from motionfmu.identify.arm.torque_laws import LAWS
+from motionfmu.identify.arm.torque_laws import BASE, LAWS, OFFSET
 from motionfmu.identify.arm.zero_phase import low_pass
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios import fmus
@@ -124,9 +124,9 @@ def _outside(found: IdentifiedArm, link: Array, motion: Any) -> Array:
     for column, value in zip(
         equation.of_joints(found.fit.places), found.fit.values[n:], strict=True
     ):
-        if column.law in ("", "stribeck"):
+        if column.law == "stribeck" or not (column.law or column.term == OFFSET):
             continue
-        law = LAWS[column.law]
+        law = LAWS[column.law] if column.law else BASE
         place = [term for term, _ in law.terms].index(column.term)
         outside[:, column.joint] += float(value) * law.columns(own[column.joint])[place]
     return np.asarray(outside / plant.ratio)

@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 _ACROSS = 1e-8
 # Coefficients below this are none.
 _NONE = 1e-9
+# Coefficients above this are shown: below are those of joints that are not quite in their places.
+_SHOWN = 1e-3
 
 
 @dataclass(frozen=True)
@@ -28,13 +30,13 @@ class BaseParameters:
     none: tuple[str, ...]  # columns that no torque depends on
 
     def text(self, k: int) -> str:
-        """A base parameter as a sum of standard ones."""
+        """A base parameter as a sum of standard ones, but for the least."""
         own = self.kept[k]
         parts = [self.names[own]]
-        for j in np.flatnonzero(np.abs(self.combine[k]) > _NONE):
+        for j in np.flatnonzero(np.abs(self.combine[k]) > _SHOWN):
             if j != own:
                 c = float(self.combine[k, j])
-                size = "" if abs(abs(c) - 1.0) < _NONE else f"{abs(c):.6g} "
+                size = "" if abs(abs(c) - 1.0) < _NONE else f"{abs(c):.4g} "
                 parts.append(f"{'-' if c < 0.0 else '+'} {size}{self.names[j]}")
         return " ".join(parts)
 

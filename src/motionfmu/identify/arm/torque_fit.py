@@ -20,6 +20,8 @@ Array = NDArray[np.float64]
 Laws = tuple[tuple[str, int], ...]  # name and joint, from 0
 # A law must explain so much of what a joint leaves of the part kept back to be taken.
 _WORTH = 0.95
+# One taken before goes again if a joint's residual rises by no more without it.
+_IDLE = 1.01
 _WEIGHINGS = 5
 # Scaled columns whose share of the information is below this are not told by the record at all.
 _NOTHING = 1e-12
@@ -169,6 +171,11 @@ def choose(
             return rows, chosen
         chosen = looks[int(np.argmin(gains))]
         rows.append(chosen)
+        for law in chosen.laws[:-1]:  # what the new one explains as well goes
+            look = tried(tuple(x for x in chosen.laws if x != law))
+            if look.kept[law[1]] <= _IDLE * chosen.kept[law[1]]:
+                chosen = look
+                rows.append(look)
         _, sizes = _weighed(early, equation.chosen(chosen.laws))
 
 

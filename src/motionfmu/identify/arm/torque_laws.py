@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+# Half of what Coulomb friction is more forwards than backwards; also what a brake or a zero is off.
+OFFSET = "offset"
+
 
 @dataclass(frozen=True)
 class JointState:
@@ -33,16 +36,11 @@ class TorqueLaw:
 
 
 BASE = TorqueLaw(
-    "Coulomb and viscous friction",
-    (("coulomb", "N.m"), ("viscous", "N.m.s/rad")),
-    lambda s: (s.direction, s.speed),
+    "Coulomb friction, more one way by an offset, and viscous friction",
+    (("coulomb", "N.m"), ("viscous", "N.m.s/rad"), (OFFSET, "N.m")),
+    lambda s: (s.direction, s.speed, np.ones_like(s.speed)),
 )
 LAWS = {
-    "offset": TorqueLaw(
-        "Coulomb friction that differs by direction",
-        (("offset", "N.m"),),
-        lambda s: (np.ones_like(s.speed),),
-    ),
     "direction": TorqueLaw(
         "viscous friction that differs by direction",
         (("viscous difference", "N.m.s/rad"),),

@@ -107,7 +107,7 @@ def _torques(page: Page, found: IdentifiedArm) -> str:
     ratio = found.plant.ratio
     for k in range(found.plant.count):
         left, size = found.kept[k], float(found.fit.sizes[k])
-        cells = [f"{100 * left:.3g} %", figure(size), figure(size / ratio[k])]
+        cells = [f"{100 * left:.3g} %", figure(size), f"{size / ratio[k]:.2g}"]
         rows.append([f"joint {k + 1}", *cells])
         curves = [
             SamplesMark(Samples(e.time, x[:, k]), label, color, _WIDTH)
@@ -149,7 +149,7 @@ def _base_note(found: IdentifiedArm) -> str:
     return (
         "What torques tell are sums of masses m, first moments mx, my, mz, moments of inertia Ixx"
         " to Izz about the joint and inertias J of the motors at the joint, in frames parallel to"
-        f" the base with the arm straight up.{left} What is known worse than to 30 % of itself is grey."
+        f" the base with the arm straight up.{left} What is known worse than to 30 % is grey."
     )
 
 
@@ -279,16 +279,19 @@ def _gear_cells(gear: GearFound) -> list[str]:
 def _tried_note(found: IdentifiedArm) -> str:
     share = 100 * found.keep
     return (
-        f"Each was fitted to the first {100 - share:.0f} % of the record and had to explain the last"
-        f" {share:.0f} %; one is taken that leaves 5 % less of a joint's residual there."
+        f"Each was fitted to the first {100 - share:.0f} % of the record and had to explain the"
+        f" last {share:.0f} %; one is taken that leaves 5 % less of a joint's residual there."
     )
 
 
 def _tried(found: IdentifiedArm) -> str:
-    rows = []
+    rows, before = [], set[tuple[str, int]]()
     for t in found.tried:
-        name = "none" if not t.laws else f"+ {t.laws[-1][0]}, joint {t.laws[-1][1] + 1}"
-        rows.append([name, *(f"{100 * x:.3g} %" for x in t.kept)])
+        now = set(t.laws)
+        steps = [f"+ {n}, joint {j + 1}" for n, j in now - before]
+        steps += [f"- {n}, joint {j + 1}" for n, j in before - now]
+        rows.append([", ".join(steps) or "none", *(f"{100 * x:.3g} %" for x in t.kept)])
+        before = now
     return table(["law", *(f"joint {k + 1}" for k in range(found.plant.count))], rows, 1)
 
 
