@@ -173,6 +173,19 @@ def test_options_that_are_wrong(tables, told):
         asked_of(tables, "identify.toml")
 
 
+def test_a_record_of_few_samples_a_second():
+    """10 Hz, as the benchmark of a KUKA KR300 has it beside its raw records."""
+    plant, record = made(seconds=400.0)
+    few = Record(
+        "few", record.ns[::10], {n: x[::10] for n, x in record.columns.items()}, record.units
+    )
+    found = identify_arm(plant.scenario, few, ArmOptions(COLUMNS, laws=["direction"]))
+    for name in ("mz2", "mx3", "mz3", "mz5"):
+        q = found.quantity(name)
+        assert q.value == pytest.approx(q.before, rel=0.01)
+    assert found.quantity("viscous 1").value == pytest.approx(VISCOUS[0], rel=0.05)
+
+
 def test_a_short_record_is_refused():
     plant, record = made(seconds=3.0)
     with pytest.raises(InputError, match="too short"):

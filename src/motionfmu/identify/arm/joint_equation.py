@@ -19,9 +19,12 @@ from motionfmu.identify.arm.torque_laws import BASE, LAWS, JointState
 from motionfmu.identify.arm.zero_phase import ENDS, fastest, low_pass
 
 Array = NDArray[np.float64]
-# Corner of the low pass of angles: so many times the fastest motion, a least [Hz], and the most as
-# a share of the rate; that of both sides of the equation as a share of it.
-_FASTER, _LEAST, _OF_RATE, _EQUATION = 40.0, 20.0, 0.25, 0.2
+# Corner of the low pass of angles: so many times the fastest motion, within limits [Hz] and below a
+# share of the rate.
+_FASTER, _BETWEEN, _OF_RATE = 40.0, (20.0, 30.0), 0.4
+# That of both sides of the equation: so far below that reversals, which are fast, are seen alike on
+# both sides; the share of the other corner, the least [Hz], and the most as a share.
+_EQUATION, _SLOW, _CLOSE = 0.2, 4.0, 0.5
 # Samples a period of the corner at which links are computed, and at which rows are kept.
 _COMPUTED, _KEPT = 8.0, 4.0
 # Speeds below this share of a joint's largest tell of rest, not of friction in motion.
@@ -132,7 +135,7 @@ def corner_of(record: ArmRecord, asked: float | None) -> float:
     most = _OF_RATE * record.rate
     if asked is not None:
         return min(asked, most)
-    return float(np.clip(_FASTER * fastest(record.link, record.rate), _LEAST, most))
+    return float(min(np.clip(_FASTER * fastest(record.link, record.rate), *_BETWEEN), most))
 
 
 def joint_equation(
@@ -140,7 +143,7 @@ def joint_equation(
 ) -> JointEquation:
     """Make it of a record, with the columns of all laws."""
     corner = corner_of(record, low)
-    stretch = _EQUATION * corner
+    stretch = min(max(_EQUATION * corner, _SLOW), _CLOSE * corner)
     rate = record.rate
     first = max(1, int(rate / (_COMPUTED * corner)))  # samples between two that are computed
     then = max(1, int(rate / first / (_KEPT * stretch)))
