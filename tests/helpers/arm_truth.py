@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu import scenario
-from motionfmu.identify.arm.arm_plant import ArmPlant, arm_plant
+from motionfmu.identify.arm_dynamics.arm_plant import ArmPlant, arm_plant
 from motionfmu.records import Record
 
 STEP = 5e-5

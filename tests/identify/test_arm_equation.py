@@ -7,10 +7,10 @@ from arm_truth import plant_of
 from robot_arm import EXACT, Arm, Pinocchio
 from scipy.linalg import qr
 
-from motionfmu.identify.arm.joint_equation import base_of
-from motionfmu.identify.arm.link_regressor import regressor
-from motionfmu.identify.arm.possible_links import believed
-from motionfmu.identify.arm.zero_phase import fastest, low_pass
+from motionfmu.identify.arm_dynamics.joint_equation import base_of
+from motionfmu.identify.arm_dynamics.link_regressor import regressor
+from motionfmu.identify.arm_dynamics.possible_links import believed
+from motionfmu.identify.arm_dynamics.zero_phase import fastest, low_pass
 
 RNG = np.random.default_rng(3)
 KUKA = {"a1": 0.025, "a2": -0.035, "c1": 0.4, "c2": 0.315, "c3": 0.365, "c4": 0.08,

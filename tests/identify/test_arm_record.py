@@ -5,11 +5,11 @@ import pytest
 from arm_truth import plant_of
 
 from motionfmu import InputError
-from motionfmu.identify.arm import ArmOptions, identify_arm
-from motionfmu.identify.arm.arm_options import ArmColumn, asked_of
-from motionfmu.identify.arm.arm_record import arm_record
-from motionfmu.identify.arm.link_regressor import regressor
-from motionfmu.identify.arm.possible_links import believed
+from motionfmu.identify.arm_dynamics import ArmOptions, identify_arm
+from motionfmu.identify.arm_dynamics.arm_options import ArmColumn, asked_of
+from motionfmu.identify.arm_dynamics.arm_record import arm_record
+from motionfmu.identify.arm_dynamics.link_regressor import regressor
+from motionfmu.identify.arm_dynamics.possible_links import believed
 from motionfmu.records import Record
 
 COLUMNS = {"tau": ArmColumn("arm.torque"), "link": ArmColumn("arm.link_angle")}

@@ -10,10 +10,10 @@ from arm_truth import ArmTruth, plant_of, simulated
 from typer.testing import CliRunner
 
 from motionfmu.cli import app
-from motionfmu.identify.arm import ArmOptions, held_arm, identify_arm
-from motionfmu.identify.arm.arm_options import ArmColumn
-from motionfmu.identify.arm.possible_links import believed
-from motionfmu.identify.arm.torque_laws import BASE, LAWS, OFFSET, JointState
+from motionfmu.identify.arm_dynamics import ArmOptions, held_arm, identify_arm
+from motionfmu.identify.arm_dynamics.arm_options import ArmColumn
+from motionfmu.identify.arm_dynamics.possible_links import believed
+from motionfmu.identify.arm_dynamics.torque_laws import BASE, LAWS, OFFSET, JointState
 
 pytestmark = pytest.mark.more
 COLUMNS = {

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from motionfmu.run import Scenario
 
 
+# CCN 17: each option in the order in which it counts, and arms beside axes.
 @app.command()
 def identify(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
@@ -67,7 +68,7 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu import records
     from motionfmu.cli.identify_arm import identify_arm_of
     from motionfmu.identify import axis_record, identify_file
-    from motionfmu.identify.arm import arm_plant
+    from motionfmu.identify.arm_dynamics import arm_plant
     from motionfmu.report import result_folder
 
     scenario = loaded(path, machine)

@@ -9,7 +9,7 @@ import typer
 from motionfmu.cli.common import FAILED, bare_table, out, progress_bar, report
 
 if TYPE_CHECKING:
-    from motionfmu.identify.arm import ArmOptions, HeldArm, IdentifiedArm
+    from motionfmu.identify.arm_dynamics import ArmOptions, HeldArm, IdentifiedArm
     from motionfmu.records import Record
     from motionfmu.run import Scenario
 
@@ -23,7 +23,7 @@ def identify_arm_of(
 ) -> None:
     """Identify, write found.toml and a report, and tell; `asked` are tables and their place."""
     from motionfmu import records
-    from motionfmu.identify.arm.arm_options import asked_of
+    from motionfmu.identify.arm_dynamics.arm_options import asked_of
 
     tables, place = asked
     wanted = asked_of(tables, place)
@@ -41,7 +41,7 @@ def _found(
     scenario: "Scenario", record: "Record", options: "ArmOptions", set_: Mapping[str, Any]
 ) -> "tuple[IdentifiedArm, HeldArm]":
     """Identify and run, with a progress bar, which shows on a terminal only."""
-    from motionfmu.identify.arm import held_arm, identify_arm
+    from motionfmu.identify.arm_dynamics import held_arm, identify_arm
 
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=1.0)
@@ -55,7 +55,7 @@ def _found(
 
 
 def _write(target: Path, found: "IdentifiedArm", run: "HeldArm") -> None:
-    from motionfmu.identify.arm.arm_files import arm_numbers, arm_toml
+    from motionfmu.identify.arm_dynamics.arm_files import arm_numbers, arm_toml
     from motionfmu.report import result_folder
     from motionfmu.report.loop_pages.arm_page import arm_page
 
@@ -65,7 +65,7 @@ def _write(target: Path, found: "IdentifiedArm", run: "HeldArm") -> None:
 
 
 def _tell(found: "IdentifiedArm", run: "HeldArm") -> None:
-    from motionfmu.identify.arm.arm_files import law_names, with_deviation
+    from motionfmu.identify.arm_dynamics.arm_files import law_names, with_deviation
 
     rows = bare_table("base parameter", "before", "found", "unit")
     for q in (*found.base, *found.joints):
@@ -81,7 +81,7 @@ def _tell(found: "IdentifiedArm", run: "HeldArm") -> None:
         )
         lost, deviation = gear.values["lost"]
         gap = f"lost motion {with_deviation(lost, deviation)} rad" if gear.told("lost") else ""
-        print(f"gear {k + 1}: {slopes} N.m/rad  {gap}".rstrip())
+        print(f"gear {k + 1}: {slopes} N·m/rad  {gap}".rstrip())
     for note in found.notes:
         out.print(note, markup=False, soft_wrap=True)
     laws = (f"{n} of {', '.join(map(str, on))}" for n, on in law_names(found).items())

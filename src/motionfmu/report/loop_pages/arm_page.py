@@ -5,12 +5,11 @@ from html import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.base.units import spelled
-from motionfmu.identify.arm.arm_files import law_names, with_deviation
-from motionfmu.identify.arm.arm_identification import ArmQuantity, IdentifiedArm
-from motionfmu.identify.arm.arm_run import HeldArm
-from motionfmu.identify.arm.gear_windup import GearFound
-from motionfmu.identify.arm.torque_laws import BASE, LAWS, JointState
+from motionfmu.identify.arm_dynamics.arm_files import law_names, with_deviation
+from motionfmu.identify.arm_dynamics.arm_identification import ArmQuantity, IdentifiedArm
+from motionfmu.identify.arm_dynamics.arm_run import HeldArm
+from motionfmu.identify.arm_dynamics.gear_windup import GearFound
+from motionfmu.identify.arm_dynamics.torque_laws import BASE, LAWS, JointState
 from motionfmu.report.diagram import (
     Diagram,
     LineMark,
@@ -165,7 +164,7 @@ def _row(q: ArmQuantity, title: str) -> list[str]:
     value = with_deviation(q.value, q.deviation)
     share = f"{100 * q.deviation / abs(q.value):.2g} %" if q.value else ""
     before = figure(q.before) if np.isfinite(q.before) else ""
-    cells = [title, spelled(q.unit), before, value, share if q.told else "not told"]
+    cells = [title, q.unit, before, value, share if q.told else "not told"]
     return cells if q.told else [f'<span class="sub">{c}</span>' for c in cells]
 
 

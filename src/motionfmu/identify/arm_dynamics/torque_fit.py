@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from motionfmu.identify.arm.joint_equation import JointEquation
-from motionfmu.identify.arm.torque_laws import LAWS
+from motionfmu.identify.arm_dynamics.joint_equation import JointEquation
+from motionfmu.identify.arm_dynamics.torque_laws import LAWS
 from motionfmu.identify.spread import autocorrelation
 
 Array = NDArray[np.float64]
@@ -32,29 +32,21 @@ _ROWS = 10  # rows a column at least
 
 @dataclass(frozen=True)
 class TorqueFit:
-    """What least squares found.
+    """What least squares found."""
 
-    Attributes
-    ----------
-    places : array
-        Columns of the equation that were fitted.
-    values, deviations : array
-        Of each; Newey and West for residuals that are not white.
-    covariance : array
-    sizes : array
-        Deviation of the residuals of each joint [N.m].
-    condition : float
-        Of the weighted columns, each scaled to length 1.
-    lag : int
-        Rows up to which residuals count as one another's.
-    """
-
-    places: NDArray[np.int64]
+    places: NDArray[np.int64]  # columns of the equation that were fitted
     values: Array
-    covariance: Array
-    sizes: Array
-    condition: float
-    lag: int
+    covariance: Array  # Newey and West, for residuals that are not white
+    sizes: Array  # deviation of the residuals of each joint [N·m]
+    condition: float  # of the weighted columns, each scaled to length 1
+    lag: int  # rows up to which residuals count as one another's
+
+    def with_others_fixed(self, count: int) -> Array:
+        """Covariance of the first values where all others are as they were found."""
+        unit = np.sqrt(np.diag(self.covariance))
+        information = np.linalg.pinv(self.covariance / np.outer(unit, unit), hermitian=True)
+        own = np.linalg.pinv(information[:count, :count], hermitian=True)
+        return np.asarray(own * np.outer(unit[:count], unit[:count]))
 
     @property
     def deviations(self) -> Array:
@@ -134,6 +126,7 @@ def _weighed(
     return values, np.maximum(sizes, least)
 
 
+# CCN 17: what may come, what counts of it, and what may go then, in one loop.
 def choose(
     equation: JointEquation, keep: float, laws: Sequence[str] | None
 ) -> tuple[list[TriedLaw], TriedLaw]:

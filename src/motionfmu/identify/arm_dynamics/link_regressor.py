@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 NAMES = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
-UNITS = ("kg", *3 * ("kg.m",), *6 * ("kg.m2",))
+UNITS = ("kg", *3 * ("kg·m",), *6 * ("kg·m²",))
 
 
 def regressor(

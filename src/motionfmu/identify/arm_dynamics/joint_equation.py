@@ -11,12 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.identify.arm.arm_plant import ArmPlant
-from motionfmu.identify.arm.arm_record import ArmRecord
-from motionfmu.identify.arm.base_parameters import BaseParameters, base_parameters
-from motionfmu.identify.arm.link_regressor import NAMES, UNITS, regressor
-from motionfmu.identify.arm.torque_laws import BASE, LAWS, JointState
-from motionfmu.identify.arm.zero_phase import ENDS, fastest, low_pass
+from motionfmu.identify.arm_dynamics.arm_plant import ArmPlant
+from motionfmu.identify.arm_dynamics.arm_record import ArmRecord
+from motionfmu.identify.arm_dynamics.base_parameters import BaseParameters, base_parameters
+from motionfmu.identify.arm_dynamics.link_regressor import NAMES, UNITS, regressor
+from motionfmu.identify.arm_dynamics.torque_laws import BASE, LAWS, JointState
+from motionfmu.identify.arm_dynamics.zero_phase import ENDS, fastest, low_pass
 
 Array = NDArray[np.float64]
 # Corner of the low pass of angles: so many times the fastest motion, within limits [Hz] and below a
@@ -111,7 +111,7 @@ def base_of(plant: ArmPlant) -> BaseParameters:
     links = regressor(plant.axes, plant.origins, plant.gravity, motion)
     motors = np.eye(n)[None] * motion[2][:, None, :]
     names = [f"{s}{k + 1}" for k in range(n) for s in NAMES] + [f"J{k + 1}" for k in range(n)]
-    units = [u for _ in range(n) for u in UNITS] + ["kg.m2"] * n
+    units = [u for _ in range(n) for u in UNITS] + ["kg·m²"] * n
     # masses last: what they do is told by moments of the links before
     order = [10 * k + i for k in range(n) for i in range(1, 10)]
     order += [*range(10 * n, 11 * n), *(10 * k for k in range(n))]

@@ -37,30 +37,30 @@ class TorqueLaw:
 
 BASE = TorqueLaw(
     "Coulomb friction, more one way by an offset, and viscous friction",
-    (("coulomb", "N.m"), ("viscous", "N.m.s/rad"), (OFFSET, "N.m")),
+    (("coulomb", "N·m"), ("viscous", "N·m·s/rad"), (OFFSET, "N·m")),
     lambda s: (s.direction, s.speed, np.ones_like(s.speed)),
 )
 LAWS = {
     "direction": TorqueLaw(
         "viscous friction that differs by direction",
-        (("viscous difference", "N.m.s/rad"),),
+        (("viscous difference", "N·m·s/rad"),),
         lambda s: (np.abs(s.speed),),
     ),
     "stribeck": TorqueLaw(
         "Stribeck",
-        (("excess at rest", "N.m"),),
+        (("excess at rest", "N·m"),),
         lambda s: (s.direction / (1.0 + (s.speed / s.stribeck) ** 2),),
     ),
     "degressive": TorqueLaw(
         "friction that rises less at speed",
-        (("cube root", "N.m"),),
+        (("cube root", "N·m"),),
         lambda s: (np.cbrt(s.speed),),
     ),
     "balancer": TorqueLaw(
         "springs or cylinders that balance a joint",
         (
-            *(("sine", "N.m"), ("cosine", "N.m")),
-            *(("sine twice", "N.m"), ("cosine twice", "N.m")),
+            *(("sine", "N·m"), ("cosine", "N·m")),
+            *(("sine twice", "N·m"), ("cosine twice", "N·m")),
         ),
         lambda s: (
             *(np.sin(s.angle), np.cos(s.angle)),

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.units import spelled
-from motionfmu.identify.arm.arm_options import ArmColumn
-from motionfmu.identify.arm.arm_plant import ArmPlant
+from motionfmu.identify.arm_dynamics.arm_options import ArmColumn
+from motionfmu.identify.arm_dynamics.arm_plant import ArmPlant
 from motionfmu.records import Record
 from motionfmu.records.quantities import quantity
 
@@ -26,29 +26,14 @@ _FEWEST = 200
 
 @dataclass(frozen=True)
 class ArmRecord:
-    """Signals of the joints as the equation of the arm has them.
-
-    Attributes
-    ----------
-    time : array of shape (n,)
-        From the first sample on [s].
-    torque : array of shape (n, joints)
-        Of the motors [N.m].
-    motor : array of shape (n, joints)
-        Angles of the motors [rad], 0 where the inner angle is.
-    link : array of shape (n, joints)
-        Inner angles of the joints [rad]; those of the motors where no encoder is.
-    seen : array of bool, shape (joints,)
-        Joints that have an encoder behind the gear.
-    notes : tuple of str
-    """
+    """Signals of the joints as the equation of the arm has them."""
 
     name: str
-    time: Array
-    torque: Array
-    motor: Array
-    link: Array
-    seen: NDArray[np.bool_]
+    time: Array  # (n,) from the first sample on [s]
+    torque: Array  # (n, joints) of the motors [N·m]
+    motor: Array  # (n, joints) of the motors [rad], 0 where the inner angle is
+    link: Array  # (n, joints) inner angles [rad]; those of the motors where no encoder is
+    seen: NDArray[np.bool_]  # (joints,) whether an encoder is behind the gear
     notes: tuple[str, ...]
 
     @property
@@ -68,6 +53,7 @@ class ArmRecord:
         )
 
 
+# CCN 17: a record has motors, links or both, by angles or by encoder.
 def arm_record(plant: ArmPlant, record: Record, columns: Mapping[str, ArmColumn]) -> ArmRecord:
     """Take the columns of a record."""
     names = plant.table.signals
@@ -82,18 +68,11 @@ def arm_record(plant: ArmPlant, record: Record, columns: Mapping[str, ArmColumn]
         if variable in taken:
             both = f"{taken[variable][0]} and {column}"
             raise InputError(f"columns: {both} are both {use.signal}")
-        unit = {names.torque: "N.m", names.phase: "1"}.get(variable, "rad")
+        unit = {names.torque: "N·m", names.phase: "1"}.get(variable, "rad")
         taken[variable] = column, _column(record, column, use, (unit, plant.count))
     if names.torque not in taken:
         raise InputError(f"{record.name}: no column is {plant.signal(names.torque)}")
-    if record.rate is None:
-        k = int(np.argmax(np.diff(record.ns)))
-        raise InputError(
-            f"{record.place(k + 1)}: samples are {(record.ns[k + 1] - record.ns[k]) / 1e9:g} s"
-            f" apart, {record.step_ns / 1e9:g} s elsewhere: even instants wanted"
-        )
-    if len(record.ns) < _FEWEST:
-        raise InputError(f"{record.name}: {len(record.ns)} samples, {_FEWEST} at least wanted")
+    _refuse_uneven(record)
     notes = list(record.notes)
     time = record.time - record.time[0]
     torque = plant.sign * taken[names.torque][1]
@@ -122,6 +101,17 @@ def arm_record(plant: ArmPlant, record: Record, columns: Mapping[str, ArmColumn]
     if not (np.ptp(inner, axis=0) > _STILL).any():
         raise InputError(f"{record.name}: no joint moves")
     return ArmRecord(record.name, time, torque, turned, behind, seen, tuple(notes))
+
+
+def _refuse_uneven(record: Record) -> None:
+    if record.rate is None:
+        k = int(np.argmax(np.diff(record.ns)))
+        raise InputError(
+            f"{record.place(k + 1)}: samples are {(record.ns[k + 1] - record.ns[k]) / 1e9:g} s"
+            f" apart, {record.step_ns / 1e9:g} s elsewhere: even instants wanted"
+        )
+    if len(record.ns) < _FEWEST:
+        raise InputError(f"{record.name}: {len(record.ns)} samples, {_FEWEST} at least wanted")
 
 
 def _column(record: Record, name: str, use: ArmColumn, of: tuple[str, int]) -> Array:

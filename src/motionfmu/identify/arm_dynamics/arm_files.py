@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.identify.arm.arm_identification import ArmQuantity, IdentifiedArm
-from motionfmu.identify.arm.arm_run import HeldArm
-from motionfmu.identify.arm.gear_windup import GearFound
+from motionfmu.identify.arm_dynamics.arm_identification import ArmQuantity, IdentifiedArm
+from motionfmu.identify.arm_dynamics.arm_run import HeldArm
+from motionfmu.identify.arm_dynamics.gear_windup import GearFound
 
 
 def with_deviation(value: float, deviation: float) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.base.errors import InputError
-from motionfmu.identify.arm.torque_laws import LAWS
+from motionfmu.identify.arm_dynamics.torque_laws import LAWS
 
 
 @dataclass(frozen=True)

@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 FILE = "identify.toml"
 
 
-class _Table(BaseModel):
+class _ArmTable(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class _Signals(_Table):
+class _ArmSignals(_ArmTable):
     torque: str
     motor: str
     speed: str
@@ -31,20 +31,20 @@ class _Signals(_Table):
     lines: str
 
 
-class _Links(_Table):
+class _ArmLinks(_ArmTable):
     mass: str
     center: str
     inertia: str
     viscous: str
 
 
-class _Load(_Table):
+class _ArmLoad(_ArmTable):
     mass: str
     center: str
     inertia: str
 
 
-class _Motors(_Table):
+class _ArmMotors(_ArmTable):
     inertia: str
     coulomb: str
     static: str
@@ -52,7 +52,7 @@ class _Motors(_Table):
     viscous: str
 
 
-class _Gears(_Table):
+class _ArmGears(_ArmTable):
     stiffness: list[str]
     knees: list[str]
     damping: str
@@ -62,7 +62,7 @@ class _Gears(_Table):
     phases: list[str]
 
 
-class ArmTable(_Table):
+class ArmTable(_ArmTable):
     """The table [arm] of an identify.toml: names of the class for what an arm has."""
 
     axes: list[str]
@@ -73,11 +73,11 @@ class ArmTable(_Table):
     ratio: str
     gravity: str
     start: str
-    signals: _Signals
-    links: _Links
-    load: _Load
-    motors: _Motors
-    gears: _Gears
+    signals: _ArmSignals
+    links: _ArmLinks
+    load: _ArmLoad
+    motors: _ArmMotors
+    gears: _ArmGears
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ is found by repetition: its signs decide on which side of the lost motion a gear
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -61,40 +61,21 @@ class GearSamples:
 class GearFound:
     """What was found of one gear.
 
-    Attributes
-    ----------
-    knees : tuple of float
-        Torques at which the slope changes [N.m].
-    kind : str
-        ``one slope``, ``the plant's`` or ``found`` knees.
-    stiffness, stiffness_deviation : arrays
-        Of each slope [N.m/rad].
-    values : mapping
-        Value and deviation by name: lost [rad], hysteresis [rad], zero [rad], viscous
-        [N.m.s/rad] of the link, damping [N.m.s/rad], inertia [kg.m2] that is the link's rather
-        than the motor's, amplitude 1, amplitude 2 [rad], phase 1, phase 2 [rad].
-    secant : float
-        Torque over wind-up at the largest torque, lost motion included [N.m/rad].
-    share : float
-        RMS of what is left over RMS of the wind-up about its mean, on the part kept back.
-    left : float
-        RMS of what is left [rad].
-    curve : tuple of arrays
-        Torque [N.m], wind-up [rad] of the spring with lost motion.
-    points : tuple of arrays
-        Torque, wind-up less all that is not the spring's.
+    Values by name: lost [rad], hysteresis [rad], zero [rad], viscous [N·m·s/rad] of the link,
+    damping [N·m·s/rad], inertia [kg·m²] that is the link's rather than the motor's, amplitude 1,
+    amplitude 2 [rad], phase 1, phase 2 [rad].
     """
 
-    knees: tuple[float, ...]
-    kind: str
-    stiffness: Array
+    knees: tuple[float, ...]  # torques at which the slope changes [N·m]
+    kind: str  # whose knees: one slope, the plant's, found
+    stiffness: Array  # of each slope [N·m/rad]
     stiffness_deviation: Array
-    values: Mapping[str, tuple[float, float]]
-    secant: float
-    share: float
-    left: float
-    curve: tuple[Array, Array]
-    points: tuple[Array, Array]
+    values: Mapping[str, tuple[float, float]]  # with deviations
+    secant: float  # torque over wind-up at the largest torque, lost motion included [N·m/rad]
+    share: float  # RMS left over that of the wind-up about its mean, on the part kept back
+    left: float  # RMS of what is left [rad]
+    curve: tuple[Array, Array]  # torque [N·m], wind-up [rad] of the spring with lost motion
+    points: tuple[Array, Array]  # torque, wind-up less all that is not the spring's
 
     def told(self, name: str) -> bool:
         """Whether a value is known to 30 % of itself."""
@@ -166,7 +147,24 @@ def _solve(
 
 
 def gear_found(s: GearSamples, knees: Sequence[float], keep: float) -> GearFound | None:
-    """Fit one gear; None if the record does not load it."""
+    """Fit one gear; None if the record does not load it.
+
+    Once by what is believed of it, then by what was found, which decides on the samples that count.
+    """
+    first = _fitted(s, knees, keep)
+    if first is None:
+        return None
+    lost, damping = first.values["lost"], first.values["damping"][0]
+    again = replace(
+        s,
+        begin=(first.values["viscous"][0], max(s.begin[1], damping)),
+        lost=lost[0] if lost[0] > 0.0 and np.isfinite(lost[1]) else s.lost,
+    )
+    return _fitted(again, knees, keep) or first
+
+
+def _fitted(s: GearSamples, knees: Sequence[float], keep: float) -> GearFound | None:
+    """Fit one gear, choosing the torques at which it gets stiffer."""
     torque = s.torque + _beside(s) @ np.array([*s.begin, 0.0])
     size = np.abs(torque)
     sure = _through(s, torque) & (size > max(_SIGN * float(size.max()), _SURE * s.doubt))

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.identify.arm.arm_identification import IdentifiedArm
-from motionfmu.identify.arm.arm_plant import ArmPlant
-from motionfmu.identify.arm.joint_equation import joint_motion, states
-from motionfmu.identify.arm.torque_laws import BASE, LAWS, OFFSET
-from motionfmu.identify.arm.zero_phase import low_pass
+from motionfmu.identify.arm_dynamics.arm_identification import IdentifiedArm
+from motionfmu.identify.arm_dynamics.arm_plant import ArmPlant
+from motionfmu.identify.arm_dynamics.joint_equation import joint_motion, states
+from motionfmu.identify.arm_dynamics.torque_laws import BASE, LAWS, OFFSET
+from motionfmu.identify.arm_dynamics.zero_phase import low_pass
 from motionfmu.run.engines.slave import Slave
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.values import settings
@@ -31,7 +31,7 @@ _FMI = 3
 
 @dataclass(frozen=True)
 class HeldArm:
-    """Signals of the FMU at the samples of a record, in the FMU's own signs.
+    """Signals of the FMU along a record, as its rotors turn.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ def _outside(found: IdentifiedArm, link: Array, motion: Any) -> Array:
 def _seen(found: IdentifiedArm) -> Array:
     """Inertia that each motor feels, about the middle of the motion [kg.m2]."""
     equation, base = found.equation, found.equation.base
-    from motionfmu.identify.arm.link_regressor import regressor
+    from motionfmu.identify.arm_dynamics.link_regressor import regressor
 
     plant = found.plant
     n = plant.count

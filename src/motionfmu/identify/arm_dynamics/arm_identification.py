@@ -9,22 +9,22 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 
 from motionfmu.base.errors import InputError
-from motionfmu.identify.arm.arm_options import ArmOptions
-from motionfmu.identify.arm.arm_plant import ArmPlant, arm_plant
-from motionfmu.identify.arm.arm_record import ArmRecord, arm_record
-from motionfmu.identify.arm.gear_windup import GearFound, GearSamples, gear_found
-from motionfmu.identify.arm.joint_equation import (
+from motionfmu.identify.arm_dynamics.arm_options import ArmOptions
+from motionfmu.identify.arm_dynamics.arm_plant import ArmPlant, arm_plant
+from motionfmu.identify.arm_dynamics.arm_record import ArmRecord, arm_record
+from motionfmu.identify.arm_dynamics.gear_windup import GearFound, GearSamples, gear_found
+from motionfmu.identify.arm_dynamics.joint_equation import (
     JointEquation,
     base_of,
     dropped,
     joint_equation,
     joint_motion,
 )
-from motionfmu.identify.arm.link_regressor import regressor
-from motionfmu.identify.arm.possible_links import PossibleLinks, possible_links
-from motionfmu.identify.arm.torque_fit import TorqueFit, TriedLaw, choose, enough, fit
-from motionfmu.identify.arm.torque_laws import OFFSET
-from motionfmu.identify.arm.zero_phase import ENDS, low_pass
+from motionfmu.identify.arm_dynamics.link_regressor import regressor
+from motionfmu.identify.arm_dynamics.possible_links import PossibleLinks, possible_links
+from motionfmu.identify.arm_dynamics.torque_fit import TorqueFit, TriedLaw, choose, enough, fit
+from motionfmu.identify.arm_dynamics.torque_laws import OFFSET
+from motionfmu.identify.arm_dynamics.zero_phase import ENDS, low_pass
 from motionfmu.records import Record
 from motionfmu.run import Scenario
 
@@ -103,7 +103,12 @@ class IdentifiedArm:
 
     @property
     def modelled(self) -> Array:
-        """Torques of the fit at the rows of the equation [N.m], (rows, joints)."""
+        """Torques of the fit, (rows, joints) [N·m].
+
+        Returns
+        -------
+        ndarray
+        """
         return np.asarray(self.equation.matrix[:, :, self.fit.places] @ self.fit.values)
 
     def quantity(self, name: str) -> ArmQuantity:
@@ -170,7 +175,7 @@ def identify_arm(
         torque = _without_errors(plant, data, gears, asked)
     progress("links", 0.9)
     own = _motors_told(plant, equation, gears)
-    links = possible_links(plant, base, (found.values[:n], found.covariance[:n, :n]), own)
+    links = possible_links(plant, base, (found.values[:n], found.with_others_fixed(n)), own)
     quantities = _quantities(plant, equation, found)
     settings = _settings(plant, equation, found, gears, links)
     told = _notes(plant, equation, (found, gears, links), chosen, data.seen)
@@ -309,7 +314,7 @@ def _motors_told(
 def _quantities(
     plant: ArmPlant, equation: JointEquation, found: TorqueFit
 ) -> tuple[ArmQuantity, ...]:
-    from motionfmu.identify.arm.possible_links import believed
+    from motionfmu.identify.arm_dynamics.possible_links import believed
 
     base, n = equation.base, len(equation.base.kept)
     before = base.combine @ believed(plant).standard(plant)
@@ -444,7 +449,12 @@ def _notes(
             f"No links of the plant's kind make all base parameters: one is off by"
             f" {links.misfit:.3g} of its deviations."
         )
-    bare = [str(k + 1) for k in range(plant.count) if seen[k] and k not in gears]
+    return [*notes, *_gear_notes(gears, seen)]
+
+
+def _gear_notes(gears: Mapping[int, GearFound], seen: NDArray[np.bool_]) -> list[str]:
+    notes = []
+    bare = [str(k + 1) for k in np.flatnonzero(seen) if int(k) not in gears]
     if bare:
         notes.append(f"Joints {', '.join(bare)}: the record does not load the gear enough.")
     for k, gear in gears.items():
