@@ -344,7 +344,6 @@ def _before(plant: ArmPlant, equation: JointEquation, place: int) -> float:
     return values.get(column.term, float("nan"))
 
 
-# CCN 16: one line for each of the plant's parameters, which know nothing of each other.
 def _settings(
     plant: ArmPlant,
     equation: JointEquation,

@@ -18,11 +18,11 @@ Array = NDArray[np.float64]
 FILE = "identify.toml"
 
 
-class _ArmTable(BaseModel):
+class _NamedParts(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class _ArmSignals(_ArmTable):
+class _ArmSignals(_NamedParts):
     torque: str
     motor: str
     speed: str
@@ -31,20 +31,20 @@ class _ArmSignals(_ArmTable):
     lines: str
 
 
-class _ArmLinks(_ArmTable):
+class _ArmLinks(_NamedParts):
     mass: str
     center: str
     inertia: str
     viscous: str
 
 
-class _ArmLoad(_ArmTable):
+class _ArmLoad(_NamedParts):
     mass: str
     center: str
     inertia: str
 
 
-class _ArmMotors(_ArmTable):
+class _ArmMotors(_NamedParts):
     inertia: str
     coulomb: str
     static: str
@@ -52,7 +52,7 @@ class _ArmMotors(_ArmTable):
     viscous: str
 
 
-class _ArmGears(_ArmTable):
+class _ArmGears(_NamedParts):
     stiffness: list[str]
     knees: list[str]
     damping: str
@@ -62,7 +62,7 @@ class _ArmGears(_ArmTable):
     phases: list[str]
 
 
-class ArmTable(_ArmTable):
+class ArmTable(_NamedParts):
     """The table [arm] of an identify.toml: names of the class for what an arm has."""
 
     axes: list[str]
