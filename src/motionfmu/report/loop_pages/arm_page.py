@@ -125,12 +125,13 @@ def _torques(page: Page, found: IdentifiedArm) -> str:
 
 def _held(page: Page, found: IdentifiedArm, run: HeldArm) -> str:
     rows, parts = [], []
+    there = run.time >= run.settled
     for k in range(found.plant.count):
         windup = run.windup_shares[k]
         shown = f"{100 * windup:.3g} %" if np.isfinite(windup) else ""
         rows.append([f"joint {k + 1}", f"{100 * run.shares[k]:.3g} %", shown])
         curves = [
-            SamplesMark(Samples(run.time, x[:, k]), label, color, _WIDTH)
+            SamplesMark(Samples(run.time[there], x[there, k]), label, color, _WIDTH)
             for x, label, color in (
                 (run.recorded, "record", RECORD),
                 (run.added, "added by the loop", AXES[1]),
