@@ -85,6 +85,7 @@ def test_friction_that_differs_by_direction_is_chosen(rigid):
     assert any("no such law" in n for n in found.notes)
 
 
+@pytest.mark.more
 def test_a_balancer_is_chosen():
     plant, record = made(balance=200.0)
     found = identify_arm(plant.scenario, record, ArmOptions(COLUMNS))
@@ -94,6 +95,7 @@ def test_a_balancer_is_chosen():
     assert without.kept[1] > 5.0 * found.kept[1]
 
 
+@pytest.mark.more
 def test_possible_links_make_the_base_parameters(rigid):
     """From beliefs that are wrong by a quarter to links that make the torques."""
     plant, right = rigid
@@ -173,6 +175,7 @@ def test_options_that_are_wrong(tables, told):
         asked_of(tables, "identify.toml")
 
 
+@pytest.mark.more
 def test_a_record_of_few_samples_a_second():
     """10 Hz, as the benchmark of a KUKA KR300 has it beside its raw records."""
     plant, record = made(seconds=400.0)
