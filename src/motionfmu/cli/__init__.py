@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     import typer
 
 # Modules with commands that other modules add to, and modules without a command.
-SEVERAL = {"card", "common", "console_text", "drawing_choices", "frf"}
+SEVERAL = {"card", "common", "console_text", "drawing_choices", "frf", "identify_arm"}
 
 
 def __getattr__(name: str) -> Any:

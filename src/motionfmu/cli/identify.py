@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from motionfmu.run import Scenario
 
 
-# CCN 18: an option that is given replaces that of the file, one after the other.
+# CCN 19: each option in the order in which it counts; responses and arms go elsewhere.
 @app.command()
 def identify(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
@@ -79,14 +79,16 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     set_: Set = [],  # noqa: B006
     folder: Folder = None,
 ) -> None:
-    """Find an axis' mass and friction from a record; write found.toml and a report.
+    """Find an axis' or an arm's values from a record; write found.toml and a report.
 
     With --frf inertias, stiffness and damping of two masses from a closed loop's response.
     """
     needed("tune")
     from motionfmu import records
     from motionfmu.cli.frf import ResponseAsked, identify_frf
+    from motionfmu.cli.identify_arm import identify_arm_of
     from motionfmu.identify import axis_record, identify_file
+    from motionfmu.identify.arm_dynamics import arm_plant
     from motionfmu.report import result_folder
 
     scenario = loaded(path, machine)
@@ -98,6 +100,10 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     tables |= {"axis": axis} if axis is not None else {}
     tables |= {k: v for k, v in (("free", free), ("fix", fix), ("laws", law)) if v}
     tables |= {"controller": False} if as_given else {}
+    if arm_plant.component_of(scenario) is not None:
+        target = result_folder.usable(folder or results(scenario.name, "identify"))
+        asked = tables, str(place or "--column")
+        return identify_arm_of(scenario, record[0], asked, settings(set_), target)
     options = identify_file.options(tables, str(place or "--column"))
     target = result_folder.usable(folder or results(scenario.name, "identify"))
     if frf:
