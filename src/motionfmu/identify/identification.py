@@ -16,6 +16,7 @@ from motionfmu.identify.controller_check import ControllerCheck
 from motionfmu.identify.free_parameters import FreeParameters, carried, checked
 from motionfmu.identify.friction_curve import FrictionCurve, friction_curve
 from motionfmu.identify.ground import Ground, IdentifyOptions, ground
+from motionfmu.identify.part_scatter import part_scatter
 from motionfmu.identify.recorded_loop import RecordedLoop
 from motionfmu.identify.shooting import Fitted, Guess
 from motionfmu.identify.spread import Spread, autocorrelation, spread
@@ -225,7 +226,7 @@ def identify(
         for other in _others(scenario, own, given):
             progress("drive", 0.2)
             there = ground(scenario, record, options, (given, other))
-            look = _validated(there, (names, laws), asked, tried[0])
+            look = _validated(there, (names, laws), asked, (tried[0], chosen))
             tried.append(look)
             if look.score < _WORTH * chosen.score:
                 own, chosen = there, look
@@ -235,10 +236,16 @@ def identify(
     marks.append(clock.perf_counter())
     progress("all of the record", 0.7)
     span = own.first, own.data.samples - 1
-    free, fitted, known, more = _fitted(own, _extended(own, names, laws, asked), span)
+    near = chosen.values if chosen else {}
+    own.motion.fine = own.gap
+    free, fitted, known, more = _fitted(own, _extended(own, names, laws, asked), span, near)
+    if known is not None:
+        progress("parts of the record", 0.8)
+        known = known.at_least(part_scatter(own, free, fitted, span))
     marks.append(clock.perf_counter())
     parts = np.diff(marks).tolist()
     measured, simulated = _stretch_signals(own, fitted, span)
+    rows = own.stretch(*span)[0].rows
     return Identified(
         scenario=scenario,
         axis=options.axis,
@@ -253,11 +260,11 @@ def identify(
         curve=_curve(own, free, fitted),
         check=own.check,
         recorded=own.data,
-        time=own.data.time[span[0] : span[1]],
+        time=own.data.time[rows],
         measured=measured,
         simulated=simulated,
         signals=own.data.compared,
-        following=following(own, (measured, simulated), span),
+        following=following(own, (measured, simulated), rows),
         notes=tuple(_notes(own, free, options)),
         seconds=dict(zip(("start", "law", "fit"), parts, strict=True)),
         ground=own,
@@ -375,16 +382,20 @@ def _reason(share: float) -> str:
 
 
 def _fitted(
-    own: Ground, names: Sequence[str], span: tuple[int, int], begin: Array | None = None
+    own: Ground, names: Sequence[str], span: tuple[int, int], near: Mapping[str, float]
 ) -> tuple[FreeParameters, Fitted, Spread | None, dict[str, str]]:
-    """Fit a span of samples; quantities that it cannot tell are fixed one after the other."""
+    """Fit a span of samples; quantities that it cannot tell are fixed one after the other.
+
+    `near` are values found before, from which those quantities begin.
+    """
     left = list(names)
     why: dict[str, str] = {}
     while True:
         free = own.free(left)
-        values = _start(own, free)[0] if begin is None or len(begin) != len(left) else begin
+        values = _start(own, free)[0]
+        values = np.array([near.get(n, v) for n, v in zip(left, values.tolist(), strict=True)])
         problem, starts = own.shooting(free, span, values)
-        fit = problem.fit(Guess(values, starts))
+        fit = problem.fit(Guess(values, starts), hollow=own.motion.fine)
         if not left:
             return free, fit, None, why
         if not fit.linear.sound:  # extensions of the law stand last
@@ -403,13 +414,18 @@ def _validated(
     own: Ground,
     asked: tuple[Sequence[str], Sequence[str]],
     options: IdentifyOptions,
-    first: "Validation | None",
+    before: "tuple[Validation, Validation] | None",
 ) -> Validation:
-    """Fit the first part of the record and try what was found on the part kept back."""
+    """Fit the first part of the record and try what was found on the part kept back.
+
+    `before` are the first look, by which it is scored, and the one from whose values it begins.
+    """
     names, laws = asked
+    first, near = (before[0], before[1].values) if before else (None, {})
     low, high = own.first, own.data.samples - 1
-    cut = int(low + (1.0 - options.keep) * (high - low))
-    free, fit, _, _ = _fitted(own, _extended(own, names, laws, options), (low, cut))
+    rows = own.stretch(low, high)[0].rows
+    cut = int(rows[int((1.0 - options.keep) * len(rows))])
+    free, fit, _, _ = _fitted(own, _extended(own, names, laws, options), (low, cut), near)
     p, u, _, _ = free.values(fit.guess.free)
     fixed = own.fixed(p, u)
     problem, starts = own.shooting(fixed, (cut, high), fixed.start)
@@ -439,7 +455,8 @@ def _law(
     rounds = 0
     while left:
         progress("friction law", 0.3 + 0.1 * min(rounds, 3))
-        looks = [_validated(own, (names, (*chosen.laws, n)), options, first) for n in left]
+        before = first, chosen
+        looks = [_validated(own, (names, (*chosen.laws, n)), options, before) for n in left]
         tried += looks
         best = min(looks, key=lambda v: v.score)
         if best.score >= _WORTH * chosen.score:
@@ -453,7 +470,8 @@ def _law(
 def _stretch_signals(own: Ground, fit: Fitted, span: tuple[int, int]) -> tuple[Array, Array]:
     """Signals of the record and of a fit."""
     stretch = own.stretch(*span)[0]
-    return stretch.measured, stretch.measured - fit.linear.rest
+    measured = stretch.measured[stretch.counted]
+    return measured, measured - fit.linear.rest
 
 
 def _errors(own: Ground, signals: tuple[Array, Array]) -> dict[str, float]:
@@ -467,15 +485,15 @@ def _errors(own: Ground, signals: tuple[Array, Array]) -> dict[str, float]:
 
 
 def following(
-    own: Ground, signals: tuple[Array, Array], span: tuple[int, int]
+    own: Ground, signals: tuple[Array, Array], rows: NDArray[np.int64]
 ) -> tuple[Array, Array] | None:
-    """Following errors [m or rad] of signals, where a command of the position is recorded."""
+    """Following errors [m or rad] at samples, where a command of the position is recorded."""
     name = f"{own.loop.component}.{own.rates.outputs[own.position]}"
     command = next((n for n in own.loop.driven if n in own.ratios), None)
     if command is None or name not in own.data.compared:
         return None
     wanted = own.data.driven[:: own.data.every, own.loop.driven.index(command)]
-    wanted = wanted[span[0] : span[1]] / own.ratios[command]
+    wanted = wanted[rows] / own.ratios[command]
     k = own.data.compared.index(name)
     return tuple(wanted - s[:, k] / own.ratios[name] for s in signals)  # type: ignore[return-value]
 
@@ -564,6 +582,8 @@ def _curve(own: Ground, free: FreeParameters, fit: Fitted) -> FrictionCurve:
 def _notes(own: Ground, free: FreeParameters, options: IdentifyOptions) -> Iterator[str]:
     """What is to be known, in words."""
     check = own.check
+    if own.limited.note:
+        yield own.limited.note
     if not free.names:
         yield "This record tells nothing of the axis: it stands, or its speed does not change."
     if check is None:
