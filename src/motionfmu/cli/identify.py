@@ -68,7 +68,7 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.identify import axis_record, identify_file
     from motionfmu.report import result_folder
 
-    scenario = loaded(path, machine)
+    scenario = _subject(path, machine)
     beside = (scenario.document.file if machine is None else path).parent / identify_file.FILE
     place = file or (beside if beside.is_file() else None)
     tables = identify_file.read(place) if place else {}
@@ -87,6 +87,21 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     report(target / "report.html")
     if not any(p.told for p in found.parameters):
         raise typer.Exit(FAILED)
+
+
+def _subject(path: Path, machine: str | None) -> "Scenario":
+    """What was recorded: a scenario, a program on a machine, or a machine alone."""
+    from motionfmu import run
+    from motionfmu.base.errors import InputError
+    from motionfmu.scenarios.table_sources import machine_file
+
+    if machine is None:
+        try:
+            machine_file(path, Path.cwd())
+        except InputError:
+            return loaded(path, machine)
+        return run.machine(path).plan()
+    return loaded(path, machine)
 
 
 def _identify(

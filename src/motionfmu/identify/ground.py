@@ -31,7 +31,7 @@ from motionfmu.run import Scenario
 Array = NDArray[np.float64]
 # Low pass before speeds and accelerations are taken of a record [Hz], and the most of it as a share
 # of the sampling rate: above the motion of machines, below the noise of their encoders.
-_LOW_PASS, _OF_RATE = 60.0, 1.0 / 16.0
+LOW_PASS, OF_RATE = 60.0, 1.0 / 16.0
 # Points of the inverse dynamics, and the periods of the low pass left out at both ends.
 _POINTS, _ENDS = 800, 3.0
 # Speeds below this share of the largest tell of rest, not of friction in motion.
@@ -250,7 +250,7 @@ def ground(
             loop = made({n: v for n, (_, v) in check.gains.items()})
             motion = motion.with_laws(loop)
     memory, _ = motion.along(seen)
-    cutoff = min(_LOW_PASS, _OF_RATE / data.interval)
+    cutoff = min(LOW_PASS, OF_RATE / data.interval)
     smooth = rigid_motion.smooth(
         [raw, _force(loop, data, drive, (memory, seen))], data.interval, cutoff
     )

@@ -1,8 +1,7 @@
 """How far fits of parts of a record lie apart.
 
-What a model leaves out acts differently in each part, and where contact opens and closes, the sum
-of squares has many small hollows, of which each part finds its own. The curvature of the sum and
-the residuals at its end say nothing of that; what parts of the record find for themselves does.
+Where contact opens and closes, the sum of squares has many small hollows, and its curvature in one
+of them says nothing of where the next one lies. What parts of the record find for themselves does.
 """
 
 import itertools
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.ground import Ground
 from motionfmu.identify.shooting import Fitted, Guess
+from motionfmu.identify.spread import spread
 
 Array = NDArray[np.float64]
 # Parts of a record, and the fewest samples of one.
@@ -30,14 +30,18 @@ def part_scatter(own: Ground, free: FreeParameters, fit: Fitted, span: tuple[int
     if parts < 2 or not len(found):
         return np.zeros(len(found))
     cuts = np.linspace(begin, end, parts + 1).astype(int).tolist()
-    away = []
+    n = len(found)
+    whole, products = np.zeros((n, n)), np.zeros((n, n))
     for one in itertools.pairwise(cuts):
         problem, starts = own.shooting(free, one, found)
         if len(problem.stretch.rows) < _FEWEST // 2:
             continue
         there = problem.fit(Guess(found, starts), fit.sizes)
         if there.linear.sound:
-            away.append(there.guess.free - found)
-    if len(away) < 2:
-        return np.full(len(found), np.inf)
-    return np.asarray(np.sqrt(np.mean(np.square(away), axis=0) / len(away)))
+            # a part counts as much as it tells
+            known = spread(there).information
+            moved = known @ (there.guess.free - found)
+            whole, products = whole + known, products + np.outer(moved, moved)
+    size = np.sqrt(np.maximum(np.diag(whole), 1e-300))
+    inverse = np.linalg.pinv(whole / np.outer(size, size), hermitian=True) / np.outer(size, size)
+    return np.asarray(np.sqrt(np.maximum(np.diag(inverse @ products @ inverse), 0.0)))

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.identify.ground import Ground
-from motionfmu.identify.identification import Identified, following
+from motionfmu.identify.identification import Identified
+from motionfmu.identify.span_fit import following
 from motionfmu.run import Scenario
 
 Array = NDArray[np.float64]
