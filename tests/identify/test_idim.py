@@ -33,7 +33,7 @@ def idim(position: np.ndarray, force: np.ndarray, interval: float) -> np.ndarray
     sign = smooth(np.sign(np.gradient(s)), interval)[1:-1]
     rows = np.column_stack([a, sign, np.maximum(v, 0.0), np.minimum(v, 0.0), -np.ones_like(v)])
     inner = slice(edge, len(v) - edge)
-    moving = np.abs(v[inner]) > 0.05 * np.abs(v).max()
+    moving = np.abs(v[inner]) > 0.05 * np.abs(v[inner]).max()
     found, *_ = np.linalg.lstsq(rows[inner][moving], f[1:-1][inner][moving], rcond=None)
     return found
 

@@ -50,9 +50,9 @@ def notes(
         yield "This record tells nothing of the axis: it stands, or its speed does not change."
     for name, (left, noise) in bad_fit(own, chosen).items():
         yield (
-            f"The fit is bad: of {name} it leaves {100 * left:.2g} % of the part kept back, where noise"
-            f" is {100 * noise:.2g} % of it. This may be the record of another machine, or of one"
-            " that does what this plant does not; do not use the values."
+            f"The fit is bad: of {name} it leaves {100 * left:.2g} % of the part kept back, where"
+            f" noise is {100 * noise:.2g} % of it. This may be the record of another machine, or of"
+            " one that does what this plant does not; do not use the values."
         )
     if check is None:
         return

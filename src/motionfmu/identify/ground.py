@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.base.errors import InputError
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.identify import rigid_motion
 from motionfmu.identify.axis_loop import AxisLoop, axis_loop
 from motionfmu.identify.axis_record import AxisRecord
@@ -296,7 +296,9 @@ def _is_input(scenario: Scenario, signal: str) -> bool:
     if ports is None:
         raise InputError(f"{signal}: the scenario has no component {component!r}")
     port = ports.get(variable.partition("[")[0])
-    return port is None or port.causality == "input"
+    if port is None:
+        raise InputError(f"{signal}: {component} has no such signal{suggestion(variable, ports)}")
+    return port.causality == "input"
 
 
 def _drive(loop: AxisLoop) -> int:
