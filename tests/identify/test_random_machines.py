@@ -86,7 +86,7 @@ def test_samples_at_the_drives_limit_are_left_out_and_told() -> None:
     }
     # each stretch has a start of its own, which costs what is known of friction
     assert all(deviations < 4.0 for _, deviations, _ in rows), rows
-    assert dict((n, share) for n, _, share in rows)["machine.table_mass"] < 0.01
+    assert {n: share for n, _, share in rows}["machine.table_mass"] < 0.01
 
 
 def test_a_drive_that_is_always_at_its_limit_is_refused() -> None:

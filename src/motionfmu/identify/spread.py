@@ -68,7 +68,7 @@ def spread(fitted: Fitted) -> Spread:
     plain = np.diag(inverse) * loose
     # a sum of few products may come out too small by chance, never below that of white residuals
     variances = np.maximum(np.diag(cover), plain)
-    root = np.sqrt(np.diag(cover))
+    root = np.sqrt(np.maximum(np.diag(cover), 0.0))
     root = np.where(root > 0.0, root, np.inf)  # of what no residual tells of, nothing is known
     return Spread(
         deviations=np.sqrt(variances) / scale,

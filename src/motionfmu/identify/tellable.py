@@ -33,7 +33,8 @@ def start_values(own: Ground, free: FreeParameters) -> tuple[Array, Array]:
     for _ in range(_NEWTON):
         found = own.follow(free, values, own.points)
         rest = own.force[own.points] - found.drive
-        scale = np.maximum(np.linalg.norm(found.slopes, axis=0), 1e-300)
+        with np.errstate(over="ignore"):  # values that run away are seen below
+            scale = np.maximum(np.linalg.norm(found.slopes, axis=0), 1e-300)
         u, s, v = np.linalg.svd(found.slopes / scale, full_matrices=False)
         inverse = np.where(s > _CLEAR * s[0], 1.0 / np.maximum(s, 1e-300), 0.0)
         step = v.T @ (inverse * (u.T @ rest)) / scale
