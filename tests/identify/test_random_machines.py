@@ -23,7 +23,7 @@ def judged(truth: AxisTruth, found: Identified) -> list[tuple[str, float, float]
     rows = []
     for p in found.parameters:
         if p.told:
-            true = truth.values[p.name]
+            true = truth.values.get(p.name, 0.0)  # a law that the machine has not
             away = abs(p.value - true)
             rows.append((p.name, away / p.deviation, away / abs(true) if true else 0.0))
     return rows

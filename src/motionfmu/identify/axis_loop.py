@@ -75,7 +75,7 @@ class AxisLoop:
         return self.scenario.document.body.component[self.component]
 
 
-# CCN 21: most of it sorts ports and wires into what is driven, fed and shown, by comprehensions.
+# CCN 22: most of it sorts ports and wires into what is driven, fed and shown, by comprehensions.
 def axis_loop(
     scenario: Scenario,
     axis: int,

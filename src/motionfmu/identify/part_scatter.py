@@ -41,7 +41,8 @@ def part_scatter(own: Ground, free: FreeParameters, fit: Fitted, span: tuple[int
             # a part counts as much as it tells
             known = spread(there).information
             moved = known @ (there.guess.free - found)
-            whole, products = whole + known, products + np.outer(moved, moved)
+            if np.isfinite(known).all() and np.isfinite(moved).all():
+                whole, products = whole + known, products + np.outer(moved, moved)
     size = np.sqrt(np.maximum(np.diag(whole), 1e-300))
     inverse = np.linalg.pinv(whole / np.outer(size, size), hermitian=True) / np.outer(size, size)
     return np.asarray(np.sqrt(np.maximum(np.diag(inverse @ products @ inverse), 0.0)))

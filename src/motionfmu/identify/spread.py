@@ -35,7 +35,7 @@ class Spread:
 
     def at_least(self, deviations: Array) -> "Spread":
         """The same with deviations that are no smaller than these."""
-        return replace(self, deviations=np.maximum(self.deviations, deviations))
+        return replace(self, deviations=np.fmax(self.deviations, deviations))
 
 
 def spread(fitted: Fitted) -> Spread:

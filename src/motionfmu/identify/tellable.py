@@ -92,6 +92,7 @@ def tellable(own: Ground, names: Sequence[str]) -> tuple[list[str], dict[str, st
 
 
 def reason(share: float) -> str:
+    """Why a quantity of this deviation, as a share of its size, is not told."""
     if share > _BLANK:
         return "the record says nothing of it, or nothing that another quantity would not"
     return f"its standard deviation is {100.0 * share:.0f} % of its size"
