@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 _TIMES, _MOST = 4.0, 0.1
 # Eigenvalues below this share of the largest are none.
 _NONE = 1e-13
+# Information below this is none.
+_SILENT = 1e-200
 # Variance, in units of a scaled quantity, of a direction in which the record says nothing.
 _NOTHING = 1e20
 
@@ -55,7 +57,8 @@ def spread(fitted: Fitted) -> Spread:
     back = (known @ (matrix[:first, first:] / inner[:, None])) / inner[:, None]
     news = (rows[:, first:] - rows[:, :first] @ back).reshape(samples, outputs, free)
     reduced = matrix[first:, first:] - matrix[first:, :first] @ back
-    scale = np.sqrt(np.maximum(np.diag(reduced), 1e-300))
+    told = np.diag(reduced)
+    scale = np.sqrt(np.where(told > _SILENT, told, 1.0))
     s, v = np.linalg.eigh(reduced / np.outer(scale, scale))
     good = s > _NONE * max(s[-1], 1e-300)
     inverse = v * np.where(good, 1.0 / np.where(good, s, 1.0), _NOTHING) @ v.T
