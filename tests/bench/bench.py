@@ -18,6 +18,7 @@ from typing import Any
 import commands
 import counting
 import figures
+import identifying
 import kinematics
 import long_run
 import network
@@ -222,6 +223,7 @@ def main(kept: figures.Kept) -> None:
     robot = Timed(ROBOT, stop=20.0)
     asked, session = commands.all_commands(), commands.Session()
     library = states.States("mcc")
+    records = identifying.all_records()
     rounds(
         [
             by_hand,
@@ -236,6 +238,7 @@ def main(kept: figures.Kept) -> None:
             robot,
             *asked,
             session,
+            *records,
             library,
             *curves,
             *segments.ALL,
@@ -315,6 +318,7 @@ def main(kept: figures.Kept) -> None:
             for c, count in counting.of_commands(asked)
         ),
         Figure("tune scenarios/circle in a session, s", session.seconds, most=1.0),
+        *(Figure(r.name, r.seconds, most=r.most) for r in records),
         Figure("state of mcc at rest, kB", library.size / 1e3, most=40.0, counted=True),
         Figure("state of mcc at rest, us to save", 1e6 * library.save, most=5.0),
         Figure("state of mcc at rest, us to restore", 1e6 * library.restore, most=5.0),

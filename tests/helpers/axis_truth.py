@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 STEP, PERIOD = 1e-4, 1e-3  # [s] communication step; period of the drive and of the record
 OFF = [False] * 5
 JITTER = 2.0  # noise of a position [counts]
+_ALONE = 400.0  # [rad/s] of the velocity loop with a motor that is alone
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,8 @@ def drawn(
     inertia = float(rng.uniform(0.2, 2.0)) * mass * share**2
     whole = inertia + mass * share**2
     band = float(rng.uniform(120.0, 300.0))  # [rad/s] of the velocity loop
+    if gap:  # in its gap the motor is alone: a loop that is too fast for that hunts for ever
+        band = min(band, _ALONE * inertia / whole)
     speed = 25.0 * lead
     acceleration = float(rng.uniform(1.0, 4.0)) * speed / 0.1
     weight = (mass + inertia / share**2) * acceleration

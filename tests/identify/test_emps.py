@@ -4,77 +4,24 @@ A. Janot, M. Gautier, M. Brunot, "Data Set and Reference Models of EMPS", Worksh
 System Identification Benchmarks, Eindhoven 2019.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from conftest import ROOT
+from emps import DRIVE, INERTIA, RECORD, SHARE, columns, emps
 
 import motionfmu
-from motionfmu.identify import ColumnUse, IdentifyOptions, identify, run_of_record
+from motionfmu.identify import IdentifyOptions, identify, run_of_record
 from motionfmu.identify.axis_record import of_record
 
-RECORD = ROOT / "examples/digital_twin/axis/record.csv"
 pytestmark = pytest.mark.more
-LEAD, INERTIA = 0.01, 1e-5  # [m], [kg.m2]: any, for the record has forces and lengths only
-SHARE = LEAD / (2.0 * np.pi)
-KP, KV, DRIVE = 160.18, 243.45, 35.15065  # [1/s], [V.s/m], [N/V]
 MASS, COULOMB, VISCOUS = 95.1089, 20.3935, 203.5034  # [kg], [N], [N.s/m] published
-ONE = [True] + [False] * 5
+REPETITIONS, BLOCK = 10, 0.5  # of the bootstrap; [s]
 
 
-@pytest.fixture(scope="module")
-def scenario():
-    return motionfmu.scenario(
-        {
-            "stop": 1.0,
-            "step": 1e-4,
-            "component": {"drives": "servo_drives", "machine": "ball_screw_axes"},
-            "connect": {
-                "drives.phase": "machine.motor_phase",
-                "machine.torque_command": "drives.torque",
-            },
-            "leave": [f"drives.{n}" for n in ("enable", "alarm_reset", "dac", "pulse_count")]
-            + ["machine.force"],
-            "set": {
-                "drives.mode": 1,
-                "drives.period": 1e-3,
-                "drives.active": ONE,
-                "machine.active": ONE,
-                "drives.pulses_per_turn": 10_000_000,
-                "drives.encoder_counts": 200_000,  # 5e-8 m, the encoder's resolution
-                "drives.position_gain": KP,
-                "drives.velocity_gain": KV * DRIVE * SHARE**2,
-                "drives.velocity_time": 0.0,
-                "drives.torque_limit": 10.0 * DRIVE * SHARE,
-                "machine.lead": LEAD,
-                "machine.current_time": 0.0,
-                "machine.motor_inertia": INERTIA,
-                "machine.motor_coulomb": 0.0,
-                "machine.motor_static": 0.0,
-                "machine.motor_viscous": 0.0,
-                # far from what is to be found
-                "machine.table_mass": 50.0,
-                "machine.table_coulomb": 5.0,
-                "machine.table_static": 5.0,
-                "machine.table_viscous": 50.0,
-            },
-            "record": {"signals": ["drives.torque"]},
-        },
-        name="emps",
-    )
-
-
-@pytest.fixture(scope="module")
-def columns():
-    return {
-        "reference": ColumnUse("drives.pulse_count"),
-        "position": ColumnUse("machine.motor_phase"),
-        "voltage": ColumnUse("drives.torque", DRIVE * SHARE),
-    }
-
-
-def test_published_values_are_found_where_the_published_law_is_asked_for(scenario, columns):
-    asked = IdentifyOptions(columns, laws=["offset"])
-    found = identify(scenario, of_record(motionfmu.record(RECORD)), asked)
+def test_published_values_are_found_where_the_published_law_is_asked_for():
+    asked = IdentifyOptions(columns(), laws=["offset"])
+    found = identify(emps(), of_record(motionfmu.record(RECORD)), asked)
     mass = found.value("table_mass").value + INERTIA / SHARE**2
     assert mass == pytest.approx(MASS, rel=0.01)
     assert found.value("table_coulomb").value == pytest.approx(COULOMB, rel=0.04)
@@ -82,8 +29,8 @@ def test_published_values_are_found_where_the_published_law_is_asked_for(scenari
     assert found.value("force").value == pytest.approx(3.1648, rel=0.04)
 
 
-def test_fmus_with_the_law_that_validation_chooses_repeat_the_record(scenario, columns):
-    found = identify(scenario, of_record(motionfmu.record(RECORD)), IdentifyOptions(columns))
+def test_fmus_with_the_law_that_validation_chooses_repeat_the_record():
+    found = identify(emps(), of_record(motionfmu.record(RECORD)), IdentifyOptions(columns()))
     # slopes of 169 and 239 N s/m forwards and backwards, by least squares on the record
     assert "direction" in found.laws
     assert found.value("table_viscous_asymmetry").value == pytest.approx(-0.17, abs=0.03)
@@ -95,3 +42,38 @@ def test_fmus_with_the_law_that_validation_chooses_repeat_the_record(scenario, c
     assert run.settled == 0.2
     assert run.differences["following error"] < 0.0025
     assert run.differences["drives.torque"] < 0.038
+
+
+def test_deviations_cover_what_block_bootstrap_repetitions_scatter():
+    """Ten records of the fit and blocks of its residuals, fitted anew (Politis and Romano 1992)."""
+    record = of_record(motionfmu.record(RECORD))
+    asked = IdentifyOptions(columns(), laws=["direction", "offset"])
+    found = identify(emps(), record, asked)
+    rest = found.measured - found.simulated
+    rows = np.rint(found.time / record.interval).astype(int)
+    rng = np.random.default_rng(6240)
+    length = round(BLOCK / record.interval)
+    gains = {n: v for n, v in found.settings.items() if n.startswith("drives.")}
+    every = []
+    for _ in range(REPETITIONS):
+        starts = rng.integers(0, len(rest) - length, len(rest) // length + 1)
+        drawn = np.concatenate([rest[k : k + length] for k in starts])[: len(rest)]
+        made = dict(record.columns)
+        for k, name in enumerate(found.signals):
+            column = found.recorded.columns[name]
+            late = found.ground.first if name in found.ground.loop.shown else 0
+            values = made[column].copy()
+            new = found.simulated[:, k] + drawn[:, k]
+            values[rows - late] = new / found.recorded.scales[name]
+            made[column] = values
+        again = identify(
+            emps(),
+            replace(record, columns=made),
+            replace(asked, controller=False),
+            gains,
+        )
+        every.append([again.value(n).value for n in found.free])
+    scatter = np.std(every, axis=0, ddof=1)
+    deviations = np.array([found.value(n).deviation for n in found.free])
+    assert (scatter > 0.0).all()
+    assert (scatter <= deviations).all(), (found.free, scatter, deviations)

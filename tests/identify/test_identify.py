@@ -46,18 +46,6 @@ def test_known_machine_is_found(seed):
     }
 
 
-@pytest.mark.long
-def test_fifty_machines_are_found():
-    told, wrong = 0, []
-    for seed in range(50):
-        truth, record = record_of(seed, 10.0)
-        good, bad = hold(truth, identify(truth.scenario(), record, IdentifyOptions(COLUMNS)))
-        told += len(good)
-        wrong += [(seed, *row) for row in bad]
-    assert told > 100
-    assert len(wrong) <= 0.02 * told, wrong
-
-
 @pytest.mark.parametrize("speed", [0.0, 0.05])
 def test_a_record_at_rest_or_at_one_speed_tells_nothing(speed):
     truth, rng, _ = drawn(1)

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from motionfmu.run import Scenario
 
 
-# CCN 19: each option in the order in which it counts; responses and arms go elsewhere.
 @app.command()
 def identify(  # noqa: PLR0913  (each is an option of the command)
     path: ScenarioPath,
@@ -84,42 +83,73 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     With --frf inertias, stiffness and damping of two masses from a closed loop's response.
     """
     needed("tune")
-    from motionfmu import records
     from motionfmu.cli.frf import ResponseAsked, identify_frf
     from motionfmu.cli.identify_arm import identify_arm_of
-    from motionfmu.identify import axis_record, identify_file
+    from motionfmu.identify import identify_file
     from motionfmu.identify.arm_dynamics import arm_plant
     from motionfmu.report import result_folder
 
-    scenario = loaded(path, machine)
+    scenario = _subject(path, machine)
     beside = (scenario.document.file if machine is None else path).parent / identify_file.FILE
     place = file or (beside if beside.is_file() else None)
+    given = {"axis": axis, "free": free, "fix": fix, "laws": law}
+    tables = _tables(place, column, given | ({"controller": False} if as_given else {}))
+    where = str(place or "--column")
+    target = result_folder.usable(folder or results(scenario.name, "identify"))
+    if frf:
+        options, asked = identify_file.options(tables, where), ResponseAsked(record, period, band)
+        return identify_frf(scenario, asked, options, settings(set_), target)
+    if len(record) > 1 or period is not None or band is not None:
+        raise InputError("several --record, --period and --band go with --frf")
+    if arm_plant.component_of(scenario) is not None:
+        return identify_arm_of(scenario, record[0], (tables, where), settings(set_), target)
+    options = identify_file.options(tables, where)
+    return _identify_axis(scenario, record[0], (options, settings(set_)), target)
+
+
+def _tables(place: Path | None, column: list[str], given: dict[str, Any]) -> dict[str, Any]:
+    """The tables of a file, with what the command line says instead."""
+    from motionfmu.identify import identify_file
+
     tables = identify_file.read(place) if place else {}
     if column:
         tables["columns"] = {**tables.get("columns", {}), **dict(map(identify_file.column, column))}
-    tables |= {"axis": axis} if axis is not None else {}
-    tables |= {k: v for k, v in (("free", free), ("fix", fix), ("laws", law)) if v}
-    tables |= {"controller": False} if as_given else {}
-    if arm_plant.component_of(scenario) is not None:
-        target = result_folder.usable(folder or results(scenario.name, "identify"))
-        asked = tables, str(place or "--column")
-        return identify_arm_of(scenario, record[0], asked, settings(set_), target)
-    options = identify_file.options(tables, str(place or "--column"))
-    target = result_folder.usable(folder or results(scenario.name, "identify"))
-    if frf:
-        asked = ResponseAsked(record, period, band)
-        identify_frf(scenario, asked, options, settings(set_), target)
-        return
-    if len(record) > 1 or period is not None or band is not None:
-        raise InputError("several --record, --period and --band go with --frf")
-    measured = axis_record.of_record(records.record(record[0]))
-    found, run = _identify(scenario, measured, options, settings(set_))
+    return tables | {k: v for k, v in given.items() if v not in (None, [])}
+
+
+def _identify_axis(
+    scenario: "Scenario",
+    record: Path,
+    asked: "tuple[IdentifyOptions, dict[str, Any]]",
+    target: Path,
+) -> None:
+    """Identify an axis, write, tell; status 1 if the record tells nothing."""
+    from motionfmu import records
+    from motionfmu.identify import axis_record
+
+    measured = axis_record.of_record(records.record(record))
+    found, run = _identify(scenario, measured, *asked)
     _write(target, found, run)
     _tell(found, run)
     print(f"values: {target / 'found.toml'}")
     report(target / "report.html")
     if not any(p.told for p in found.parameters):
         raise typer.Exit(FAILED)
+
+
+def _subject(path: Path, machine: str | None) -> "Scenario":
+    """What was recorded: a scenario, a program on a machine, or a machine alone."""
+    from motionfmu import run
+    from motionfmu.base.errors import InputError
+    from motionfmu.scenarios.table_sources import machine_file
+
+    if machine is None:
+        try:
+            machine_file(path, Path.cwd())
+        except InputError:
+            return loaded(path, machine)
+        return run.machine(path).plan()
+    return loaded(path, machine)
 
 
 def _identify(

@@ -63,6 +63,7 @@ class AxisLoop:
     shown: tuple[str, ...]  # signals of laws that are compared with the record
     laws: HeldLaws
     wired: tuple[int, ...]  # inputs of the plant that wires or the record set
+    sources: Mapping[int, str]  # what sets each of them, component.variable
     p: Array  # parameters of the plant as the scenario has them
     u: Array  # its inputs that stay
     values: Mapping[str, AxisValues]  # of the axis, by component
@@ -74,7 +75,7 @@ class AxisLoop:
         return self.scenario.document.body.component[self.component]
 
 
-# CCN 21: most of it sorts ports and wires into what is driven, fed and shown, by comprehensions.
+# CCN 22: most of it sorts ports and wires into what is driven, fed and shown, by comprehensions.
 def axis_loop(
     scenario: Scenario,
     axis: int,
@@ -114,6 +115,7 @@ def axis_loop(
         shown=tuple(shown),
         laws=laws,
         wired=tuple(ends),
+        sources={k: ".".join(port) for k, port in ends.items()},
         p=np.array([float(own[d.name]) for d in ode.parameters]),
         u=np.array([0.0 if k in ends else float(own[n]) for k, n in enumerate(inputs)]),
         values=made.values,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.base.errors import InputError
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.identify import rigid_motion
 from motionfmu.identify.axis_loop import AxisLoop, axis_loop
 from motionfmu.identify.axis_record import AxisRecord
@@ -20,6 +20,7 @@ from motionfmu.identify.free_parameters import (
     free_parameters,
     movable,
 )
+from motionfmu.identify.limited_samples import LimitedSamples, limited_samples
 from motionfmu.identify.loop_motion import LoopMotion, Pieces, PieceStart
 from motionfmu.identify.plant_rates import PlantRates
 from motionfmu.identify.recorded_loop import ColumnUse, RecordedLoop, ratio_of_inputs, recorded
@@ -30,7 +31,7 @@ from motionfmu.run import Scenario
 Array = NDArray[np.float64]
 # Low pass before speeds and accelerations are taken of a record [Hz], and the most of it as a share
 # of the sampling rate: above the motion of machines, below the noise of their encoders.
-_LOW_PASS, _OF_RATE = 60.0, 1.0 / 16.0
+LOW_PASS, OF_RATE = 60.0, 1.0 / 16.0
 # Points of the inverse dynamics, and the periods of the low pass left out at both ends.
 _POINTS, _ENDS = 800, 3.0
 # Speeds below this share of the largest tell of rest, not of friction in motion.
@@ -39,8 +40,13 @@ _MOVING = 0.02
 _PIECE, _FEWEST = 0.1, 20
 # Points at which the fastest rate is looked for.
 _LOOKS = 40
+# Time before a drive first reaches its limit by which its law can be judged [s].
+_JUDGED = 0.2
 # Share of the largest speed at which the directions of a motion are taken.
 _PART = 0.3
+# A plant with a gap has forgotten on which side it began when it has moved at this share of its
+# largest speed, for so long [s].
+_AWAY, _TOUCHED = 0.1, 0.2
 # An axis that moves by no more than so many grains, or deviations of the noise, stands still.
 _STILL = 30.0
 # A residual that rounding to a grain leaves.
@@ -102,6 +108,7 @@ class Ground:
     points: NDArray[np.int64]  # samples at which inverse dynamics are taken
     memory: Array  # of the laws at all points
     late: int  # communication steps by which laws show later what the record has
+    limited: LimitedSamples  # samples that are left out
     ratios: Mapping[str, float] = field(default_factory=dict)  # of signals per m or rad
     length: str = "m"  # unit of what the ratios are per
     gains_taken: bool = False  # whether the loop has gains of the record
@@ -127,22 +134,45 @@ class Ground:
         """Pieces of samples [begin, end), and the sample at which each begins."""
         data = self.data
         size = max(_FEWEST, round(_PIECE / data.interval))
-        starts = np.arange(begin, max(begin + 1, end - size // 2), size, dtype=np.int64)
-        lengths = np.diff(np.append(starts, end))
+        runs = self.limited.runs(begin, end)
+        each = [np.arange(a, max(a + 1, b - size // 2), size, dtype=np.int64) for a, b in runs]
+        nothing = [np.zeros(0, dtype=np.int64)]
+        starts = np.concatenate([*each, *nothing])
+        lengths = np.concatenate(
+            [*(np.diff(np.append(s, run[1])) for s, run in zip(each, runs, strict=True)), *nothing]
+        )
+        rows = np.concatenate([*(np.arange(a, b) for a, b in runs), *nothing])
+        joined = np.concatenate([*(np.arange(len(s)) > 0 for s in each), np.zeros(0, dtype=bool)])
         pieces = Pieces(
             starts * data.every, lengths * data.every, data.every, self.late % data.every
         )
-        measured = np.empty((end - begin, len(data.compared)))
+        measured = np.empty((len(rows), len(data.compared)))
         floor = np.empty(len(data.compared))
         outputs = [f"{self.loop.component}.{n}" for n in self.rates.outputs] + list(self.loop.shown)
         for k, name in enumerate(data.compared):
             back = self.first if name in self.loop.shown else 0
-            measured[:, k] = data.measured[begin - back : end - back, k]
+            measured[:, k] = data.measured[rows - back, k]
             grain = self.loop.grain.get(name, 0.0) * _ROUNDED
             floor[k] = max(grain, _EXACT * float(np.ptp(data.measured[:, k])))
         columns = np.array([outputs.index(n) for n in data.compared], dtype=np.int64)
-        joined = np.arange(len(starts)) > 0
-        return Stretch(pieces, joined, data.driven, measured, columns, floor), starts
+        settled = [np.arange(a, b) >= self._settled(a, b) for a, b in runs]
+        counted = np.concatenate([*settled, np.zeros(0, dtype=bool)])
+        known = joined, data.driven, measured, columns, floor, rows, counted
+        return Stretch(pieces, *known), starts
+
+    def _settled(self, begin: int, end: int) -> int:
+        """The sample from which on a motion does not know where in its gap the plant began."""
+        if not self.gap:
+            return begin
+        speed = np.abs(self.moving[1])
+        fast = np.flatnonzero(speed[begin:end] > _AWAY * speed.max())
+        first = begin + int(fast[0]) if len(fast) else begin
+        return min(first + round(_TOUCHED / self.data.interval), (begin + end) // 2)
+
+    @property
+    def gap(self) -> bool:
+        """Whether parts of the plant move across a gap."""
+        return bool(self.way.gap.any())
 
     def fixed(self, p: Array, u: Array) -> FreeParameters:
         """Nothing free, with these parameters and inputs."""
@@ -169,7 +199,7 @@ class Ground:
         w = self.memory[starts * self.data.every]
         ranges = np.concatenate([np.ptp(x, axis=1), np.ptp(self.memory, axis=0)])
         bounds = free.low, free.high
-        problem = Shooting(self.motion, stretch, free.values, bounds, ranges)
+        problem = Shooting(self.motion, stretch, free.values, bounds, ranges, self.gap)
         return problem, PieceStart(x[:, : len(starts)].T.copy(), w.copy())
 
 
@@ -204,10 +234,11 @@ def ground(
     fed = [np.repeat(raw * ratios[f"{loop.component}.{n}"] / per, data.every) for n in loop.fed]
     points = len(data.driven)
     seen = np.column_stack([data.driven, *(f[:points] for f in fed)])
+    limited = limited_samples(loop, data, _force(loop, data, drive, (motion.along(seen)[0], seen)))
     check = None
     signal = next((s for s in data.compared if s in loop.shown), None)
     if signal is not None:
-        column = data.measured[:, data.compared.index(signal)]
+        column = data.measured[: _unlimited(limited, data), data.compared.index(signal)]
         values = dict(loop.values.items())
         check = controller_check(
             (loop, signal, column, data.every),
@@ -219,7 +250,7 @@ def ground(
             loop = made({n: v for n, (_, v) in check.gains.items()})
             motion = motion.with_laws(loop)
     memory, _ = motion.along(seen)
-    cutoff = min(_LOW_PASS, _OF_RATE / data.interval)
+    cutoff = min(LOW_PASS, OF_RATE / data.interval)
     smooth = rigid_motion.smooth(
         [raw, _force(loop, data, drive, (memory, seen))], data.interval, cutoff
     )
@@ -227,6 +258,7 @@ def ground(
     grain = loop.grain.get(f"{loop.component}.{every[position]}", 0.0)
     ends = min(int(_ENDS / cutoff / data.interval), data.samples // 4)
     at = np.arange(ends, data.samples - ends, max(1, data.samples // _POINTS))
+    at = at[~limited.out[at]]
     at = at[np.abs(speed[at]) > _MOVING * np.abs(speed[at]).max(initial=0.0)]
     way = _way(loop, rates, (drive, position), float(np.abs(speed).max()))
     return Ground(
@@ -245,10 +277,17 @@ def ground(
         points=at,
         memory=memory,
         late=check.lag if check else 0,
+        limited=limited,
         ratios=ratios,
         gains_taken=bool(check and check.taken and options.controller),
         still=bool(np.ptp(smooth[0]) <= _STILL * max(grain, float(np.std(raw - smooth[0])))),
     )
+
+
+def _unlimited(limited: LimitedSamples, data: RecordedLoop) -> int:
+    """Samples from the beginning on by which a law is judged: until it first reaches its limit."""
+    enough = limited.first * data.interval > _JUDGED
+    return limited.first if enough else data.samples
 
 
 def _is_input(scenario: Scenario, signal: str) -> bool:
@@ -257,7 +296,9 @@ def _is_input(scenario: Scenario, signal: str) -> bool:
     if ports is None:
         raise InputError(f"{signal}: the scenario has no component {component!r}")
     port = ports.get(variable.partition("[")[0])
-    return port is None or port.causality == "input"
+    if port is None:
+        raise InputError(f"{signal}: {component} has no such signal{suggestion(variable, ports)}")
+    return port.causality == "input"
 
 
 def _drive(loop: AxisLoop) -> int:

@@ -68,6 +68,7 @@ class LoopMotion:
 
     def __init__(self, loop: AxisLoop, rates: PlantRates, compiled: bool = True) -> None:
         self.loop, self.rates, self.sub_steps = loop, rates, 1
+        self.fine = False  # whether steps are short enough for contact that opens
         shown = list(rates.outputs)
         self._fed = np.array([shown.index(n) for n in loop.fed], dtype=np.int64)
         cc = compiler() if compiled else None
@@ -90,8 +91,9 @@ class LoopMotion:
         pieces: Pieces,
         driven: Array,
         values: tuple[Array, Array, Array, Array],
+        bare: bool = False,
     ) -> Moved:
-        """Move all pieces.
+        """Move all pieces; `bare`: without derivatives.
 
         `driven` has a row of driven inputs for each communication point; `values` are p, u that
         stay, and the derivatives of moved parameters and of inputs to the free quantities.
@@ -100,11 +102,38 @@ class LoopMotion:
         fastest = self.rates.fastest(start.x.T, u, p)
         if not fastest < _FASTEST:
             return self._nothing(start, pieces, values)
-        needed = self.rates.steps(self.loop.step, fastest)
+        needed = self.rates.steps(self.loop.step, fastest, self.fine)
         # of few numbers, so that a search mostly sees one function
         self.sub_steps = next(k for k in _COUNTS if k >= needed)
         every = self._compiled if self._library is not None else self._mapped
-        return every(start, pieces, driven, values)
+        return every(start, pieces, driven, values, bare)
+
+    def chained(
+        self,
+        start: PieceStart,
+        pieces: Pieces,
+        driven: Array,
+        values: tuple[Array, Array],
+        joined: NDArray[np.bool_],
+    ) -> tuple[PieceStart, Array]:
+        """Starts of pieces where those that are joined begin at the end of the one before, and y.
+
+        The others begin at `start`; `values` are p, u. Steps are as short as in the last `run`.
+        """
+        x, w = start.x.copy(), start.w.copy()
+        p, u = values
+        still = p, u, np.zeros((len(self.rates.moved), 0)), np.zeros((len(u), 0))
+        every = self._compiled if self._library is not None else self._mapped
+        shown, end = [], PieceStart(x[:1], w[:1])
+        for k in range(len(x)):
+            here = slice(k, k + 1)
+            if joined[k]:
+                x[k], w[k] = end.x[0], end.w[0]
+            one = Pieces(pieces.begin[here], pieces.length[here], pieces.every, pieces.late)
+            moved = every(PieceStart(x[here], w[here]), one, driven, still, bare=True)
+            shown.append(moved.y)
+            end = moved.end
+        return PieceStart(x, w), np.concatenate(shown)
 
     def along(self, seen: Array) -> tuple[Array, Array]:
         """The laws alone along what they see at all points, (points, n_v), from where they rest.
@@ -150,16 +179,21 @@ class LoopMotion:
         pieces: Pieces,
         driven: Array,
         values: tuple[Array, Array, Array, Array],
+        bare: bool = False,
     ) -> Moved:
+        """Move all pieces in C; `bare`: without derivatives."""
         assert self._library is not None
         axis = _LoopAxis(self, values)
+        if bare:
+            axis.directions = axis.first = 0
         n, count = axis.directions, len(pieces.begin)
         x, w = start.x.copy(), start.w.copy()
         n_x, n_w = x.shape[1], w.shape[1]
         s_x = np.zeros((count, n_x, n))
         s_w = np.zeros((count, n_w, n))
-        s_x[:, :, :n_x] = np.eye(n_x)
-        s_w[:, :, n_x : n_x + n_w] = np.eye(n_w)
+        if not bare:
+            s_x[:, :, :n_x] = np.eye(n_x)
+            s_w[:, :, n_x : n_x + n_w] = np.eye(n_w)
         rows, shown = int(pieces.samples.sum()), axis.n_y + axis.n_shown
         y, s_y = np.empty((rows, shown)), np.empty((rows, shown, n))
         own = max(f.sz_w() for f in (self.rates.rates, self.rates.shows)) + 1
@@ -185,17 +219,20 @@ class LoopMotion:
         pieces: Pieces,
         driven: Array,
         values: tuple[Array, Array, Array, Array],
+        bare: bool = False,
     ) -> Moved:
+        """Move all pieces by CasADi's machine, all at once; `bare`: without derivatives."""
         p, u0, dp, du = values
         loop, laws = self.loop, self.loop.laws
         x, w = start.x.T.copy(), start.w.T.copy()
         n_x, count, n_w = *x.shape, len(w)
-        first = n_x + n_w
+        first = 0 if bare else n_x + n_w
         n = first + dp.shape[1]
         s_x = np.zeros((count, n_x, n))
         s_w = np.zeros((count, n_w, n))
-        s_x[:, :, :n_x] = np.eye(n_x)
-        s_w[:, :, n_x:first] = np.eye(n_w)
+        if not bare:
+            s_x[:, :, :n_x] = np.eye(n_x)
+            s_w[:, :, n_x:first] = np.eye(n_w)
         free = np.zeros((dp.shape[0], n))
         free[:, first:] = dp
         ends, slopes = np.zeros((count, n_x, n)), np.zeros((count, n_w, n))
@@ -263,7 +300,9 @@ def _library(rates: PlantRates, cc: Compiler) -> ctypes.CDLL:
     """The compiled loop of a plant, from the cache if it is there."""
     generator = ca.CodeGenerator("plant_text")
     for f in (rates.rates, rates.shows):
-        generator.add(ca.Function(f"plant_{f.name()}", *_symbols(f)))
+        arguments, made = _symbols(f)
+        generator.add(ca.Function(f"plant_{f.name()}", arguments, made))
+        generator.add(ca.Function(f"plain_{f.name()}", arguments, made[:1]))
     text, loop = generator.dump(), _LOOP.read_text(encoding="utf-8")
 
     def make(folder: Path) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.identify.ground import Ground
-from motionfmu.identify.identification import Identified, following
+from motionfmu.identify.identification import Identified
+from motionfmu.identify.span_fit import following
 from motionfmu.run import Scenario
 
 Array = NDArray[np.float64]
@@ -82,7 +83,7 @@ def run_of_record(
         values_ = values_ if values_.ndim == 1 else values_[:, own.loop.axis - 1]
         columns.append((values_[np.minimum(rows + late, len(values_) - 1)], data.measured[:-1, k]))
     run, measured = (np.column_stack(c) for c in zip(*columns, strict=True))
-    error = following(own, (measured, run), (0, data.samples - 1))
+    error = following(own, (measured, run), np.arange(data.samples - 1))
     time = data.time[:-1]
     settled = min(SETTLED, 0.5 * float(time[-1]))
     there = time >= settled

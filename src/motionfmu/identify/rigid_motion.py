@@ -157,7 +157,9 @@ def _newton(
 
 def _solved(matrices: Array, right: Array) -> Array:
     """Solutions of many systems; of a system that has no single one a long one, not an error."""
-    size = np.abs(matrices).max(axis=2)[:, :, None]
+    rows = np.abs(matrices).max(axis=2)[:, :, None]
+    # a row may be 0, as that of a part without friction in a gap
+    size = np.maximum(rows, _NONE * rows.max(axis=1, keepdims=True))
     return np.linalg.solve(matrices + _HAIR * size * np.eye(matrices.shape[1]), right)
 
 

@@ -31,6 +31,9 @@ _SIZES, _ROUNDS = 0.05, 4
 _TINY = 1e-12
 # A slope above this is that of a motion that runs away.
 _AWAY = 1e100
+# Standard deviations at which better hollows are looked for, and how often at most.
+_FAR = tuple(sign * size for size in (6.0, 30.0, 150.0) for sign in (1.0, -1.0))
+_SHAKES = 3
 # Eigenvalues of the scaled information matrix below this share of the largest are none.
 _NONE = 1e-13
 
@@ -45,6 +48,13 @@ class Stretch:
     measured: Array  # (samples of the pieces, n_compared)
     columns: NDArray[np.int64]  # of the outputs: which is compared with each measured one
     floor: Array  # (n_compared,) least size of a residual: what rounding leaves
+    samples: NDArray[np.int64]  # which of the record the pieces have
+    counted: NDArray[np.bool_]  # (samples of the pieces,) those whose residuals count
+
+    @property
+    def rows(self) -> NDArray[np.int64]:
+        """Samples of the record whose residuals count."""
+        return self.samples[self.counted]
 
 
 @dataclass(frozen=True)
@@ -60,12 +70,12 @@ class Linear:
     """The problem about a guess, with the gaps eliminated."""
 
     moved: Moved
-    rest: Array  # (samples, n_compared) measured less simulated
+    rest: Array  # (samples that count, n_compared) measured less simulated
     gaps: Array  # (pieces, n_z) end of the piece before less the start; 0 where nothing is joined
     ahead: Array  # (pieces, n_z) how far the starts move because of the gaps
     follow: Array  # (pieces, n_z, n_all) how they move with the unknowns
-    slopes: Array  # (samples, n_compared, n_all) of the outputs to the unknowns
-    shifted: Array  # (samples, n_compared) rest less what the gaps make of it
+    slopes: Array  # (samples that count, n_compared, n_all) of the outputs to the unknowns
+    shifted: Array  # (samples that count, n_compared) rest less what the gaps make of it
 
     @property
     def sound(self) -> bool:
@@ -103,6 +113,7 @@ class Shooting:
     values: Values
     bounds: tuple[Array, Array]
     ranges: Array  # (n_z,) how far each state goes in the record
+    gap: bool = False  # whether parts of the plant move across a gap
 
     def linear(self, guess: Guess) -> Linear:
         """Move the pieces of a guess and eliminate the gaps."""
@@ -137,11 +148,21 @@ class Shooting:
             slopes[rows] = local[rows, :, :width] @ follow[k]
             shifted[rows] -= local[rows, :, :width] @ ahead[k]
         slopes[:, :, total - free :] += local[:, :, width:]
-        return Linear(moved, rest, gaps, ahead, follow, slopes, shifted)
+        at = stretch.counted
+        return Linear(moved, rest[at], gaps, ahead, follow, slopes[at], shifted[at])
 
-    def fit(self, guess: Guess, sizes: Array | None = None) -> Fitted:
-        """Fit, and weigh each measured signal by the residual that is left of it."""
+    def fit(self, guess: Guess, sizes: Array | None = None, hollow: bool = False) -> Fitted:
+        """Fit, and weigh each measured signal by the residual that is left of it.
+
+        `hollow`: look for better ones beyond the hollow in the sum of squares where it ends, of
+        which contact makes many.
+        """
         now = self.linear(guess)
+        if self.gap and now.sound:
+            here = self._sizes(now)
+            chained, merit = self.chained(guess, here)
+            if merit < self.merit(guess, here):
+                guess, now = chained, self.linear(chained)
         given = sizes is not None
         found = sizes if sizes is not None else self._sizes(now)
         steps, settled = 0, False
@@ -151,6 +172,12 @@ class Shooting:
             before, found = found, found if given else self._sizes(now)
             if np.abs(found / before - 1.0).max() < _SIZES:
                 break
+        for _ in range(_SHAKES if hollow and now.sound else 0):
+            other = self._shaken(guess, now, found)
+            if other is None:
+                break
+            guess, now, used, settled = self._gauss_newton(other, self.linear(other), found)
+            steps += used
         return Fitted(guess, now, found, steps, settled, self.prior(now, len(guess.free)))
 
     def _sizes(self, now: Linear) -> Array:
@@ -166,34 +193,73 @@ class Shooting:
             known[:starts] = np.tile(each, starts // len(each))
         return known
 
-    def _merit(self, now: Linear, sizes: Array) -> float:
-        gaps = now.gaps / np.maximum(_GAP * self.ranges, _TINY)
-        return float(np.sum((now.rest / sizes) ** 2) + np.sum(gaps**2))
+    def merit(self, guess: Guess, sizes: Array) -> float:
+        """Sum of squares of residuals and gaps; not a number where a motion runs away."""
+        stretch, start = self.stretch, guess.start
+        values = self.values(guess.free)
+        moved = self.motion.run(start, stretch.pieces, stretch.driven, values, bare=True)
+        rest = (stretch.measured - moved.y[:, stretch.columns])[stretch.counted]
+        ends = np.hstack([moved.end.x, moved.end.w])[:-1]
+        gaps = np.where(stretch.joined[1:, None], ends - np.hstack([start.x, start.w])[1:], 0.0)
+        return self._sum(rest, gaps, sizes)
+
+    def _sum(self, rest: Array, gaps: Array | None, sizes: Array) -> float:
+        held = 0.0 if gaps is None else gaps / np.maximum(_GAP * self.ranges, _TINY)
+        return float(np.sum((rest / sizes) ** 2) + np.sum(np.square(held)))
 
     def _gauss_newton(
         self, guess: Guess, now: Linear, sizes: Array
     ) -> tuple[Guess, Linear, int, bool]:
         for step in range(_STEPS):
-            change, deviations = self._direction(guess, now, sizes)
-            share, merit = 1.0, self._merit(now, sizes)
+            change, deviations, _ = self._direction(guess, now, sizes)
+            share, merit = 1.0, self._sum(now.rest, now.gaps, sizes)
             while True:
-                tried = self._moved(guess, now, change, share)
-                there = self.linear(tried)
-                better = self._merit(there, sizes)
+                tried, better = self._tried(self._moved(guess, now, change, share), sizes)
                 if (np.isfinite(better) and better < merit) or share <= _SHORTEST:
                     break
                 share *= 0.5
             if not (np.isfinite(better) and better < merit * (1.0 + 1e-9)):
                 return guess, now, step, True  # no way down is left
             moved = np.abs(tried.free - guess.free)
-            guess, now = tried, there
+            guess, now = tried, self.linear(tried)
             fallen = merit - better < _FALLEN
             if fallen or (share == 1.0 and (moved <= _SETTLED * deviations).all()):
                 return guess, now, step + 1, True
         return guess, now, _STEPS, False
 
-    def _direction(self, guess: Guess, now: Linear, sizes: Array) -> tuple[Array, Array]:
-        """Change of the unknowns, and standard deviations of the free ones as for white noise."""
+    def _tried(self, moved: Guess, sizes: Array) -> tuple[Guess, float]:
+        """The better of two with its merit: starts as linearised, or as simulated."""
+        merit = self.merit(moved, sizes)
+        if not self.gap or not np.isfinite(merit):
+            return moved, merit
+        chained, other = self.chained(moved, sizes)
+        return (chained, other) if other < merit else (moved, merit)
+
+    def chained(self, guess: Guess, sizes: Array) -> tuple[Guess, float]:
+        """The same without gaps, with its merit: joined pieces begin where the one before ends."""
+        p, u, _, _ = self.values(guess.free)
+        stretch = self.stretch
+        start, y = self.motion.chained(
+            guess.start, stretch.pieces, stretch.driven, (p, u), stretch.joined
+        )
+        rest = (stretch.measured - y[:, stretch.columns])[stretch.counted]
+        return replace(guess, start=start), self._sum(rest, None, sizes)
+
+    def _shaken(self, guess: Guess, now: Linear, sizes: Array) -> Guess | None:
+        """The best guess around one in whose hollow Gauss-Newton has ended, if one is better."""
+        cover = self._direction(guess, now, sizes)[2]
+        values, vectors = np.linalg.eigh(cover)
+        best, least = None, self._sum(now.rest, now.gaps, sizes) - _FALLEN
+        for axis in (vectors * np.sqrt(np.maximum(values, 0.0))).T:
+            for far in _FAR:
+                free = np.clip(guess.free + far * axis, *self.bounds)
+                there, merit = self.chained(replace(guess, free=free), sizes)
+                if merit < least:
+                    best, least = there, merit
+        return best
+
+    def _direction(self, guess: Guess, now: Linear, sizes: Array) -> tuple[Array, Array, Array]:
+        """Change of the unknowns; of the free ones deviations and covariance for white noise."""
         weighed = (now.slopes / sizes[:, None]).reshape(-1, now.slopes.shape[2])
         right = weighed.T @ (now.shifted / sizes).ravel()
         prior = self.prior(now, len(guess.free))
@@ -203,7 +269,8 @@ class Shooting:
         low, high = self.bounds
         fixed, change = np.zeros(len(prior), dtype=bool), np.zeros(len(prior))
         if not np.isfinite(matrix).all():  # a motion that runs away tells no way
-            return change, np.full(len(guess.free), np.inf)
+            n = len(guess.free)
+            return change, np.full(n, np.inf), np.zeros((n, n))
         for _ in range(len(guess.free) + 1):
             left = np.flatnonzero(~fixed)
             b = (right - matrix[:, fixed] @ change[fixed])[left] / scale[left]
@@ -221,7 +288,9 @@ class Shooting:
             fixed[free:] |= out
         deviations = np.zeros(len(prior))
         deviations[left] = np.sqrt(np.maximum(np.diag(inverse), 0.0)) / scale[left]
-        return change, deviations[free:]
+        cover = np.zeros_like(matrix)
+        cover[np.ix_(left, left)] = inverse / np.outer(scale[left], scale[left])
+        return change, deviations[free:], cover[free:, free:]
 
     def _moved(self, guess: Guess, now: Linear, change: Array, share: float) -> Guess:
         starts = now.ahead + now.follow @ change

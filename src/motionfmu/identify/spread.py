@@ -5,7 +5,7 @@ would count each sample as news; Newey and West (1987) weigh the products of sco
 distances up to a lag:  H^-1 (sum of w_l S_l) H^-1.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 _TIMES, _MOST = 4.0, 0.1
 # Eigenvalues below this share of the largest are none.
 _NONE = 1e-13
+# Information below this is none.
+_SILENT = 1e-200
 # Variance, in units of a scaled quantity, of a direction in which the record says nothing.
 _NOTHING = 1e20
 
@@ -32,6 +34,10 @@ class Spread:
     condition: float  # of the information matrix, each quantity scaled to 1
     information: Array  # (free, free) inverse of the covariance, were residuals white
     lag: int  # samples up to which residuals count as one another's
+
+    def at_least(self, deviations: Array) -> "Spread":
+        """The same with deviations that are no smaller than these."""
+        return replace(self, deviations=np.fmax(self.deviations, deviations))
 
 
 def spread(fitted: Fitted) -> Spread:
@@ -51,7 +57,8 @@ def spread(fitted: Fitted) -> Spread:
     back = (known @ (matrix[:first, first:] / inner[:, None])) / inner[:, None]
     news = (rows[:, first:] - rows[:, :first] @ back).reshape(samples, outputs, free)
     reduced = matrix[first:, first:] - matrix[first:, :first] @ back
-    scale = np.sqrt(np.maximum(np.diag(reduced), 1e-300))
+    told = np.diag(reduced)
+    scale = np.sqrt(np.where(told > _SILENT, told, 1.0))
     s, v = np.linalg.eigh(reduced / np.outer(scale, scale))
     good = s > _NONE * max(s[-1], 1e-300)
     inverse = v * np.where(good, 1.0 / np.where(good, s, 1.0), _NOTHING) @ v.T
@@ -64,11 +71,12 @@ def spread(fitted: Fitted) -> Spread:
     plain = np.diag(inverse) * loose
     # a sum of few products may come out too small by chance, never below that of white residuals
     variances = np.maximum(np.diag(cover), plain)
-    root = np.sqrt(np.maximum(np.diag(cover), 1e-300))
+    root = np.sqrt(np.maximum(np.diag(cover), 0.0))
+    root = np.where(root > 0.0, root, np.inf)  # of what no residual tells of, nothing is known
     return Spread(
         deviations=np.sqrt(variances) / scale,
         white=np.sqrt(plain) / scale,
-        correlation=cover / np.outer(root, root),
+        correlation=cover / root / root[:, None],
         condition=float(s[-1] / s[0]) if s[0] > 0.0 else np.inf,
         information=reduced,
         lag=lag,

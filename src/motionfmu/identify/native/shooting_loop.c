@@ -3,7 +3,8 @@
  *
  * State of a piece: x of the plant, W of the laws. Behind each is a row of derivatives to the
  * directions: the elements of the start state, then the quantities that are free. plant_rates and
- * plant_shows are CasADi's C text of the plant's equation.
+ * plant_shows are CasADi's C text of the plant's equation, plain_rates and plain_shows the same
+ * without derivatives, for motions with no directions.
  */
 #include <stddef.h>
 #include <string.h>
@@ -13,6 +14,8 @@
 #endif
 int plant_rates(const double **arg, double **res, casadi_int *iw, double *w, int mem);
 int plant_shows(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+int plain_rates(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+int plain_shows(const double **arg, double **res, casadi_int *iw, double *w, int mem);
 
 /* Nonzero elements of a matrix. */
 struct places {
@@ -63,6 +66,10 @@ static void plant(const struct axis *a, const struct room *r, int shows, const d
     const double *arg[3] = { x, r->u, a->p };
     double *res[4] = { f, r->elements[0], r->elements[1], r->elements[2] };
     const struct places *places = shows ? a->shows : a->rates;
+    if (n == 0) {
+        (shows ? plain_shows : plain_rates)(arg, res, NULL, r->casadi, 0);
+        return;
+    }
     (shows ? plant_shows : plant_rates)(arg, res, NULL, r->casadi, 0);
     memset(s, 0, (size_t)(rows * n) * sizeof *s);
     for (long long e = 0; e < places[0].count; e++) {
