@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from motionfmu import InputError
-from motionfmu.calibrate import ArmOptions, PoseRecord, arm_calibration, pose_record
+from motionfmu.calibrate import ArmCalibrationOptions, PoseRecord, arm_calibration, pose_record
 from motionfmu.run import machine
 from motionfmu.virtual.robot import Kinematics
 
@@ -161,7 +161,7 @@ def test_a_joint_that_stands_still_and_a_tool_on_the_axis_leave_what_they_do_not
     place, flange = arm(joints, *errors(3))
     place = place + flange @ [0.0, 0.0, 230.0]
     poses = PoseRecord("poses.csv", joints, place, None, made.where)
-    found = arm_calibration(plan, poses, ArmOptions(known_base=True), set=RIGID)
+    found = arm_calibration(plan, poses, ArmCalibrationOptions(known_base=True), set=RIGID)
     # joint 5 turns the tool by one place in its link, joint 6 moves what is fitted beside the axis
     assert "zero_error[5]" in found.parameters["origin_error[6,1]"].why
     assert found.parameters["zero_error[6]"].why == "it acts as the tool"
@@ -221,7 +221,7 @@ def test_the_arm_is_that_of_its_fmu(plan, tmp_path: Path) -> None:
     file = tmp_path / "poses.csv"
     file.write_text("j1,j2,j3,j4,j5,j6,X [mm],Y [mm],Z [mm]\n" + "\n".join(rows) + "\n")
     poses = pose_record(file)
-    found = arm_calibration(plan, poses, ArmOptions(known_base=True, known_tool=True))
+    found = arm_calibration(plan, poses, ArmCalibrationOptions(known_base=True, known_tool=True))
     assert found.before.sizes.max() < 1e-6
 
 

@@ -7,7 +7,7 @@ needed("tune")
 # ruff: noqa: E402
 from motionfmu.calibrate.arm_calibration import (
     ArmCalibration,
-    ArmOptions,
+    ArmCalibrationOptions,
     PoseFit,
     arm_calibration,
 )
@@ -34,7 +34,7 @@ from motionfmu.calibrate.position_record import PositionRecord, position_record
 
 __all__ = [
     "ArmCalibration",
-    "ArmOptions",
+    "ArmCalibrationOptions",
     "AxisCalibration",
     "CircleCalibration",
     "CircleChoice",

@@ -40,7 +40,7 @@ GRAIN = np.array([1e-6, 1e-9])
 
 
 @dataclass(frozen=True)
-class ArmOptions:
+class ArmCalibrationOptions:
     """What is known beside the poses.
 
     Attributes
@@ -154,7 +154,7 @@ class ArmCalibration:
 def arm_calibration(
     plan: RunPlan,
     record: PoseRecord,
-    options: ArmOptions = ArmOptions(),
+    options: ArmCalibrationOptions = ArmCalibrationOptions(),
     set: Mapping[str, Any] | None = None,
 ) -> ArmCalibration:
     """Find zero offsets, lengths, base and tool of an arm.
@@ -164,7 +164,7 @@ def arm_calibration(
     plan : RunPlan
         The machine without a program, or a scenario.
     record : PoseRecord
-    options : ArmOptions
+    options : ArmCalibrationOptions
     set : mapping, optional
         Values by ``component.variable``, stronger than the machine's.
 
@@ -217,7 +217,7 @@ def arm_calibration(
 class _Fitting:
     """Fits of one record."""
 
-    def __init__(self, poses: ArmPoses, record: PoseRecord, options: ArmOptions) -> None:
+    def __init__(self, poses: ArmPoses, record: PoseRecord, options: ArmCalibrationOptions) -> None:
         self.poses, self.record, self.options = poses, record, options
         self.errors = np.zeros(len(poses.errors))
         # columns that every fit has
@@ -525,4 +525,4 @@ def _rms(values: Array) -> float | None:
     return found if math.isfinite(found) else None
 
 
-__all__ = ["BASE", "ArmCalibration", "ArmOptions", "PoseFit", "arm_calibration"]
+__all__ = ["BASE", "ArmCalibration", "ArmCalibrationOptions", "PoseFit", "arm_calibration"]

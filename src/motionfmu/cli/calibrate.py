@@ -197,13 +197,15 @@ def _arm(
     target: Path,
 ) -> None:
     """An arm."""
-    from motionfmu.calibrate import ArmOptions, arm_calibration, pose_record
+    from motionfmu.calibrate import ArmCalibrationOptions, arm_calibration, pose_record
     from motionfmu.calibrate.calibration_files import arm_files
     from motionfmu.report import result_folder
     from motionfmu.report.calibration_page import arm_page
 
     options, columns, layout = asked
-    found = arm_calibration(plan, pose_record(file, columns, layout), ArmOptions(**options), values)
+    found = arm_calibration(
+        plan, pose_record(file, columns, layout), ArmCalibrationOptions(**options), values
+    )
     with result_folder.whole(target) as part:
         result_folder.write_result(part, arm_page(found), found.numbers())
         for name, text in arm_files(found).items():

@@ -195,11 +195,7 @@ def identify(
     """
     scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
     record = record if isinstance(record, AxisRecord) else of_record(record)
-    if options is None:
-        file = scenario.document.file.parent / identify_file.FILE
-        options = identify_file.options(identify_file.read(file), str(file))
-    elif not isinstance(options, IdentifyOptions):
-        options = identify_file.options(options, "identify")
+    options = _options(scenario, options)
     marks = [clock.perf_counter()]
     given = dict(set or {})
     progress("controller and start values", 0.0)
@@ -263,6 +259,18 @@ def identify(
         given=given,
         kept_share=options.keep,
     )
+
+
+def _options(
+    scenario: Scenario, given: IdentifyOptions | Mapping[str, Any] | None
+) -> IdentifyOptions:
+    """Options of tables, or of the identify.toml beside the scenario."""
+    if isinstance(given, IdentifyOptions):
+        return given
+    if given is not None:
+        return identify_file.options(given, "identify")
+    file = scenario.document.file.parent / identify_file.FILE
+    return identify_file.options(identify_file.read(file), str(file))
 
 
 def _parameters(
