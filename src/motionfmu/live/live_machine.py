@@ -439,7 +439,7 @@ class LiveMachine:
         given = plan.document.tables.items()
         tables = {k: v for k, v in given if k not in ("machine", "extends") and v not in ({}, [])}
         with new_folder(place) as part:
-            tables = copied_files(plan, tables, part)
+            tables = copied_files(plan, tables, part, place)
             lines = [f"# {self.scenario.document.about.rstrip('.')}, as it was worked at."]
             plain = {k: v for k, v in tables.items() if not _is_table(v)}
             for key, value in plain.items():

@@ -24,7 +24,7 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
     machine = Path(tables.pop("machine"))
     tables.pop("drawing", None)  # it is in the program that was made
     with new_folder(folder) as part:
-        tables = copied_files(plan, tables, part)
+        tables = copied_files(plan, tables, part, folder)
         top = {"machine": _machine_name(machine, folder.absolute())}
         top |= {k: v for k, v in tables.items() if not isinstance(v, dict | list)}
         lines = [f"# {document.about}."]
@@ -36,8 +36,10 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
         (part / package_files.SCENARIO).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def copied_files(plan: RunPlan, tables: Mapping[str, Any], part: Path) -> dict[str, Any]:
-    """Copy the files that tables name into a folder; the tables with their names there."""
+def copied_files(
+    plan: RunPlan, tables: Mapping[str, Any], part: Path, folder: Path
+) -> dict[str, Any]:
+    """Copy the files that tables name into a part of a folder; the tables with their names."""
     values = tables.get("set", {})
     files = read_files(plan.resolver, values)
     found = {**tables, "set": {**values, **{name: file.name for name, file in files.items()}}}
@@ -46,7 +48,7 @@ def copied_files(plan: RunPlan, tables: Mapping[str, Any], part: Path) -> dict[s
         found["record_file"] = {**tables["record_file"], "file": files["record_file"].name}
     for file in [*files.values(), *(c for f in files.values() for c in _called(f))]:
         if (part / file.name).exists() and not filecmp.cmp(file, part / file.name, False):
-            raise InputError(f"{part}: two files {file.name} would stand there")
+            raise InputError(f"{folder}: two files {file.name} would stand there")
         shutil.copyfile(file, part / file.name)
     return found
 
