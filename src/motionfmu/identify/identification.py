@@ -24,6 +24,7 @@ from motionfmu.identify.law_choice import (
     chosen_law,
     extended,
     free_names,
+    idle_laws,
     others,
     validated,
 )
@@ -32,7 +33,7 @@ from motionfmu.identify.recorded_loop import RecordedLoop
 from motionfmu.identify.shooting import Fitted
 from motionfmu.identify.span_fit import fitted_span, following, stretch_signals
 from motionfmu.identify.spread import Spread, autocorrelation
-from motionfmu.identify.tellable import tellable
+from motionfmu.identify.tellable import scattered, tellable
 from motionfmu.records import Record
 from motionfmu.run import Scenario, load
 
@@ -226,10 +227,20 @@ def identify(
     span = own.first, own.data.samples - 1
     near = chosen.values if chosen else {}
     own.motion.fine = own.gap
-    free, fitted, known, more = fitted_span(own, extended(own, names, laws, asked), span, near)
-    if known is not None and own.gap:
-        progress("parts of the record", 0.8)
-        known = known.at_least(part_scatter(own, free, fitted, span))
+    idle: list[str] = []
+    while True:
+        free, fitted, known, more = fitted_span(own, extended(own, names, laws, asked), span, near)
+        if known is not None and own.gap:
+            progress("parts of the record", 0.8)
+            known = known.at_least(part_scatter(own, free, fitted, span))
+        nothing = () if options.laws is not None else idle_laws(own, laws, (free, fitted, known))
+        late = {} if nothing else scattered(own, free, fitted, known)
+        idle += nothing
+        laws = tuple(n for n in laws if n not in nothing)
+        names = [n for n in names if n not in late]
+        why |= late
+        if not nothing and not late:
+            break
     marks.append(clock.perf_counter())
     parts = np.diff(marks).tolist()
     measured, simulated = stretch_signals(own, fitted, span)
@@ -253,7 +264,13 @@ def identify(
         simulated=simulated,
         signals=own.data.compared,
         following=following(own, (measured, simulated), rows),
-        notes=tuple(notes(own, free, options, chosen)),
+        notes=(
+            *notes(own, free, options, chosen),
+            *(
+                f"The law {n} was left out again: in all of the record it may be nothing."
+                for n in idle
+            ),
+        ),
         seconds=dict(zip(("start", "law", "fit"), parts, strict=True)),
         ground=own,
         given=given,

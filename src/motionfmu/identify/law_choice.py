@@ -1,22 +1,25 @@
 """The law of friction that explains best what was kept back of a record."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError, suggestion
-from motionfmu.identify.free_parameters import carried, checked
+from motionfmu.identify.free_parameters import FreeParameters, carried, checked
 from motionfmu.identify.ground import Ground, IdentifyOptions
-from motionfmu.identify.shooting import Guess
+from motionfmu.identify.shooting import Fitted, Guess
 from motionfmu.identify.span_fit import errors_of, fitted_span
+from motionfmu.identify.spread import Spread
 from motionfmu.run import Scenario
 
 Array = NDArray[np.float64]
 # A law must explain what was kept back so much better to be taken.
 WORTH = 0.98
+# What says how much of a law there is must be so many deviations from nothing.
+CERTAIN = 3.0
 Progress = Callable[[str, float], None]
 
 
@@ -31,6 +34,8 @@ class Validation:
     score: float  # what the choice goes by: kept-back residuals over those of the first law
     values: Mapping[str, float]  # of the free quantities, from the part fitted
     sizes: Mapping[str, float]  # root mean square of each signal about its mean, kept back
+    idle: tuple[str, ...] = ()  # laws whose quantities may as well be nothing
+    begun: Any = field(default=None, repr=False)  # starts of the pieces of the part fitted
 
 
 def free_names(own: Ground, options: IdentifyOptions) -> list[str]:
@@ -80,11 +85,15 @@ def validated(
     `before` are the first look, by which it is scored, and the one from whose values it begins.
     """
     names, laws = asked
-    first, near = (before[0], before[1].values) if before else (None, {})
+    first, near, begun = (
+        (before[0], before[1].values, before[1].begun) if before else (None, {}, None)
+    )
     low, high = own.first, own.data.samples - 1
     rows = own.stretch(low, high)[0].rows
     cut = int(rows[int((1.0 - options.keep) * len(rows))])
-    free, fit, _, _ = fitted_span(own, extended(own, names, laws, options), (low, cut), near)
+    free, fit, known, _ = fitted_span(
+        own, extended(own, names, laws, options), (low, cut), near, begun if own.gap else None
+    )
     p, u, _, _ = free.values(fit.guess.free)
     fixed = own.fixed(p, u)
     problem, starts = own.shooting(fixed, (cut, high), fixed.start)
@@ -96,7 +105,31 @@ def validated(
         ratios = [there[n] / max(first.kept[n], 1e-12) for n in own.data.compared]
         score = first.score * float(np.mean(ratios))
     found = dict(zip(free.names, fit.guess.free.tolist(), strict=True))
-    return Validation(tuple(laws), dict(own.other), here, there, score, found, sizes)
+    nothing = idle_laws(own, laws, (free, fit, known))
+    begun = fit.guess.start
+    return Validation(
+        tuple(laws), dict(own.other), here, there, score, found, sizes, nothing, begun
+    )
+
+
+def idle_laws(
+    own: Ground, laws: Sequence[str], of: tuple[FreeParameters, Fitted, Spread | None]
+) -> tuple[str, ...]:
+    """Extensions that are not there: a quantity is not told, or the first one may be nothing.
+
+    Each law's first quantity says how much of it there is, and is nothing at 0.
+    """
+    free, fit, known = of
+    found = []
+    for law in laws:
+        names = own.known.law[law].free
+        if known is None or not set(names) <= set(free.names):
+            found.append(law)
+            continue
+        k = free.names.index(names[0])
+        if abs(float(fit.guess.free[k])) < CERTAIN * known.deviations[k]:
+            found.append(law)
+    return tuple(found)
 
 
 def chosen_law(
@@ -115,7 +148,7 @@ def chosen_law(
         before = first, chosen
         looks = [validated(own, (names, (*chosen.laws, n)), options, before) for n in left]
         tried += looks
-        best = min(looks, key=lambda v: v.score)
+        best = min((v for v in looks if not v.idle), key=lambda v: v.score, default=chosen)
         if best.score >= WORTH * chosen.score:
             break
         chosen = best

@@ -163,15 +163,7 @@ class Shooting:
             chained, merit = self.chained(guess, here)
             if merit < self.merit(guess, here):
                 guess, now = chained, self.linear(chained)
-        given = sizes is not None
-        found = sizes if sizes is not None else self._sizes(now)
-        steps, settled = 0, False
-        for _ in range(1 if given else _ROUNDS):
-            guess, now, used, settled = self._gauss_newton(guess, now, found)
-            steps += used
-            before, found = found, found if given else self._sizes(now)
-            if np.abs(found / before - 1.0).max() < _SIZES:
-                break
+        guess, now, found, (steps, settled) = self._settled(guess, now, sizes)
         for _ in range(_SHAKES if hollow and now.sound else 0):
             other = self._shaken(guess, now, found)
             if other is None:
@@ -179,6 +171,27 @@ class Shooting:
             guess, now, used, settled = self._gauss_newton(other, self.linear(other), found)
             steps += used
         return Fitted(guess, now, found, steps, settled, self.prior(now, len(guess.free)))
+
+    def followed(self, guess: Guess) -> Guess | None:
+        """The solution near a guess; None if there is no motion."""
+        now = self.linear(guess)
+        if not now.sound:
+            return None
+        return self._settled(guess, now, None)[0]
+
+    def _settled(
+        self, guess: Guess, now: Linear, sizes: Array | None
+    ) -> tuple[Guess, Linear, Array, tuple[int, bool]]:
+        """Gauss-Newton, again with the weights of what is left, unless they are given."""
+        found = sizes if sizes is not None else self._sizes(now)
+        steps, settled = 0, False
+        for _ in range(1 if sizes is not None else _ROUNDS):
+            guess, now, used, settled = self._gauss_newton(guess, now, found)
+            steps += used
+            before, found = found, found if sizes is not None else self._sizes(now)
+            if np.abs(found / before - 1.0).max() < _SIZES:
+                break
+        return guess, now, found, (steps, settled)
 
     def _sizes(self, now: Linear) -> Array:
         found: Array = np.sqrt(np.mean(now.rest**2, axis=0) + self.stretch.floor**2)

@@ -1,12 +1,14 @@
 """The fit of a span of samples, and how far it is from what was measured there."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.ground import Ground
+from motionfmu.identify.loop_motion import PieceStart
 from motionfmu.identify.shooting import Fitted, Guess
 from motionfmu.identify.spread import Spread, spread
 from motionfmu.identify.tellable import UNTOLD, quantity_sizes, reason, start_values
@@ -14,14 +16,22 @@ from motionfmu.identify.tellable import UNTOLD, quantity_sizes, reason, start_va
 Array = NDArray[np.float64]
 # Name under which the difference of command and position is told.
 FOLLOWING = "following error"
+# Shares of a gap in which a solution is followed to the whole of it: three times as far apart it is
+# lost.
+_OPENED = tuple(k / 10.0 for k in range(10))
 
 
 def fitted_span(
-    own: Ground, names: Sequence[str], span: tuple[int, int], near: Mapping[str, float]
+    own: Ground,
+    names: Sequence[str],
+    span: tuple[int, int],
+    near: Mapping[str, float],
+    begun: PieceStart | None = None,
 ) -> tuple[FreeParameters, Fitted, Spread | None, dict[str, str]]:
     """Fit a span of samples; quantities that it cannot tell are fixed one after the other.
 
-    `near` are values found before, from which those quantities begin.
+    `near` are values found before, from which those quantities begin, and `begun` the starts of
+    the pieces of the same span that go with them.
     """
     left = list(names)
     why: dict[str, str] = {}
@@ -30,7 +40,11 @@ def fitted_span(
         values = start_values(own, free)[0]
         values = np.array([near.get(n, v) for n, v in zip(left, values.tolist(), strict=True)])
         problem, starts = own.shooting(free, span, values)
-        fit = problem.fit(Guess(values, starts), hollow=own.motion.fine)
+        guess = Guess(values, starts if begun is None else begun)
+        if own.gap and begun is None:
+            guess = through_gap(own, free, span, values) or guess
+        fit = problem.fit(guess, hollow=own.motion.fine)
+        begun = fit.guess.start if own.gap else None
         if not left:
             return free, fit, None, why
         if not fit.linear.sound:  # extensions of the law stand last
@@ -43,6 +57,28 @@ def fitted_span(
             return free, fit, known, why
         why[left[worst]] = reason(float(share[worst]))
         left.pop(worst)
+
+
+def through_gap(
+    own: Ground, free: FreeParameters, span: tuple[int, int], values: Array
+) -> Guess | None:
+    """The solution followed from a plant without its gap to nearly the whole one.
+
+    With the gap the sum of squares has a hollow for each way in which contacts can fall between
+    samples; without it there is one. None if the way is lost.
+    """
+    if own.known.gap is None:
+        return None
+    k = [d.name for d in own.loop.ode.parameters].index(own.known.gap)
+    guess: Guess | None = None
+    for share in _OPENED:
+        p = free.p.copy()
+        p[k] *= share
+        problem, starts = own.shooting(replace(free, p=p), span, values)
+        guess = problem.followed(guess or Guess(values, starts))
+        if guess is None:
+            return None
+    return guess
 
 
 def stretch_signals(own: Ground, fit: Fitted, span: tuple[int, int]) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.ground import Ground
 from motionfmu.identify.shooting import Fitted, Guess
-from motionfmu.identify.spread import spread
+from motionfmu.identify.spread import Spread, spread
 
 Array = NDArray[np.float64]
 # A quantity whose standard deviation is above this share of itself cannot be told by the record;
@@ -89,6 +89,17 @@ def tellable(own: Ground, names: Sequence[str]) -> tuple[list[str], dict[str, st
     share = np.sqrt(np.diag(np.linalg.inv(known)))
     rows = list(zip(names, share.tolist(), strict=True))
     return [n for n, s in rows if s <= UNTOLD], {n: reason(s) for n, s in rows if s > UNTOLD}
+
+
+def scattered(
+    own: Ground, free: FreeParameters, fit: Fitted, known: Spread | None
+) -> dict[str, str]:
+    """The quantity that is told worst, with why, if parts of the record tell it too differently."""
+    if known is None:
+        return {}
+    share = known.deviations / np.maximum(quantity_sizes(own, free, fit.guess.free), 1e-100)
+    worst = int(np.argmax(share))
+    return {free.names[worst]: reason(float(share[worst]))} if share[worst] > UNTOLD else {}
 
 
 def reason(share: float) -> str:
