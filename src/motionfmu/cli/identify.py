@@ -111,9 +111,7 @@ def _tables(place: Path | None, column: list[str], given: dict[str, Any]) -> dic
     """The tables of a file, with what the command line says instead."""
     from motionfmu.identify import identify_file
 
-    tables = identify_file.read(place) if place else {}
-    if column:
-        tables["columns"] = {**tables.get("columns", {}), **dict(map(identify_file.column, column))}
+    tables = identify_file.with_columns(identify_file.read(place) if place else {}, column)
     return tables | {k: v for k, v in given.items() if v not in (None, [])}
 
 

@@ -209,6 +209,9 @@ class LiveMachine:
         except InputError:
             whole, element = name, None
         if whole in self._inputs:
+            count = self._inputs[whole].port.count
+            if element is not None and not 0 <= element < count:
+                raise InputError(f"{name}: {whole} has the elements 1 to {count}")
             return whole, element
         for stimulus in self._system.stimuli:
             if stimulus.end.name == whole:
@@ -242,11 +245,23 @@ class LiveMachine:
         -------
         list of list
             The elements of each, in the order of the names.
+
+        Raises
+        ------
+        InputError
+            There is no such signal.
         """
         key = tuple(names)
         if key not in self._readers:
+            self._known(key)
             self._readers[key] = self._reader(key)
         return self._readers[key]()
+
+    def _known(self, names: Iterable[str]) -> None:
+        for name in names:
+            if name not in self._outputs and name not in self._inputs:
+                told = suggestion(name, [*self._outputs, *self._inputs])
+                raise InputError(f"{name}: no such signal{told}")
 
     def _reader(self, names: tuple[str, ...]) -> Callable[[], list[list[Any]]]:
         """A function that gets signals by one call of each type."""
@@ -276,12 +291,14 @@ class LiveMachine:
         Parameters
         ----------
         count : int
+            0 or more.
 
         Raises
         ------
         InputError
-            An FMU refuses to go on.
+            It is no such number, or an FMU refuses to go on.
         """
+        _whole_number(count)
         end = self.steps + count
         while self.steps < end:
             now = self._due.get(self.steps, ())
@@ -313,8 +330,15 @@ class LiveMachine:
         -------
         dict
             By name, of shape (count,) or (count, elements).
+
+        Raises
+        ------
+        InputError
+            There is no such signal, `count` is no number of steps, or an FMU refuses to go on.
         """
-        wanted = tuple(names)
+        _whole_number(count)
+        wanted = (names,) if isinstance(names, str) else tuple(names)
+        self._known(wanted)
         rows = []
         for _ in range(count):
             rows.append(self.read(wanted))
@@ -471,3 +495,9 @@ def _is_table(value: Any) -> bool:
     return isinstance(value, dict) or (
         isinstance(value, list) and bool(value) and isinstance(value[0], dict)
     )
+
+
+def _whole_number(count: Any) -> None:
+    """Refuse what is no number of steps."""
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 0:
+        raise InputError(f"{count!r} steps: a whole number from 0 wanted")
