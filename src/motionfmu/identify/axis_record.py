@@ -92,11 +92,13 @@ def column_of(record: AxisRecord, name: str, signal: str) -> Array:
     )
 
 
-def scale_of_units(record: AxisRecord, name: str, unit: str | None) -> tuple[units.Unit, float]:
-    """Unit of a column, and how much of `unit` it is: 0 if it is another quantity."""
+def scale_of_units(
+    record: AxisRecord, name: str, signal: str, unit: str | None
+) -> tuple[units.Unit, float]:
+    """Unit of a column, and how much of its signal's it is: 0 if it is another quantity."""
     written = record.units.get(name, "")
     if not written and unit not in (None, "", "1"):
-        return units.parse("1"), 0.0  # a bare number may be degrees as well as radians
+        raise no_scale(record, name, signal, unit)  # it may be degrees as well as radians
     try:
         own = units.parse(written or "1")
     except ValueError as error:

@@ -129,7 +129,7 @@ def _scale(
     name, signal = of
     component, _, variable = signal.partition(".")
     port = loop.scenario.resolver.ports[component][variable.partition("[")[0]]
-    own, scale = scale_of_units(record, name, port.unit)
+    own, scale = scale_of_units(record, name, signal, port.unit)
     if scale:
         return scale
     if signal in ratios and own.exponents in (

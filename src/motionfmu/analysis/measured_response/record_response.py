@@ -182,7 +182,7 @@ def _scale(record: AxisRecord, name: str, use: ColumnUse, model: AxisModel) -> f
     """Of a signal's unit per unit of a column: by the units, or by the plant's own motion."""
     component, _, variable = use.signal.partition(".")
     port = model.scenario.resolver.ports[component][variable.partition("[")[0]]
-    own, scale = scale_of_units(record, name, port.unit)
+    own, scale = scale_of_units(record, name, use.signal, port.unit)
     if scale:
         return scale
     block = model.blocks[component]
