@@ -202,3 +202,21 @@ def test_steps_and_signals_that_are_none_are_told() -> None:
             machine.read(["drives.torqe"])
         assert machine.steps == 0
         assert machine.trace("drives.torque", 3)["drives.torque"].shape == (3, 6)
+
+
+def test_a_closed_machine_says_so_and_closes_twice() -> None:
+    with LiveMachine("circle") as machine:
+        machine.keep()
+        with pytest.raises(InputError, match="back to nan s: a finite time wanted"):
+            machine.back(float("nan"))
+        machine.read(["drives.torque"])
+    machine.close()
+    for act in (
+        machine.step,
+        machine.keep,
+        lambda: machine.set("machine.force[1]", 1.0),
+        lambda: machine.read(["drives.torque"]),
+        lambda: machine["drives.torque"],
+    ):
+        with pytest.raises(InputError, match="circle: the machine is closed"):
+            act()

@@ -94,7 +94,7 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     place = file or (beside if beside.is_file() else None)
     given = {"axis": axis, "free": free, "fix": fix, "laws": law}
     tables = _tables(place, column, given | ({"controller": False} if as_given else {}))
-    where = str(place or "--column")
+    where = str(place or "--column, or an identify.toml beside the scenario")
     target = result_folder.usable(folder or results(scenario.name, "identify"))
     if frf:
         options, asked = identify_file.options(tables, where), ResponseAsked(record, period, band)

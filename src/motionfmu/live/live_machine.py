@@ -1,6 +1,7 @@
 """The fused program of a scenario, stepped, changed, looked at and taken back by hand."""
 
 import json
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p
@@ -93,7 +94,7 @@ class LiveMachine:
         self._kept: deque[_SavedState] = deque()
         self._readers: dict[tuple[str, ...], Callable[[], list[Any]]] = {}
         self.journal = Journal(self._system.step_ns)
-        self.steps = 0
+        self.steps, self._closed = 0, False
         try:
             self._begin()
         except BaseException:
@@ -144,7 +145,12 @@ class LiveMachine:
         told = text.strip().removeprefix(f"{NAME}: ")
         fmu_messages.keep(status, told, self._errors, self.warnings)
 
+    def _open(self) -> None:
+        if self._closed:
+            raise InputError(f"{self.scenario.name}: the machine is closed")
+
     def _refusable(self, call: Callable[[], None]) -> None:
+        self._open()
         self._errors.clear()
         try:
             call()
@@ -251,6 +257,7 @@ class LiveMachine:
         InputError
             There is no such signal.
         """
+        self._open()
         key = tuple(names)
         if key not in self._readers:
             self._known(key)
@@ -391,6 +398,8 @@ class LiveMachine:
         InputError
             No state is kept from then.
         """
+        if not math.isfinite(time):
+            raise InputError(f"back to {time} s: a finite time wanted")
         step = round(time * 1e9 / self._system.step_ns)
         if not any(k.step <= step for k in self._kept):
             raise InputError(f"no state is kept at or before {time:g} s")
@@ -479,7 +488,9 @@ class LiveMachine:
         """Free the program and the states that are kept."""
         while self._kept:
             self._drop(self._kept.pop())
-        self._library.close()
+        if not self._closed:
+            self._library.close()
+        self._closed = True
 
     def __enter__(self) -> "LiveMachine":
         return self
