@@ -238,6 +238,19 @@ def test_a_wrong_command_is_one_message(
     assert not (tmp_path / "out").exists()
 
 
+def test_a_scenarios_name_is_enough(tmp_path: Path) -> None:
+    file = tmp_path / "x.csv"
+    rows = [f"{t},{d},{s}" for t in (0, 50, 100) for s, d in (("+", 0), ("-", 8)) for _ in (1, 2)]
+    file.write_text("target,deviation [um],direction\n" + "\n".join(rows) + "\n")
+    out = tmp_path / "out"
+    told = within("calibrate", "circle", "--record", f"X={file}", "--out", out)
+    assert told.returncode == 0, told.stderr
+    found = tomllib.loads((out / "found.toml").read_text())
+    assert found["machine.backlash[1]"] == pytest.approx(8e-6)
+    told = within("calibrate", "circel", "--record", f"X={file}")
+    assert "no such machine" in told.stderr
+
+
 def test_poses_by_the_command(tmp_path: Path) -> None:
     from test_arm_calibration import RIGID, errors, record
 

@@ -192,6 +192,7 @@ def test_a_part_program_excites_its_lines_on_the_projects_controller(tmp_path):
         ({"low": 100.0, "high": 102.0}, "8 lines at least"),
         ({"margin": 1.5}, "margin = 1.5: 0.01 to 1 wanted"),
         ({"periods": 1}, "periods = 1: 2 to 1000 wanted"),
+        ({"seed": -1}, "seed = -1: a whole number from 0 wanted"),
         ({"speed": 0.0}, "one that is not 0 wanted"),
         ({"speed": 300.0}, "is the most that speed, torque and travel"),
         ({"margin": 0.02}, "friction"),

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 import motionfmu
 from motionfmu.cli import app
+from motionfmu.identify import identify_file
 
 PERIOD, STOP = 1e-3, 1.5  # [s]
 
@@ -90,3 +91,16 @@ def test_what_is_wrong_is_told_and_nothing_is_written(
     assert isinstance(done.exception, motionfmu.InputError), done.exception
     assert told in str(done.exception)
     assert not (tmp_path / "out").exists()
+
+
+def test_a_column_of_the_command_line_takes_the_place_of_the_files_of_that_signal() -> None:
+    file = {"axis": 2, "columns": {"drives.torque[1]": "drives.torque", "x": {"signal": "m.x"}}}
+    tables = identify_file.with_columns(file, ["Iq-Ist=drives.torque*0.56"])
+    uses = identify_file.options(tables, "identify.toml").columns
+    assert {n: (u.signal, u.scale) for n, u in uses.items()} == {
+        "x": ("m.x", None),
+        "Iq-Ist": ("drives.torque", 0.56),
+    }
+    assert tables["axis"] == 2
+    with pytest.raises(motionfmu.InputError, match="two columns are that signal"):
+        identify_file.options(identify_file.with_columns({}, ["a=m.x", "b=m.x"]), "--column")

@@ -207,8 +207,8 @@ def test_the_closed_form_is_that_of_the_equations():
         ]
     )  # fmt: skip
     for row, load in (([1.0, 0, 0, 0], False), ([0, 0, 1.0, 0], True)):
-        system = signal.StateSpace(a, [[0], [1 / m.motor], [0], [0]], [row], [[0]])
-        _, values = signal.freqresp(system, OMEGA)
+        moved = [np.linalg.solve(1j * w * np.eye(4) - a, [0, 1 / m.motor, 0, 0]) for w in OMEGA]
+        values = np.array(moved) @ row
         late = np.exp(-1j * OMEGA * m.delay)
         np.testing.assert_allclose(m.response(OMEGA, load), values * late, rtol=1e-9)
     zeros = np.sqrt(m.stiffness / m.load), np.sqrt(m.stiffness * (1 / m.motor + 1 / m.load))
@@ -463,6 +463,10 @@ RECORD = AxisRecord(
         ({"u": "drives.torque", "x": "machine.motor_fase"}, "machine.motor_fase is no signal"),
         ({"u": "drives.torque", "x": "machine.screw_force"}, "neither a position nor a speed"),
         ({"x": "drives.torque", "u": "machine.motor_phase"}, "its scale must be said"),
+        (
+            {"u": "drives.torque", "r": "machine.motor_angle"},
+            "column r [no unit] is no machine.motor_angle [rad]: its scale must be said",
+        ),
     ],
 )
 def test_wrong_columns_are_told(columns, told):

@@ -153,7 +153,8 @@ def test_states_are_dropped_when_they_take_too_much(monkeypatch: pytest.MonkeyPa
         ("mcc.overide", 1.0, "mcc.overide cannot be set; did you mean 'mcc.override'?"),
         ("mcc.override", 9.0, "mcc.override = 9.0"),
         ("mcc.override", True, "mcc.override = True: Float64 wanted"),
-        ("machine.force[7]", 1.0, "machine.force"),
+        ("machine.force[7]", 1.0, "machine.force[7]: machine.force has the elements 1 to 6"),
+        ("machine.force[0]", 1.0, "machine.force[0]: machine.force has the elements 1 to 6"),
         ("machine.force", [1.0], "machine.force has 6 elements, not 1"),
         ("machine.torque_command", 1.0, "machine.torque_command is wired to drives.torque"),
         ("machine.table_position", 1.0, "machine.table_position is an output"),
@@ -185,3 +186,37 @@ def test_checks_that_are_ticked_go_with_it(tmp_path: Path) -> None:
             machine.save(tmp_path / "other", {"mcc.path_fed": {"max": 1000.0}})
         assert not (tmp_path / "other").exists()
     assert motionfmu.load(tmp_path / "seen").run().ok
+
+
+def test_steps_and_signals_that_are_none_are_told() -> None:
+    with LiveMachine("circle") as machine:
+        for count in (-1, 1.5, True, "5"):
+            with pytest.raises(InputError, match="steps: a whole number from 0 wanted"):
+                machine.step(count)  # type: ignore[arg-type]
+            with pytest.raises(InputError, match="steps: a whole number from 0 wanted"):
+                machine.trace(["drives.torque"], count)  # type: ignore[arg-type]
+        told = r"drives\.torqe: no such signal; did you mean 'drives\.torque'"
+        with pytest.raises(InputError, match=told):
+            machine.trace(["drives.torque", "drives.torqe"], 5)
+        with pytest.raises(InputError, match=told):
+            machine.read(["drives.torqe"])
+        assert machine.steps == 0
+        assert machine.trace("drives.torque", 3)["drives.torque"].shape == (3, 6)
+
+
+def test_a_closed_machine_says_so_and_closes_twice() -> None:
+    with LiveMachine("circle") as machine:
+        machine.keep()
+        with pytest.raises(InputError, match="back to nan s: a finite time wanted"):
+            machine.back(float("nan"))
+        machine.read(["drives.torque"])
+    machine.close()
+    for act in (
+        machine.step,
+        machine.keep,
+        lambda: machine.set("machine.force[1]", 1.0),
+        lambda: machine.read(["drives.torque"]),
+        lambda: machine["drives.torque"],
+    ):
+        with pytest.raises(InputError, match="circle: the machine is closed"):
+            act()

@@ -66,7 +66,8 @@ class _Readings:
         """Take one reading."""
         if abs(deviation) > FARTHEST:
             told = f"{deviation:.6g} mm beside its target {target:g} mm"
-            raise InputError(f"{self.file}: line {line}: {told}: are these millimetres? [µm] in")
+            wanted = "are these millimetres? [µm] in the heading says otherwise"
+            raise InputError(f"{self.file}: line {line}: {told}: {wanted}")
         same = next((t for t, _ in self.at if abs(t - target) < SAME), target)
         self.at.setdefault((same, way), []).append(deviation)
 
@@ -179,7 +180,11 @@ def _table(readings: _Readings, lines: Sequence[str]) -> None:
     found = _head(lines)
     file = readings.file
     if found is None:
-        raise InputError(f"{file}: no column of targets: {', '.join(TARGETS)} or .rtl wanted")
+        first = next((line.strip() for line in lines if line.strip()), "")
+        told = f"it begins with {first[:60]!r}" if first else "nothing is in it"
+        raise InputError(
+            f"{file}: no column of targets: {', '.join(TARGETS)} or .rtl wanted; {told}"
+        )
     row, mark, heads = found
     names = [_name(h) for h in heads]
     rows = [

@@ -1,5 +1,6 @@
 """The console command that finds a machine's geometry in measured records."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -93,7 +94,12 @@ def _opened(path: Path) -> "tuple[Machine | None, Scenario]":
     scenario = path if path.is_file() else path / "scenario.toml"
     if scenario.is_file() and scenario.name == "scenario.toml":
         return None, run.load(path)
-    found = run.machine(path)
+    try:
+        found = run.machine(path)
+    except InputError:
+        with suppress(InputError):
+            return None, run.load(path)  # a name of `motionfmu list`
+        raise
     return found, found.plan()
 
 

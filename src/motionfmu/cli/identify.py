@@ -94,7 +94,7 @@ def identify(  # noqa: PLR0913  (each is an option of the command)
     place = file or (beside if beside.is_file() else None)
     given = {"axis": axis, "free": free, "fix": fix, "laws": law}
     tables = _tables(place, column, given | ({"controller": False} if as_given else {}))
-    where = str(place or "--column")
+    where = str(place or "--column, or an identify.toml beside the scenario")
     target = result_folder.usable(folder or results(scenario.name, "identify"))
     if frf:
         options, asked = identify_file.options(tables, where), ResponseAsked(record, period, band)
@@ -111,9 +111,7 @@ def _tables(place: Path | None, column: list[str], given: dict[str, Any]) -> dic
     """The tables of a file, with what the command line says instead."""
     from motionfmu.identify import identify_file
 
-    tables = identify_file.read(place) if place else {}
-    if column:
-        tables["columns"] = {**tables.get("columns", {}), **dict(map(identify_file.column, column))}
+    tables = identify_file.with_columns(identify_file.read(place) if place else {}, column)
     return tables | {k: v for k, v in given.items() if v not in (None, [])}
 
 

@@ -458,6 +458,8 @@ def _check(options: ExciteOptions) -> None:
             raise InputError(f"{name} = {value:g}: {low:g} to {high:g} wanted")
     if not 2 <= options.periods <= 1000:
         raise InputError(f"periods = {options.periods}: 2 to 1000 wanted")
+    if options.seed is not None and options.seed < 0:
+        raise InputError(f"seed = {options.seed}: a whole number from 0 wanted")
     if options.speed is not None and not 0.0 < abs(options.speed) < 1e5:
         raise InputError(f"speed = {options.speed:g} rad/s: one that is not 0 wanted")
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base import units
 from motionfmu.base.errors import InputError
 from motionfmu.records import Record
 
@@ -67,8 +68,49 @@ class AxisRecord:
 
 
 def of_record(record: Record) -> AxisRecord:
-    """A measured record's single columns, which are numbers at even instants."""
-    columns = {name: np.asarray(record[name], np.float64) for name in record.columns}
-    single = {name: values for name, values in columns.items() if values.ndim == 1}
-    units = {name: record.units.get(name) or "" for name in single}
-    return AxisRecord(record.time, single, units, record.name)
+    """A measured record as numbers at even instants, vectors by element: ``X[1]``."""
+    columns: dict[str, Array] = {}
+    units: dict[str, str] = {}
+    for name in record.columns:
+        values = np.asarray(record[name], np.float64)
+        parts = {name: values}
+        if values.ndim == 2:
+            parts = {f"{name}[{k + 1}]": values[:, k] for k in range(values.shape[1])}
+        columns |= parts
+        units |= dict.fromkeys(parts, record.units.get(name) or "")
+    return AxisRecord(record.time, columns, units, record.name)
+
+
+def column_of(record: AxisRecord, name: str, signal: str) -> Array:
+    """A column's values; an InputError says what the record has, and how to name another one."""
+    if name in record.columns:
+        return record.columns[name]
+    told = ", ".join(record.columns)
+    raise InputError(
+        f"{record.name} has no column {name!r}; it has: {told};"
+        f" --column COLUMN={signal} says which one is {signal}"
+    )
+
+
+def scale_of_units(
+    record: AxisRecord, name: str, signal: str, unit: str | None
+) -> tuple[units.Unit, float]:
+    """Unit of a column, and how much of its signal's it is: 0 if it is another quantity."""
+    written = record.units.get(name, "")
+    if not written and unit not in (None, "", "1"):
+        raise no_scale(record, name, signal, unit)  # it may be degrees as well as radians
+    try:
+        own = units.parse(written or "1")
+    except ValueError as error:
+        raise InputError(f"{record.name}: column {name}: {error}") from None
+    wanted = units.parse(unit or "1")
+    return own, own.factor / wanted.factor if own.exponents == wanted.exponents else 0.0
+
+
+def no_scale(record: AxisRecord, name: str, signal: str, unit: str | None) -> InputError:
+    """What to say of a column whose unit is no form of its signal's."""
+    own = record.units.get(name, "") or "no unit"
+    return InputError(
+        f"{record.name}: column {name} [{own}] is no {signal} [{unit or '1'}]: its scale must be"
+        f" said: --column '{name}={signal}*SCALE'"
+    )

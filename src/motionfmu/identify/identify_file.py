@@ -61,6 +61,21 @@ def options(tables: Mapping[str, Any], place: str) -> IdentifyOptions:
     return IdentifyOptions(uses, **more)
 
 
+def with_columns(tables: Mapping[str, Any], texts: Sequence[str]) -> dict[str, Any]:
+    """Tables with columns of the command line, each instead of the file's column of that signal."""
+    given = dict(map(column, texts))
+    signals = {_signal(use) for use in given.values()}
+    columns = tables.get("columns", {})
+    if isinstance(columns, Mapping):
+        kept = {n: use for n, use in columns.items() if _signal(use) not in signals}
+        return {**tables, "columns": {**kept, **given}} if given else dict(tables)
+    return dict(tables)
+
+
+def _signal(use: Any) -> Any:
+    return use.get("signal") if isinstance(use, Mapping) else use
+
+
 def column(text: str) -> tuple[str, str | dict[str, Any]]:
     """Read ``COLUMN=COMP.VAR`` or ``COLUMN=COMP.VAR*SCALE`` of the command line."""
     name, equals, rest = text.partition("=")
@@ -75,4 +90,4 @@ def column(text: str) -> tuple[str, str | dict[str, Any]]:
         raise InputError(f"--column {text}: {scale!r} is no number") from None
 
 
-__all__: Sequence[str] = ["FILE", "column", "options", "read"]
+__all__: Sequence[str] = ["FILE", "column", "options", "read", "with_columns"]

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base import units
-from motionfmu.base.errors import InputError
 from motionfmu.identify.axis_loop import AxisLoop
-from motionfmu.identify.axis_record import AxisRecord
+from motionfmu.identify.axis_record import AxisRecord, column_of, no_scale, scale_of_units
 
 Array = NDArray[np.float64]
 # Share of a communication step by which the interval of a record may be no whole number of them.
@@ -102,13 +101,10 @@ def recorded(
     time = record.time[0] + interval * np.arange(samples)
     scales, columns, values = {}, {}, {}
     for name, use in uses.items():
-        if name not in record.columns:
-            told = ", ".join(record.columns)
-            raise InputError(f"{record.name} has no column {name!r}; it has: {told}")
+        raw = column_of(record, name, use.signal)
         scale = use.scale
         if scale is None:
             scale = _scale(loop, record, (name, use.signal), ratios)
-        raw = record.columns[name]
         here = raw if even else np.interp(time, record.time, raw)
         values[use.signal] = here * scale + use.offset
         scales[use.signal], columns[use.signal] = scale, name
@@ -133,20 +129,12 @@ def _scale(
     name, signal = of
     component, _, variable = signal.partition(".")
     port = loop.scenario.resolver.ports[component][variable.partition("[")[0]]
-    given = record.units.get(name, "")
-    try:
-        own = units.parse(given or "1")
-    except ValueError as error:
-        raise InputError(f"{record.name}: column {name}: {error}") from None
-    wanted = units.parse(port.unit or "1")
-    if own.exponents == wanted.exponents:
-        return own.factor / wanted.factor
+    own, scale = scale_of_units(record, name, signal, port.unit)
+    if scale:
+        return scale
     if signal in ratios and own.exponents in (
         units.parse("m").exponents,
         units.parse("rad").exponents,
     ):
         return own.factor * ratios[signal]
-    raise InputError(
-        f"{record.name}: column {name} [{given or '1'}] is no {signal} [{port.unit or '1'}]:"
-        " its scale must be said"
-    )
+    raise no_scale(record, name, signal, port.unit)

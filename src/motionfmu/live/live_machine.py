@@ -1,6 +1,7 @@
 """The fused program of a scenario, stepped, changed, looked at and taken back by hand."""
 
 import json
+import math
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p
@@ -93,7 +94,7 @@ class LiveMachine:
         self._kept: deque[_SavedState] = deque()
         self._readers: dict[tuple[str, ...], Callable[[], list[Any]]] = {}
         self.journal = Journal(self._system.step_ns)
-        self.steps = 0
+        self.steps, self._closed = 0, False
         try:
             self._begin()
         except BaseException:
@@ -144,7 +145,12 @@ class LiveMachine:
         told = text.strip().removeprefix(f"{NAME}: ")
         fmu_messages.keep(status, told, self._errors, self.warnings)
 
+    def _open(self) -> None:
+        if self._closed:
+            raise InputError(f"{self.scenario.name}: the machine is closed")
+
     def _refusable(self, call: Callable[[], None]) -> None:
+        self._open()
         self._errors.clear()
         try:
             call()
@@ -209,6 +215,9 @@ class LiveMachine:
         except InputError:
             whole, element = name, None
         if whole in self._inputs:
+            count = self._inputs[whole].port.count
+            if element is not None and not 0 <= element < count:
+                raise InputError(f"{name}: {whole} has the elements 1 to {count}")
             return whole, element
         for stimulus in self._system.stimuli:
             if stimulus.end.name == whole:
@@ -242,11 +251,24 @@ class LiveMachine:
         -------
         list of list
             The elements of each, in the order of the names.
+
+        Raises
+        ------
+        InputError
+            There is no such signal.
         """
+        self._open()
         key = tuple(names)
         if key not in self._readers:
+            self._known(key)
             self._readers[key] = self._reader(key)
         return self._readers[key]()
+
+    def _known(self, names: Iterable[str]) -> None:
+        for name in names:
+            if name not in self._outputs and name not in self._inputs:
+                told = suggestion(name, [*self._outputs, *self._inputs])
+                raise InputError(f"{name}: no such signal{told}")
 
     def _reader(self, names: tuple[str, ...]) -> Callable[[], list[list[Any]]]:
         """A function that gets signals by one call of each type."""
@@ -276,12 +298,14 @@ class LiveMachine:
         Parameters
         ----------
         count : int
+            0 or more.
 
         Raises
         ------
         InputError
-            An FMU refuses to go on.
+            It is no such number, or an FMU refuses to go on.
         """
+        _whole_number(count)
         end = self.steps + count
         while self.steps < end:
             now = self._due.get(self.steps, ())
@@ -313,8 +337,15 @@ class LiveMachine:
         -------
         dict
             By name, of shape (count,) or (count, elements).
+
+        Raises
+        ------
+        InputError
+            There is no such signal, `count` is no number of steps, or an FMU refuses to go on.
         """
-        wanted = tuple(names)
+        _whole_number(count)
+        wanted = (names,) if isinstance(names, str) else tuple(names)
+        self._known(wanted)
         rows = []
         for _ in range(count):
             rows.append(self.read(wanted))
@@ -367,6 +398,8 @@ class LiveMachine:
         InputError
             No state is kept from then.
         """
+        if not math.isfinite(time):
+            raise InputError(f"back to {time} s: a finite time wanted")
         step = round(time * 1e9 / self._system.step_ns)
         if not any(k.step <= step for k in self._kept):
             raise InputError(f"no state is kept at or before {time:g} s")
@@ -455,7 +488,9 @@ class LiveMachine:
         """Free the program and the states that are kept."""
         while self._kept:
             self._drop(self._kept.pop())
-        self._library.close()
+        if not self._closed:
+            self._library.close()
+        self._closed = True
 
     def __enter__(self) -> "LiveMachine":
         return self
@@ -471,3 +506,9 @@ def _is_table(value: Any) -> bool:
     return isinstance(value, dict) or (
         isinstance(value, list) and bool(value) and isinstance(value[0], dict)
     )
+
+
+def _whole_number(count: Any) -> None:
+    """Refuse what is no number of steps."""
+    if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 0:
+        raise InputError(f"{count!r} steps: a whole number from 0 wanted")

@@ -28,9 +28,14 @@ from motionfmu.analysis.measured_response.response_estimate import (
 from motionfmu.analysis.measured_response.response_table import read_response, response_table
 from motionfmu.base import units
 from motionfmu.base.errors import InputError
-from motionfmu.identify.axis_record import AxisRecord
+from motionfmu.identify.axis_record import (
+    AxisRecord,
+    column_of,
+    no_scale,
+    of_record,
+    scale_of_units,
+)
 from motionfmu.identify.recorded_loop import ColumnUse
-from motionfmu.records import Record
 from motionfmu.run import Scenario
 
 Array = NDArray[np.float64]
@@ -104,25 +109,11 @@ def identify_response(
             measured, pair = read_response(table, options.columns, scenario.resolver.ports)
             found.append(_in_band(measured, options.estimate))
             continue
-        record = file if isinstance(file, AxisRecord) else _by_elements(records.record(file))
+        record = file if isinstance(file, AxisRecord) else of_record(records.record(file))
         roles = _roles(record, options.columns, (model, masses))
         pair = (options.columns[roles.input].signal, options.columns[roles.output].signal)
         found.append(estimate(_signals(record, roles, options, model), options.estimate))
     return found_response(scenario, together(found), pair, options.axis, given)
-
-
-def _by_elements(record: Record) -> AxisRecord:
-    """A record's columns, those of vectors by element: ``X[1]``."""
-    columns: dict[str, Array] = {}
-    units: dict[str, str] = {}
-    for name in record.columns:
-        values = np.asarray(record[name], np.float64)
-        parts = {name: values}
-        if values.ndim == 2:
-            parts = {f"{name}[{k + 1}]": values[:, k] for k in range(values.shape[1])}
-        columns |= parts
-        units |= dict.fromkeys(parts, record.units.get(name) or "")
-    return AxisRecord(record.time, columns, units, record.name)
 
 
 def _in_band(measured: MeasuredResponse, options: EstimateOptions) -> MeasuredResponse:
@@ -145,9 +136,7 @@ def _roles(
     both = source if source == drive else f"{source} or {drive}"
     kinds: dict[str, list[str]] = {"reference": [], "input": [], "output": []}
     for name, use in uses.items():
-        if name not in record.columns:
-            told = ", ".join(record.columns)
-            raise InputError(f"{record.name} has no column {name!r}; it has: {told}")
+        column_of(record, name, use.signal)
         if use.signal in (drive, source):
             kinds["input"].append(name)
         elif use.signal in model.inputs:
@@ -193,14 +182,9 @@ def _scale(record: AxisRecord, name: str, use: ColumnUse, model: AxisModel) -> f
     """Of a signal's unit per unit of a column: by the units, or by the plant's own motion."""
     component, _, variable = use.signal.partition(".")
     port = model.scenario.resolver.ports[component][variable.partition("[")[0]]
-    written = record.units.get(name, "")
-    try:
-        own = units.parse(written or "1")
-    except ValueError as error:
-        raise InputError(f"{record.name}: column {name}: {error}") from None
-    there = units.parse(port.unit or "1")
-    if own.exponents == there.exponents:
-        return own.factor / there.factor
+    own, scale = scale_of_units(record, name, use.signal, port.unit)
+    if scale:
+        return scale
     block = model.blocks[component]
     if isinstance(block, Plant):
         point = model.points[component]
@@ -211,7 +195,4 @@ def _scale(record: AxisRecord, name: str, use: ColumnUse, model: AxisModel) -> f
                 unit = units.parse(ports[other].unit or "1")
                 if unit.exponents == own.exponents and moving.get(other, 0.0) and mine:
                     return float(own.factor / unit.factor * mine / moving[other])
-    raise InputError(
-        f"{record.name}: column {name} [{written or '1'}] is no {use.signal} [{port.unit or '1'}]:"
-        " its scale must be said"
-    )
+    raise no_scale(record, name, use.signal, port.unit)
