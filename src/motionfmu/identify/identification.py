@@ -2,7 +2,7 @@
 
 import math
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -227,20 +227,11 @@ def identify(
     span = own.first, own.data.samples - 1
     near = chosen.values if chosen else {}
     own.motion.fine = own.gap
-    idle: list[str] = []
-    while True:
-        free, fitted, known, more = fitted_span(own, extended(own, names, laws, asked), span, near)
-        if known is not None and own.gap:
-            progress("parts of the record", 0.8)
-            known = known.at_least(part_scatter(own, free, fitted, span))
-        nothing = () if options.laws is not None else idle_laws(own, laws, (free, fitted, known))
-        late = {} if nothing else scattered(own, free, fitted, known)
-        idle += nothing
-        laws = tuple(n for n in laws if n not in nothing)
-        names = [n for n in names if n not in late]
-        why |= late
-        if not nothing and not late:
-            break
+    judge = laws if options.laws is None else ()
+    (free, fitted, known, more), laws, idle, late = _all_of_the_record(
+        own, (names, laws, judge, asked), span, near, progress
+    )
+    why |= late
     marks.append(clock.perf_counter())
     parts = np.diff(marks).tolist()
     measured, simulated = stretch_signals(own, fitted, span)
@@ -276,6 +267,41 @@ def identify(
         given=given,
         kept_share=options.keep,
     )
+
+
+def _all_of_the_record(
+    own: Ground,
+    asked: tuple[Sequence[str], Sequence[str], Sequence[str], IdentifyOptions],
+    span: tuple[int, int],
+    near: Mapping[str, float],
+    progress: Progress,
+) -> tuple[
+    tuple[FreeParameters, Fitted, Spread | None, dict[str, str]],
+    tuple[str, ...],
+    list[str],
+    dict[str, str],
+]:
+    """The last fit; the laws that stay, those that left again, what its parts tell too differently.
+
+    Laws are in `asked` twice: all of them, and those that may leave.
+    """
+    names, laws, judge, options = asked
+    left, idle, late = list(names), list[str](), dict[str, str]()
+    while True:
+        fit = fitted_span(own, extended(own, left, laws, options), span, near)
+        free, fitted, known, more = fit
+        if known is not None and own.gap:
+            progress("parts of the record", 0.8)
+            known = known.at_least(part_scatter(own, free, fitted, span))
+        nothing = idle_laws(own, [n for n in laws if n in judge], (free, fitted, known))
+        worst = {} if nothing else scattered(own, free, fitted, known)
+        if not nothing and not worst:
+            return (free, fitted, known, more), tuple(laws), idle, late
+        idle += nothing
+        laws = [n for n in laws if n not in nothing]
+        left = [n for n in left if n not in worst]
+        options = replace(options, fix=(*options.fix, *worst))  # of a law that was asked for, too
+        late |= worst
 
 
 def _options(
