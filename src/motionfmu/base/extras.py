@@ -1,8 +1,11 @@
 """Large packages that only some commands need, by the extra that installs them."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 from motionfmu.base.errors import InputError
 
@@ -41,6 +44,20 @@ def needed(extra: str) -> None:
     """Raise `Missing` if an extra is not installed: what needs it, how it is installed."""
     if names := ", ".join(missing(extra)):
         raise Missing(f"{EXTRAS[extra].use} needs {names}: {install(extra)}")
+
+
+def at_first_use(
+    package: str, names: Sequence[str], modules: Callable[[], Sequence[ModuleType]]
+) -> Callable[[str], Any]:
+    """A package's `__getattr__`, which imports modules that need the extra `tune` when asked."""
+
+    def get(name: str) -> Any:
+        if name not in names:
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        needed("tune")
+        return next(getattr(m, name) for m in modules() if hasattr(m, name))
+
+    return get
 
 
 def install(extra: str) -> str:

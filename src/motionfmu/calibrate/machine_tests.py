@@ -61,7 +61,7 @@ class MachineTests:
         centre: tuple[float, float] | None,
         given: Mapping[str, Any],
     ) -> CircularTest:
-        """A circle both ways round, [mm] and [mm/s]; an InputError says why it cannot."""
+        """Run a circle in a plane, radius [mm], feed [mm/s]; InputError without such axes."""
         found = next(p for p in PLANES if "".join(p[1:]) == plane)
         known = {n: a for n, a in self.axes.items() if n in plane}
         if len(known) < 2:

@@ -16,11 +16,11 @@ from motionfmu.cli.common import (
     app,
     bare_table,
     out,
-    progress_bar,
     record_options,
     report,
     results,
     settings,
+    stages,
 )
 
 if TYPE_CHECKING:
@@ -157,15 +157,8 @@ def _tool(
     from motionfmu.report import result_folder
     from motionfmu.report.calibration_page import machine_page
 
-    with progress_bar() as bar:
-        task = bar.add_task("", total=1.0)
-        found = machine_calibration(
-            plan,
-            records,
-            machine,
-            values,
-            lambda what, share: bar.update(task, completed=share, description=what),
-        )
+    with stages() as show:
+        found = machine_calibration(plan, records, machine, values, show)
     with result_folder.whole(target) as part:
         result_folder.write_result(part, machine_page(found), found.numbers())
         for name, text in machine_files(found, target).items():

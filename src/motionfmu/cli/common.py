@@ -1,9 +1,11 @@
 """Common parts of the commands: application, options, settings, runs with a progress bar."""
 
+import contextlib
 import functools
 import os
 import sys
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -320,6 +322,15 @@ def progress_bar(*columns: "ProgressColumn") -> "Progress":
 
     console = out.console
     return Progress(*columns, console=console, disable=not console.is_terminal, transient=True)
+
+
+@contextlib.contextmanager
+def stages(name: str = "") -> Iterator[Callable[[str, float], None]]:
+    """A progress bar whose function takes what is done and the share done of all."""
+    with progress_bar() as bar:
+        task = bar.add_task(name, total=1.0)
+        begin = f"{name}: " if name else ""
+        yield lambda what, share: bar.update(task, description=begin + what, completed=share)
 
 
 def under_way(what: str) -> None:

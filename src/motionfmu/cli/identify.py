@@ -17,10 +17,10 @@ from motionfmu.cli.common import (
     bare_table,
     loaded,
     out,
-    progress_bar,
     report,
     results,
     settings,
+    stages,
 )
 
 if TYPE_CHECKING:
@@ -156,12 +156,7 @@ def _identify(
     """Identify and run, with a progress bar, which shows on a terminal only."""
     from motionfmu.identify import identify, run_of_record
 
-    with progress_bar() as bar:
-        task = bar.add_task(scenario.name, total=1.0)
-
-        def show(what: str, share: float) -> None:
-            bar.update(task, description=f"{scenario.name}: {what}", completed=share)
-
+    with stages(scenario.name) as show:
         found = identify(scenario, record, options, given, show)
         show("the FMUs", 0.9)
         run = run_of_record(found) if found.ground.loop.driven else None

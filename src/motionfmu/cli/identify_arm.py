@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from motionfmu.cli.common import FAILED, bare_table, out, progress_bar, report
+from motionfmu.cli.common import FAILED, bare_table, out, report, stages
 
 if TYPE_CHECKING:
     from motionfmu.identify.arm_dynamics import ArmOptions, HeldArm, IdentifiedArm
@@ -43,12 +43,7 @@ def _found(
     """Identify and run, with a progress bar, which shows on a terminal only."""
     from motionfmu.identify.arm_dynamics import held_arm, identify_arm
 
-    with progress_bar() as bar:
-        task = bar.add_task(scenario.name, total=1.0)
-
-        def show(what: str, share: float) -> None:
-            bar.update(task, description=f"{scenario.name}: {what}", completed=share)
-
+    with stages(scenario.name) as show:
         found = identify_arm(scenario, record, options, set_, lambda w, s: show(w, 0.7 * s))
         run = held_arm(found, progress=lambda s: show("the FMU", 0.7 + 0.3 * s))
         return found, run

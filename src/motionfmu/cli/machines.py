@@ -13,10 +13,10 @@ from motionfmu.cli.common import (
     app,
     bare_table,
     out,
-    progress_bar,
     report,
     results,
     settings,
+    stages,
 )
 from motionfmu.cli.info import first_line, print_rows
 
@@ -71,13 +71,8 @@ def _measured(own: "object", given: dict[str, object]) -> "DataSheet":
     """The data sheet, with a progress bar, which shows on a terminal only."""
     from motionfmu.analysis.data_sheet import data_sheet
 
-    with progress_bar() as bar:
-        task = bar.add_task("", total=1.0)
-        return data_sheet(
-            own,  # type: ignore[arg-type]
-            given,
-            lambda what, share: bar.update(task, completed=share, description=what),
-        )
+    with stages() as show:
+        return data_sheet(own, given, show)  # type: ignore[arg-type]
 
 
 def _print(sheet: "DataSheet") -> None:

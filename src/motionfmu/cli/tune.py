@@ -15,10 +15,10 @@ from motionfmu.cli.common import (
     bare_table,
     loaded,
     out,
-    progress_bar,
     report,
     results,
     settings,
+    stages,
 )
 
 if TYPE_CHECKING:
@@ -106,13 +106,5 @@ def _tune(scenario: "Scenario", asked: "Problem", given: dict[str, Any]) -> "Tun
     """Tune with a progress bar, which shows on a terminal only."""
     from motionfmu.study.tune import tune
 
-    with progress_bar() as bar:
-        task = bar.add_task(scenario.name, total=1.0)
-        return tune(
-            scenario,
-            asked,
-            given,
-            lambda what, share: bar.update(
-                task, description=f"{scenario.name}: {what}", completed=share
-            ),
-        )
+    with stages(scenario.name) as show:
+        return tune(scenario, asked, given, show)

@@ -1,6 +1,9 @@
 """Excitations for a measurement of an axis, within its limits."""
 
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from motionfmu.base.extras import at_first_use
 
 if TYPE_CHECKING:
     from motionfmu.excite.axis_excitation import (
@@ -23,17 +26,14 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what makes them when it is first used, as it needs the extra `tune`."""
-    if name not in __all__:
-        raise AttributeError(f"module 'motionfmu.excite' has no attribute {name!r}")
-    from motionfmu.base.extras import needed
-
-    needed("tune")
+def _modules() -> tuple[ModuleType, ...]:
+    """Where the names are."""
     from motionfmu.excite import axis_excitation, excite_files, position_program
 
-    places = (axis_excitation, excite_files, position_program)
-    return next(getattr(place, name) for place in places if hasattr(place, name))
+    return axis_excitation, excite_files, position_program
+
+
+__getattr__ = at_first_use(__name__, __all__, _modules)
 
 
 def __dir__() -> list[str]:

@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 _POWERS = (4, 8, 16, 32, 64)
 _STEPS = 80  # of a search with one power
-_FINE = 8  # samples of the shortest period
+_FINE = 8  # samples in the shortest period of the multisine
 
 
 def crest(signal: Array) -> float:

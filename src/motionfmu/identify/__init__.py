@@ -1,6 +1,9 @@
 """From a measured record of an axis to the parameters of its plant."""
 
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from motionfmu.base.extras import at_first_use
 
 if TYPE_CHECKING:
     from motionfmu.identify.axis_record import AxisRecord
@@ -24,13 +27,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what identifies when it is first used, as it needs the extra `tune`."""
-    if name not in __all__:
-        raise AttributeError(f"module 'motionfmu.identify' has no attribute {name!r}")
-    from motionfmu.base.extras import needed
-
-    needed("tune")
+def _modules() -> tuple[ModuleType, ...]:
+    """Where the names are."""
     from motionfmu.identify import (
         axis_record,
         confidence_region,
@@ -40,8 +38,10 @@ def __getattr__(name: str) -> Any:
         recorded_loop,
     )
 
-    places = (axis_record, confidence_region, ground, identification, record_run, recorded_loop)
-    return next(getattr(place, name) for place in places if hasattr(place, name))
+    return axis_record, confidence_region, ground, identification, record_run, recorded_loop
+
+
+__getattr__ = at_first_use(__name__, __all__, _modules)
 
 
 def __dir__() -> list[str]:

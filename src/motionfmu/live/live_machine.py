@@ -25,7 +25,7 @@ from motionfmu.run.runner import Scenario, load
 from motionfmu.run.saved_scenario import copied_files
 from motionfmu.scenarios import package_files
 from motionfmu.scenarios.system import End, Stimulus
-from motionfmu.scenarios.toml_text import pair_lines, table_lines
+from motionfmu.scenarios.toml_text import document_lines
 from motionfmu.scenarios.values import start_values, values_of
 
 NAME = "system"
@@ -271,7 +271,7 @@ class LiveMachine:
                 raise InputError(f"{name}: no such signal{told}")
 
     def _reader(self, names: tuple[str, ...]) -> Callable[[], list[list[Any]]]:
-        """A function that gets signals by one call of each type."""
+        """A function that reads these signals, by one call of the FMU for each type."""
         by_type: dict[str, list[str]] = {}
         for name in names:
             by_type.setdefault(self._places[name].type, []).append(name)
@@ -473,14 +473,8 @@ class LiveMachine:
         tables = {k: v for k, v in given if k not in ("machine", "extends") and v not in ({}, [])}
         with new_folder(place) as part:
             tables = copied_files(plan, tables, part, place)
-            lines = [f"# {self.scenario.document.about.rstrip('.')}, as it was worked at."]
-            plain = {k: v for k, v in tables.items() if not _is_table(v)}
-            for key, value in plain.items():
-                lines += pair_lines(key, value)
-            for key, value in tables.items():
-                if key not in plain:
-                    lines += table_lines(key, value)
-            text = "\n".join(lines) + "\n"
+            about = f"# {self.scenario.document.about.rstrip('.')}, as it was worked at."
+            text = "\n".join([about, *document_lines(tables)]) + "\n"
             (part / package_files.SCENARIO).write_text(text, encoding="utf-8")
         return place / package_files.SCENARIO
 
@@ -500,12 +494,6 @@ class LiveMachine:
 
     def __repr__(self) -> str:
         return f"<LiveMachine {self.scenario.name}: {self.time:.9g} s, {len(self.journal)} actions>"
-
-
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict) or (
-        isinstance(value, list) and bool(value) and isinstance(value[0], dict)
-    )
 
 
 def _whole_number(count: Any) -> None:

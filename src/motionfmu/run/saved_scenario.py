@@ -14,7 +14,7 @@ from motionfmu.run.program_translation import GCODE
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import package_files, record_signals
 from motionfmu.scenarios.system import Resolver
-from motionfmu.scenarios.toml_text import pair_lines, table_lines
+from motionfmu.scenarios.toml_text import document_lines
 
 
 def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
@@ -26,13 +26,7 @@ def save_scenario(plan: RunPlan, folder: Path, options: Options) -> None:
     with new_folder(folder) as part:
         tables = copied_files(plan, tables, part, folder)
         top = {"machine": _machine_name(machine, folder.absolute())}
-        top |= {k: v for k, v in tables.items() if not isinstance(v, dict | list)}
-        lines = [f"# {document.about}."]
-        for key, value in top.items():
-            lines += pair_lines(key, value)
-        for name, table in tables.items():
-            if isinstance(table, dict | list):
-                lines += table_lines(name, table)
+        lines = [f"# {document.about}.", *document_lines(top | tables)]
         (part / package_files.SCENARIO).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

@@ -46,6 +46,16 @@ def table_lines(name: str, table: Any) -> Iterator[str]:
             yield from table_lines(f"{name}.{key}", value)
 
 
+def document_lines(tables: Mapping[str, Any]) -> Iterator[str]:
+    """Lines of a whole file: keys first, then tables and arrays of tables."""
+    inner = {k: v for k, v in tables.items() if isinstance(v, Mapping) or _is_array(v)}
+    for key, value in tables.items():
+        if key not in inner:
+            yield from pair_lines(key, value)
+    for key, value in inner.items():
+        yield from table_lines(key, value)
+
+
 def _is_array(value: Any) -> bool:
     """Whether a value is an array of tables."""
     return isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)

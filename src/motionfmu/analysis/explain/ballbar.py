@@ -93,7 +93,7 @@ class FittedCircle:
     angle: Array  # (n,) [rad]
     way: Array  # (n,) 1 counter-clockwise, -1 clockwise
     deviation: Array  # (n,) [mm]
-    used: NDArray[np.bool_]  # (n,) whether a sample is fitted, or just behind a quadrant
+    used: NDArray[np.bool_]  # (n,) whether a sample is fitted: not just behind a quadrant
     columns: Array  # (n, 8) of the basis, with the backlash taken up behind the quadrants
     parts: Array  # (8,) m, x, y, s, q, g, bx, by [mm]
 

@@ -1,6 +1,9 @@
 """Frequency responses of a measured axis, and the two masses that they show."""
 
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from motionfmu.base.extras import at_first_use
 
 if TYPE_CHECKING:
     from motionfmu.analysis.measured_response.plant_response import FoundResponse, found_response
@@ -33,13 +36,8 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what finds them when it is first used, as it needs the extra `tune`."""
-    if name not in __all__:
-        raise AttributeError(f"module 'motionfmu.analysis.measured_response' has no {name!r}")
-    from motionfmu.base.extras import needed
-
-    needed("tune")
+def _modules() -> tuple[ModuleType, ...]:
+    """Where the names are."""
     from motionfmu.analysis.measured_response import (
         plant_response,
         record_response,
@@ -47,8 +45,10 @@ def __getattr__(name: str) -> Any:
         two_masses,
     )
 
-    places = (response_estimate, two_masses, plant_response, record_response)
-    return next(getattr(place, name) for place in places if hasattr(place, name))
+    return response_estimate, two_masses, plant_response, record_response
+
+
+__getattr__ = at_first_use(__name__, __all__, _modules)
 
 
 def __dir__() -> list[str]:

@@ -17,7 +17,7 @@ VAGUE_LOAD = 3.0
 
 
 class MotorSide(BaseModel):
-    """Names of the plant's variables on the side of the drive."""
+    """Names of the plant's variables that are the mass on the drive's side."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
     inertia: str

@@ -372,7 +372,7 @@ def _windows(signals: LoopSignals) -> MeasuredResponse:
     good &= np.isfinite(values) & ~(error > _VAGUE * np.abs(values))
     good &= hertz >= 2.0 / (size * signals.interval)  # a window's own width blurs what is below
     rate = float(np.polyfit(np.arange(len(y)) * signals.interval, y, 1)[0])
-    band = np.where(good, np.abs(ry) ** 2 / rr, 0.0)  # of the output, what the reference explains
+    band = np.where(good, np.abs(ry) ** 2 / rr, 0.0)  # output's power from the reference
     found = MeasuredResponse(
         np.asarray(2.0 * math.pi * hertz, dtype=np.float64),
         values,

@@ -1,6 +1,9 @@
 """From a record of an arm to its base parameters, its friction and its gears."""
 
-from typing import TYPE_CHECKING, Any
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+from motionfmu.base.extras import at_first_use
 
 if TYPE_CHECKING:
     from motionfmu.identify.arm_dynamics.arm_identification import IdentifiedArm, identify_arm
@@ -10,17 +13,14 @@ if TYPE_CHECKING:
 __all__ = ["ArmColumn", "ArmOptions", "HeldArm", "IdentifiedArm", "held_arm", "identify_arm"]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what identifies when it is first used, as it needs the extra `tune`."""
-    if name not in __all__:
-        raise AttributeError(f"module 'motionfmu.identify.arm_dynamics' has no attribute {name!r}")
-    from motionfmu.base.extras import needed
-
-    needed("tune")
+def _modules() -> tuple[ModuleType, ...]:
+    """Where the names are."""
     from motionfmu.identify.arm_dynamics import arm_identification, arm_options, arm_run
 
-    places = (arm_identification, arm_options, arm_run)
-    return next(getattr(place, name) for place in places if hasattr(place, name))
+    return arm_identification, arm_options, arm_run
+
+
+__getattr__ = at_first_use(__name__, __all__, _modules)
 
 
 def __dir__() -> list[str]:

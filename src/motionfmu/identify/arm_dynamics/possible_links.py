@@ -76,7 +76,7 @@ def possible_links(
     found: tuple[Array, Array],
     motors: Mapping[int, tuple[float, float]],
 ) -> PossibleLinks:
-    """The nearest; `found` are base parameters and their covariance.
+    """The possible links nearest to `found`, base parameters and their covariance.
 
     `motors` are inertias at the joint that gears tell, with their deviations.
     """
