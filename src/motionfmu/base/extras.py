@@ -26,6 +26,7 @@ EXTRAS = {
     "dask": Extra(("distributed",), "a study on a cluster"),
     "pandas": Extra(("pandas",), "a table of pandas"),
     "card": Extra(CARD, "planning a drawing"),
+    "live": Extra(("starlette", "uvicorn", "websockets"), "a live machine"),
     "drawing": Extra(("ezdxf", "lxml", "svgelements"), "a drawing in SVG or DXF"),
     "export": Extra(("ziglang",), "compiling for other platforms"),
 }

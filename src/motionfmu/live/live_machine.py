@@ -18,6 +18,7 @@ from motionfmu.base.new_folder import new_folder
 from motionfmu.fmu.describe import STRICT
 from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.live.journal import Action, Journal
+from motionfmu.live.sample_ring import CHANNELS, SampleRing
 from motionfmu.run.engines import fmu_messages
 from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
 from motionfmu.run.run_plan import Options
@@ -28,6 +29,8 @@ from motionfmu.scenarios.system import End, Stimulus
 from motionfmu.scenarios.toml_text import document_lines
 from motionfmu.scenarios.values import start_values, values_of
 
+# Calls that read the channels of a ring, and what writes them into its row.
+_Gather = tuple[list[Callable[[], None]], Callable[[NDArray[Any]], None]]
 NAME = "system"
 # Bytes of all states that are kept to go back to.
 STATES_MAX = 512 << 20
@@ -92,6 +95,7 @@ class LiveMachine:
         self.warnings: list[str] = []
         self._library = Library(self._made.folder / about["library"], 3)
         self._kept: deque[_SavedState] = deque()
+        self._gathers: dict[tuple[str, ...], _Gather] = {}
         self._readers: dict[tuple[str, ...], Callable[[], list[Any]]] = {}
         self.journal = Journal(self._system.step_ns)
         self.steps, self._closed = 0, False
@@ -171,6 +175,11 @@ class LiveMachine:
     def names(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """What can be looked at, and what can be set."""
         return tuple(self._outputs), tuple(self._inputs)
+
+    def text(self, name: str) -> str | None:
+        """What the scenario sets a text to, such as the path of a program; None if nothing."""
+        texts = (s.values[0] for s in self._system.settings if s.end.name == name)
+        return next(map(str, texts), None)
 
     def set(self, name: str, value: Any) -> Action:
         """Give an input or a parameter a value from now on.
@@ -356,6 +365,90 @@ class LiveMachine:
             else np.array([r[k] for r in rows])
             for k, n in enumerate(wanted)
         }
+
+    def ring(self, channels: Sequence[str]) -> SampleRing:
+        """An empty ring for these channels, from this step on.
+
+        Parameters
+        ----------
+        channels : sequence of str
+            ``component.variable`` of a scalar, or ``component.variable[i]``.
+
+        Returns
+        -------
+        SampleRing
+
+        Raises
+        ------
+        InputError
+            There is no such signal, one is an array, or they are too many.
+        """
+        if len(channels) > CHANNELS:
+            raise InputError(f"{len(channels)} channels: {CHANNELS} are the most")
+        for name in channels:
+            self._element(name)
+        return SampleRing(channels, self.steps)
+
+    def _element(self, name: str) -> tuple[str, int]:
+        """A channel's whole signal and its element, from 0."""
+        whole, element = self.scenario.resolver.split(name)
+        self._known([whole])
+        count = self._places[whole].count
+        if element is None and count > 1:
+            raise InputError(f"{name}: it has the elements {whole}[1] to [{count}]")
+        if element is not None and not 0 <= element < count:
+            raise InputError(f"{name}: {whole} has the elements 1 to {count}")
+        return whole, element or 0
+
+    def fill(self, ring: SampleRing, count: int) -> None:
+        """Make communication steps; write a ring's channels before each.
+
+        Parameters
+        ----------
+        ring : SampleRing
+        count : int
+
+        Raises
+        ------
+        InputError
+            An FMU refuses to go on.
+        """
+        _whole_number(count)
+        if not ring.channels:
+            self.step(count)
+            ring.cut(self.steps)
+            return
+        calls, gather = self._gather(ring.channels)
+        for _ in range(count):
+            for call in calls:
+                call()
+            ring.write(gather)
+            self.step()
+
+    def _gather(self, channels: tuple[str, ...]) -> _Gather:
+        if channels in self._gathers:
+            return self._gathers[channels]
+        by_type: dict[str, list[tuple[int, str, int]]] = {}
+        for column, name in enumerate(channels):
+            whole, element = self._element(name)
+            by_type.setdefault(self._places[whole].type, []).append((column, whole, element))
+        calls, parts = [], []
+        for kind, several in by_type.items():
+            names = list(dict.fromkeys(whole for _, whole, _ in several))
+            places = [self._places[n] for n in names]
+            firsts = dict(zip(names, np.cumsum([0, *(p.count for p in places)]), strict=False))
+            buffer = self._library.buffer(kind, sum(p.count for p in places))
+            calls.append(self._library.access("Get", places, buffer))
+            view = np.frombuffer(buffer, np.dtype(buffer._type_))
+            where = np.array([firsts[whole] + element for _, whole, element in several])
+            parts.append((view, where, np.array([column for column, _, _ in several])))
+
+        def gather(row: NDArray[Any]) -> None:
+            for view, where, columns in parts:
+                row[columns] = view[where]
+
+        self._gathers[channels] = calls, gather
+        return self._gathers[channels]
 
     def keep(self) -> None:
         """Keep the state, to go back to; the oldest go beyond 512 MB."""

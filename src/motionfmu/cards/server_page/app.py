@@ -7,16 +7,17 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from starlette.applications import Starlette
+from starlette.convertors import IntegerConvertor, register_url_convertor
 from starlette.middleware import Middleware
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route, WebSocketRoute
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.page_guard import Guard
 from motionfmu.base.toml_lines import shown
 from motionfmu.cards.config import CardConfig, load
 from motionfmu.cards.server_page.configuration import Configuration
-from motionfmu.cards.server_page.guard import Guard
 from motionfmu.cards.server_page.job_pictures import Pictures
 from motionfmu.cards.server_page.open_pages import OpenPages
 from motionfmu.cards.server_page.plan_process import opened_apart
@@ -31,6 +32,15 @@ KINDS = {
 }
 FILE_MAX = 16 << 20  # bytes of a drawing or a job
 Answer = Callable[[Request], Awaitable[Response]]
+
+
+class CardId(IntegerConvertor):
+    """The card in a path; its digits are limited, for Python refuses numbers of thousands."""
+
+    regex = "[0-9]{1,20}"
+
+
+register_url_convertor("card", CardId())
 
 
 class Fleet(Protocol):

@@ -7,7 +7,7 @@ from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from motionfmu.cards.server_page.guard import same
+from motionfmu.base.page_guard import same
 from motionfmu.cards.views import CardView, Event
 
 PAGES = 32  # open at once

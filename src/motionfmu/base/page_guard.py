@@ -1,8 +1,7 @@
-"""Access to the page: only this machine's own browser, from this page, with the token."""
+"""Access to a page that a command serves: only from this machine, from the page, with the token."""
 
 import secrets
 
-from starlette.convertors import IntegerConvertor, register_url_convertor
 from starlette.datastructures import Headers
 from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -30,15 +29,6 @@ def refused(headers: Headers, tls: bool = False) -> str:
     if origin is not None and origin != f"http{'s' * tls}://{host}":
         return "another page may not do this"
     return ""
-
-
-class CardId(IntegerConvertor):
-    """The card in a path; its digits are limited, for Python refuses numbers of thousands."""
-
-    regex = "[0-9]{1,20}"
-
-
-register_url_convertor("card", CardId())
 
 
 class Guard:

@@ -1,4 +1,4 @@
-"""The page on a port of this machine, on the event loop of the cards."""
+"""A page that a command serves, on a port of this machine."""
 
 import asyncio
 import os
@@ -17,12 +17,11 @@ CLOSING = 1.0  # [s] for pages that are open when it ends
 
 
 class PageServer:
-    """The page on a port of this machine, in ``async with``.
+    """A page on a port of this machine, in ``async with``.
 
     Parameters
     ----------
     app : Starlette
-        See `application`.
     port : int
         0: the system chooses.
     tls : tuple of Path, optional

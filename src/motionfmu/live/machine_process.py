@@ -1,0 +1,109 @@
+"""A live machine in a process of its own, so that nothing but its own work delays its clock.
+
+Requests come on stdin and answers go to stdout: a head of two lengths, JSON, bytes. When stdin ends
+the process saves what it was told to save, and ends.
+"""
+
+import contextlib
+import json
+import struct
+import sys
+import threading
+from queue import SimpleQueue
+from typing import Any, BinaryIO
+
+from motionfmu.base.errors import InputError
+from motionfmu.live.live_machine import LiveMachine
+from motionfmu.live.machine_about import about
+from motionfmu.live.machine_loop import Asked, MachineLoop
+from motionfmu.live.pace import Pace
+
+HEAD = struct.Struct("<II")  # bytes of JSON, bytes behind it
+# [s] A thread that sends an answer may have the interpreter for so long while the clock waits.
+_SWITCH = 5e-4
+_Message = tuple[dict[str, Any], bytes]
+
+
+def packed(message: dict[str, Any], data: bytes = b"") -> bytes:
+    """A message as it goes over a pipe."""
+    text = json.dumps(message).encode()
+    return HEAD.pack(len(text), len(data)) + text + data
+
+
+def _whole(stream: BinaryIO, size: int) -> bytes | None:
+    data = stream.read(size)
+    return data if len(data) == size else None
+
+
+def _received(stream: BinaryIO) -> _Message | None:
+    head = _whole(stream, HEAD.size)
+    if head is None:
+        return None
+    size, more = HEAD.unpack(head)
+    text, data = _whole(stream, size), _whole(stream, more)
+    return None if text is None or data is None else (json.loads(text), data)
+
+
+class _Answers:
+    """A thread that sends, so that a full pipe delays no step."""
+
+    def __init__(self, stream: BinaryIO) -> None:
+        self._stream = stream
+        self._queue: SimpleQueue[bytes | None] = SimpleQueue()
+        self._thread = threading.Thread(target=self._send, daemon=True)
+        self._thread.start()
+
+    def put(self, message: dict[str, Any], data: bytes = b"") -> None:
+        self._queue.put(packed(message, data))
+
+    def end(self) -> None:
+        self._queue.put(None)
+        self._thread.join(2.0)
+
+    def _send(self) -> None:
+        with contextlib.suppress(OSError, ValueError):
+            while (data := self._queue.get()) is not None:
+                self._stream.write(data)
+                self._stream.flush()
+
+
+def main() -> None:
+    """Serve the machine that the first message names."""
+    sys.setswitchinterval(_SWITCH)
+    requests, answers = sys.stdin.buffer, _Answers(sys.stdout.buffer)
+    sys.stdout = sys.stderr
+    first = _received(requests)
+    if first is None:
+        return
+    try:
+        _serve(first[0], requests, answers)
+    except InputError as error:
+        answers.put({"error": str(error)})
+    answers.end()
+
+
+def _serve(start: dict[str, Any], requests: BinaryIO, answers: _Answers) -> None:
+    with LiveMachine(start["scenario"], start["set"]) as machine:
+        factor = start["pace"]
+        pace = Pace(float("inf") if factor is None else factor)
+        loop = MachineLoop(machine, pace, running=start["running"])
+        answers.put({"about": about(machine)})
+        threading.Thread(target=_listen, args=(requests, loop, answers), daemon=True).start()
+        loop.run()
+
+
+def _listen(requests: BinaryIO, loop: MachineLoop, answers: _Answers) -> None:
+    while (got := _received(requests)) is not None:
+        asked, _ = got
+        loop.asked.put(_request(asked, answers))
+    loop.asked.put(Asked("end", {}, lambda value, error: None))
+
+
+def _request(asked: dict[str, Any], answers: _Answers) -> Asked:
+    def answer(value: Any, error: str | None) -> None:
+        data = b""
+        if isinstance(value, tuple):
+            value, data = value
+        answers.put({"id": asked["id"], "value": value, "error": error}, data)
+
+    return Asked(asked["name"], asked["arguments"], answer)

@@ -1,0 +1,111 @@
+"""What an operator has of an FMU: the panel.toml that its archive carries."""
+
+import functools
+import tomllib
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from motionfmu.base.errors import InputError
+from motionfmu.scenarios import fmus
+
+FILE = "panel.toml"
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class Key(_Table):
+    """A key: pressed for a moment, or a switch that stays."""
+
+    label: str
+    kind: Literal["press", "switch"]
+
+
+class Dial(_Table):
+    """A number that an operator turns, between the variable's limits or its own."""
+
+    label: str
+    low: float | None = None
+    high: float | None = None
+
+
+class Lamp(_Table):
+    """A truth that is shown."""
+
+    label: str
+
+
+class Jog(_Table):
+    """Motion by hand: an array of directions, its speed, an increment."""
+
+    direction: str
+    speed: str | None = None
+    way: str | None = None
+    frame: str | None = None
+
+
+class Readout(_Table):
+    """Outputs that are numbers of the machine."""
+
+    machine: str | None = None
+    offset: str | None = None  # machine less this is the work coordinate
+    to_go: str | None = None
+    feed: str | None = None
+    spindle: str | None = None
+    tool: str | None = None
+    modes: str | None = None
+
+
+class Mdi(_Table):
+    """Lines that are typed: the line, its number, the last number taken, refusals."""
+
+    line: str
+    number: str
+    taken: str
+    room: str | None = None
+    done: str | None = None
+    fault: str | None = None
+    refused: str | None = None
+
+
+class Panel(_Table):
+    """The tables of a panel.toml; all names are of variables of its FMU."""
+
+    title: str
+    state: str | None = None
+    alarm: str | None = None
+    line: str | None = None
+    readout: Readout = Field(default_factory=Readout)
+    jog: Jog | None = None
+    mdi: Mdi | None = None
+    key: dict[str, Key] = Field(default_factory=dict)
+    dial: dict[str, Dial] = Field(default_factory=dict)
+    lamp: dict[str, Lamp] = Field(default_factory=dict)
+    fault: dict[str, Lamp] = Field(default_factory=dict)
+
+    def names(self) -> list[str]:
+        """All variables that it names."""
+        parts = (self.readout, self.jog, self.mdi)
+        single = [self.state, self.alarm, self.line]
+        single += [v for p in parts if p is not None for v in p.model_dump().values()]
+        tables = (self.key, self.dial, self.lamp, self.fault)
+        return [n for n in (*single, *(n for t in tables for n in t)) if n is not None]
+
+
+@functools.cache
+def panel_of(fmu: str) -> Panel | None:
+    """The panel that an FMU carries; None if it has none."""
+    text = fmus.extra(fmu, FILE)
+    if text is None:
+        return None
+    where = f"fmus/{fmu}/{FILE}"
+    try:
+        panel = Panel.model_validate(tomllib.loads(text))
+    except (tomllib.TOMLDecodeError, ValidationError) as error:
+        raise InputError(f"{where}: {' '.join(str(error).split())}") from None
+    ports = fmus.ports(fmu)
+    if unknown := [n for n in panel.names() if n not in ports]:
+        raise InputError(f"{where}: {fmu} has no variable {unknown[0]!r}")
+    return panel

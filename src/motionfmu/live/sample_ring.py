@@ -1,0 +1,57 @@
+"""Signals at every communication step, as many of the latest as there is room for."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+CHANNELS = 16
+ROWS = 1 << 18  # 26 s at 0.1 ms, 34 MB with all channels
+
+
+class SampleRing:
+    """Samples of channels, each written before its communication step.
+
+    Parameters
+    ----------
+    channels : sequence of str
+        ``component.variable`` or an element of one.
+    first : int
+        Number of the first communication step.
+    rows : int
+        Steps that are kept.
+    """
+
+    def __init__(self, channels: Sequence[str], first: int = 0, rows: int = ROWS) -> None:
+        self.channels = tuple(channels)
+        self.first = self.end = first
+        self._rows = rows
+        self._samples = np.zeros((rows, len(self.channels)))
+
+    @property
+    def begin(self) -> int:
+        """The earliest step that is still there."""
+        return max(self.first, self.end - self._rows)
+
+    def write(self, gather: Callable[[NDArray[Any]], None]) -> None:
+        """Add the samples of a step."""
+        gather(self._samples[self.end % self._rows])
+        self.end += 1
+
+    def cut(self, step: int) -> None:
+        """Forget what was at a step and later."""
+        self.end = max(min(self.end, step), self.first)
+        if self.end < step:
+            self.first = self.end = step
+
+    def since(self, step: int, most: int | None = None) -> tuple[int, NDArray[Any]]:
+        """The first step that is there from one on, and samples of shape (steps, channels).
+
+        With `most` the latest so many.
+        """
+        begin = max(step, self.begin)
+        if most is not None:
+            begin = max(begin, self.end - most)
+        places = np.arange(begin, max(begin, self.end)) % self._rows
+        return begin, self._samples[places]
