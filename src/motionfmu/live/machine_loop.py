@@ -11,6 +11,7 @@ from typing import Any
 from motionfmu.base.errors import InputError
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.pace import Pace
+from motionfmu.live.panel import panel_of
 
 TURN = 1e-3  # [s] on the wall between two looks at what is asked
 LONGEST = 5e-3  # [s] on the wall that steps of a turn may take
@@ -162,6 +163,17 @@ class MachineLoop:
         """Let go whatever is held."""
         for name in list(self._held):
             self.machine.set(name, self._held.pop(name).rest)
+
+    def do_command(self, component: str, name: str) -> float:
+        """Give a command that the component's panel has."""
+        panel = panel_of(self.machine.scenario.document.body.component.get(component, ""))
+        command = panel.command if panel else None
+        if command is None or name not in command.codes:
+            raise InputError(f"{component}: no command {name!r}")
+        self.machine.set(f"{component}.{command.code}", command.codes[name])
+        number = f"{component}.{command.number}"
+        self.machine.set(number, int(self.machine[number]) + 1)
+        return self.machine.time
 
     def do_pace(self, factor: float | None) -> None:
         """Go at another pace; none: as fast as it goes."""

@@ -28,6 +28,7 @@ REQUESTS = OPEN | {
     "back",
     "save",
     "channels",
+    "command",
 }
 
 
