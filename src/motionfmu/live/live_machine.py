@@ -425,6 +425,37 @@ class LiveMachine:
             ring.write(gather)
             self.step()
 
+    def reading(self, channels: Sequence[str]) -> Callable[[], NDArray[np.float64]]:
+        """A quick function that reads elements of signals.
+
+        Parameters
+        ----------
+        channels : sequence of str
+            As of `ring`, as many as wanted.
+
+        Returns
+        -------
+        callable
+            Without arguments; their present values, of shape (channels,), in an array of its own.
+
+        Raises
+        ------
+        InputError
+            There is no such signal, or one is an array.
+        """
+        for name in channels:
+            self._element(name)
+        calls, gather = self._gather(tuple(channels))
+        row = np.zeros(len(channels))
+
+        def read() -> NDArray[np.float64]:
+            for call in calls:
+                call()
+            gather(row)
+            return row
+
+        return read
+
     def _gather(self, channels: tuple[str, ...]) -> _Gather:
         if channels in self._gathers:
             return self._gathers[channels]

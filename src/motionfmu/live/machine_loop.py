@@ -9,6 +9,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from motionfmu.base.errors import InputError
+from motionfmu.live.exchange import Exchange
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.pace import Pace
 from motionfmu.live.panel import panel_of
@@ -18,6 +19,7 @@ LONGEST = 5e-3  # [s] on the wall that steps of a turn may take
 KEPT_EVERY = 1.0  # [s] of simulated time between two states that are kept
 PRESS = 0.01  # [s] of simulated time that a key is down
 DEAD_MAN = 0.1  # [s] of simulated time without a sign of who holds a key, and it is let go
+STEPS_MAX = 1 << 40  # more than are ever made at once
 ACTIONS = 40  # latest ones of the journal in a frame
 
 
@@ -54,12 +56,16 @@ class MachineLoop:
     running: bool = True
     ended: bool = False
     error: str = ""
+    exchange: Exchange | None = None  # with another program
     asked: SimpleQueue[Asked] = field(default_factory=SimpleQueue)
 
     def __post_init__(self) -> None:
         self._ring = self.machine.ring(())
         self._held: dict[str, _Held] = {}
         self._keep_at = 0
+        self._turn_steps = max(1, round(TURN / self.machine.step_seconds))
+        if self.exchange is not None:
+            self._turn_steps = min(self._turn_steps, self.exchange.plan.every)
         self._quick = 1  # steps of a turn as fast as it goes
 
     def run(self) -> None:
@@ -90,7 +96,6 @@ class MachineLoop:
 
     def _turn(self) -> None:
         """Wait until it is time, and make the steps of a turn."""
-        step = self.machine.step_seconds
         if self.pace.factor == math.inf:
             count, began = self._quick, time.perf_counter()
             self.advance(count)
@@ -98,7 +103,7 @@ class MachineLoop:
             self._quick = max(1, min(2 * count, int(count * LONGEST / took)))
             return
         self.pace.wait(self.machine.time)
-        self.advance(max(1, round(TURN * self.pace.factor / step)))
+        self.advance(max(1, round(self._turn_steps * self.pace.factor)))
 
     def advance(self, count: int) -> None:
         """Make steps; let go what is held no longer, keep states."""
@@ -110,10 +115,24 @@ class MachineLoop:
                 if now >= self._keep_at:
                     self.machine.keep()
                     self._keep_at = now + round(KEPT_EVERY / self.machine.step_seconds)
-                dues = (self._keep_at, end, *(h.until for h in self._held.values()))
+                dues = (
+                    self._keep_at,
+                    end,
+                    self._exchanged(now),
+                    *(h.until for h in self._held.values()),
+                )
                 self.machine.fill(self._ring, min(dues) - now)
         except InputError as error:
             self.running, self.error = False, str(error)
+
+    def _exchanged(self, now: int) -> int:
+        """Exchange if it is time; the step at which it is next, or one far away."""
+        if self.exchange is None:
+            return now + STEPS_MAX
+        every = self.exchange.plan.every
+        if now % every == 0:
+            self.exchange.step()
+        return now - now % every + every
 
     def _let_go(self, now: int) -> None:
         for name in [n for n, h in self._held.items() if h.until <= now]:
