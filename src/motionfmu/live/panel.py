@@ -77,6 +77,7 @@ class Panel(_Table):
     state: str | None = None
     alarm: str | None = None
     line: str | None = None
+    stop: str | None = None  # the machine's emergency stop: true while it is pressed
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
@@ -88,7 +89,7 @@ class Panel(_Table):
     def names(self) -> list[str]:
         """All variables that it names."""
         parts = (self.readout, self.jog, self.mdi)
-        single = [self.state, self.alarm, self.line]
+        single = [self.state, self.alarm, self.line, self.stop]
         single += [v for p in parts if p is not None for v in p.model_dump().values()]
         tables = (self.key, self.dial, self.lamp, self.fault)
         return [n for n in (*single, *(n for t in tables for n in t)) if n is not None]
