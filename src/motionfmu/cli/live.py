@@ -96,7 +96,10 @@ async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
 
 def _tell(message: dict[str, Any], data: bytes) -> None:
     """Say on the console what the machine's process says by itself."""
-    if message["told"] == "compiling":
-        out.print(f"{message['name']}: its program is compiled, once; this takes some seconds")
-    if message["told"] == "saved":
-        out.print(f"saved: {message['file']}", soft_wrap=True)
+    import contextlib
+
+    with contextlib.suppress(OSError):  # the terminal is gone
+        if message["told"] == "compiling":
+            print(f"{message['name']}: its program is compiled, once; this takes some seconds")
+        if message["told"] == "saved":
+            print(f"saved: {message['file']}")

@@ -151,7 +151,7 @@ class MachineLink:
             if not waiting.done():
                 waiting.set_exception(InputError(self.why))
 
-    async def ask(self, name: str, **arguments: Any) -> Any:
+    async def ask(self, request: str, /, **arguments: Any) -> Any:
         """The value that the loop's method ``do_NAME`` gives.
 
         Raises
@@ -159,16 +159,16 @@ class MachineLink:
         InputError
             The machine refuses, or its process has ended.
         """
-        return (await self.ask_with_data(name, **arguments))[0]
+        return (await self.ask_with_data(request, **arguments))[0]
 
-    async def ask_with_data(self, name: str, **arguments: Any) -> tuple[Any, bytes]:
+    async def ask_with_data(self, request: str, /, **arguments: Any) -> tuple[Any, bytes]:
         """The same, with the bytes that come behind the value."""
         if self.ended.is_set():
             raise InputError(self.why)
         number = next(self._numbers)
         future: asyncio.Future[tuple[Any, bytes]] = asyncio.get_running_loop().create_future()
         self._waiting[number] = future
-        self._send({"id": number, "name": name, "arguments": arguments})
+        self._send({"id": number, "name": request, "arguments": arguments})
         try:
             return await future
         finally:

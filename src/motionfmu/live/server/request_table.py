@@ -5,10 +5,11 @@ A page asks by WebSocket, a program also by HTTP; the table is what checks them 
 """
 
 import json
+import math
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, WithJsonSchema
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.toml_lines import shown
@@ -23,8 +24,32 @@ Names = Annotated[list[Name], Field(max_length=_NAMES)]
 Whole = Annotated[int, Field(ge=-_LARGEST, le=_LARGEST)]
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Text = Annotated[str, Field(max_length=4096)]
-Single = bool | Whole | Number | Text
-Value = Single | Annotated[list[Single], Field(max_length=_NAMES)]
+
+
+def _single(value: Any) -> Any:
+    """A value of one element."""
+    if isinstance(value, str) and len(value) <= 4096:
+        return value
+    if isinstance(value, int) and abs(value) <= _LARGEST:
+        return value
+    if isinstance(value, float) and math.isfinite(value):
+        return value
+    raise ValueError("a finite number, true, false or a text")
+
+
+def _value(value: Any) -> Any:
+    """A value of all elements, or a list of them."""
+    if not isinstance(value, list):
+        return _single(value)
+    if len(value) > _NAMES:
+        raise ValueError(f"{_NAMES} elements at most")
+    return [_single(x) for x in value]
+
+
+_SINGLE = {"type": ["boolean", "number", "string"]}
+_SEVERAL = {"type": "array", "items": _SINGLE, "maxItems": _NAMES}
+Single = Annotated[Any, AfterValidator(_single), WithJsonSchema(_SINGLE)]
+Value = Annotated[Any, AfterValidator(_value), WithJsonSchema({"anyOf": [_SINGLE, _SEVERAL]})]
 Step = Annotated[int, Field(ge=0, le=_LARGEST)]
 Path = Annotated[str, Field(min_length=1, max_length=1024)]
 

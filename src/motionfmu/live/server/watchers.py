@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import json
+import logging
 import secrets
 from collections import deque
 from dataclasses import dataclass, field
@@ -23,6 +24,7 @@ STRANGERS = 32  # connections that have not said the token yet
 SAMPLES = 1 << 14  # of a channel, that a page is sent at a time
 ANSWERS = 64  # that wait for a page to take them; it is not listened to until then
 PROGRAMS = 16  # keys of the hand that programs have by HTTP
+_LOG = logging.getLogger(__name__)
 _Parts = tuple[str | bytes, ...]
 
 
@@ -144,6 +146,9 @@ class Watchers:
             answer = {"id": number, "value": await self.do(watcher, wanted)}
         except InputError as error:
             answer = {"id": number, "error": str(error)}
+        except Exception as error:  # a mistake here: whoever asked must not wait for ever
+            _LOG.exception("request %s", number)
+            answer = {"id": number, "error": f"{type(error).__name__}: {error}"}
         watcher.asked.discard(asyncio.current_task())
         watcher.put(text_of(answer))
 
