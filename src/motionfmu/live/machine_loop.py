@@ -154,7 +154,10 @@ class MachineLoop:
             return now + _FAR
         every = self.exchange.plan.every
         if now % every == 0:
+            was_lost = self.exchange.lost
             self.exchange.step()
+            if self.exchange.lost != was_lost:
+                self.tell({"told": "peer", **self.exchange.state()}, b"")
         return now - now % every + every
 
     def _triggered(self, found: TriggeredRecording) -> None:
@@ -178,6 +181,7 @@ class MachineLoop:
             "late": [late.woken, late.worst, late.below(0.99), late.given_up],
             "actions": len(machine.journal),
             "scope": self._scope.state(),
+            "exchange": self.exchange and self.exchange.state(),
         }
 
     def do_values(self, names: list[str]) -> dict[str, Any]:
