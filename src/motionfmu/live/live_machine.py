@@ -3,7 +3,7 @@
 import json
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p, sizeof
 from dataclasses import dataclass
 from pathlib import Path
@@ -124,21 +124,22 @@ class LiveMachine:
             self._library.close()
             raise
 
-    def _ends(self, causality: str) -> list[End]:
+    def _ends(self, causality: str, types: Collection[str] = _NUMBERS) -> list[End]:
         resolver = self.scenario.resolver
         return [
             resolver.end(f"{component}.{port.name}", "", "")
             for component, ports in resolver.ports.items()
             for port in ports.values()
-            if port.causality == causality and port.type in _NUMBERS
+            if port.causality == causality and port.type in types
         ]
 
     def _changeable(self) -> list[End]:
         """Inputs that no wire feeds and no stimulus drives, and tunable parameters."""
         taken = {w.target.name for w in self._system.wires}
         taken |= {s.end.name for s in self._system.stimuli}
-        tunable = [e for e in self._ends("parameter") if e.port.tunable]
-        both = [*self._ends("input"), *tunable]
+        types = {*_NUMBERS, "String"}
+        tunable = [e for e in self._ends("parameter", types) if e.port.tunable]
+        both = [*self._ends("input", types), *tunable]
         return [e for e in both if e.name not in taken and e.name in self._places]
 
     def _begin(self) -> None:
@@ -209,7 +210,7 @@ class LiveMachine:
         return tuple(self._outputs), tuple(self._inputs)
 
     def text(self, name: str) -> str | None:
-        """What the scenario sets a text to, such as the path of a program; None if nothing."""
+        """What the scenario sets a text variable to; None if nothing."""
         texts = (s.values[0] for s in self._system.settings if s.end.name == name)
         return next(map(str, texts), None)
 
@@ -368,8 +369,12 @@ class LiveMachine:
         def read() -> list[list[Any]]:
             for call in calls:
                 call()
-            return [list(where[n][0][where[n][1]]) for n in names]
+            found = [list(where[n][0][where[n][1]]) for n in names]
+            for place in texts:
+                found[place] = [value.decode(errors="replace") for value in found[place]]
+            return found
 
+        texts = [k for k, n in enumerate(names) if self._places[n].type == "String"]
         return read
 
     def step(self, count: int = 1) -> None:
@@ -466,6 +471,8 @@ class LiveMachine:
         whole, element = self.scenario.resolver.split(name)
         self._known([whole])
         count = self._places[whole].count
+        if self._places[whole].type == "String":
+            raise InputError(f"{name} is a text")
         if element is None and count > 1:
             raise InputError(f"{name}: it has the elements {whole}[1] to [{count}]")
         if element is not None and not 0 <= element < count:
@@ -497,6 +504,33 @@ class LiveMachine:
             for ring in rings:
                 if not ring.channels:
                     ring.cut(self.steps)
+
+    def reading(self, channels: Sequence[str]) -> Callable[[], NDArray[np.float64]]:
+        """A quick function that reads elements of signals.
+
+        Parameters
+        ----------
+        channels : sequence of str
+            As of `ring`, as many as wanted.
+
+        Returns
+        -------
+        callable
+            Without arguments; their present values, of shape (channels,), in an array of its own.
+
+        Raises
+        ------
+        InputError
+            There is no such signal, or one is an array.
+        """
+        sampler = self._sampler(tuple(channels))
+
+        def read() -> NDArray[np.float64]:
+            for call in sampler.calls[0]:
+                call()
+            return sampler.rows(1)[0]
+
+        return read
 
     def _sample(self, rings: Sequence[SampleRing], channels: tuple[str, ...], count: int) -> None:
         """Make the steps of a batch, and sort its samples into the rings."""

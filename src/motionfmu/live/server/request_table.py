@@ -123,6 +123,14 @@ class AskMdi(Request):
     component: Name | None = Field(None, description="none: the only one that takes lines")
 
 
+class AskCommand(Request):
+    """Give a command that the component's panel has."""
+
+    gives: ClassVar[str] = "time from which it acts [s]"
+    component: Name
+    name: Name = Field(description="its name in the panel")
+
+
 class AskStop(Request):
     """Press the machine's emergency stop, or abort where there is none; anybody may."""
 
