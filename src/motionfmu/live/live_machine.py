@@ -369,8 +369,12 @@ class LiveMachine:
         def read() -> list[list[Any]]:
             for call in calls:
                 call()
-            return [list(where[n][0][where[n][1]]) for n in names]
+            found = [list(where[n][0][where[n][1]]) for n in names]
+            for place in texts:
+                found[place] = [value.decode(errors="replace") for value in found[place]]
+            return found
 
+        texts = [k for k, n in enumerate(names) if self._places[n].type == "String"]
         return read
 
     def step(self, count: int = 1) -> None:
@@ -467,6 +471,8 @@ class LiveMachine:
         whole, element = self.scenario.resolver.split(name)
         self._known([whole])
         count = self._places[whole].count
+        if self._places[whole].type == "String":
+            raise InputError(f"{name} is a text")
         if element is None and count > 1:
             raise InputError(f"{name}: it has the elements {whole}[1] to [{count}]")
         if element is not None and not 0 <= element < count:
@@ -510,15 +516,13 @@ class LiveMachine:
         Returns
         -------
         callable
-            Without arguments: their present values, of shape (channels,), good until its next call.
+            Without arguments; their present values, of shape (channels,), in an array of its own.
 
         Raises
         ------
         InputError
             There is no such signal, or one is an array.
         """
-        for name in channels:
-            self._element(name)
         sampler = self._sampler(tuple(channels))
 
         def read() -> NDArray[np.float64]:

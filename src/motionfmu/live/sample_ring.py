@@ -42,9 +42,10 @@ class SampleRing:
 
     def cut(self, step: int) -> None:
         """Forget what was at a step and later."""
-        self.end = max(min(self.end, step), self.first)
-        if self.end < step:
-            self.first = self.end = step
+        self.first = self.begin  # what was before has been written over
+        if not self.first <= step <= self.end:
+            self.first = step
+        self.end = step
 
     def since(self, step: int, most: int | None = None) -> tuple[int, NDArray[Any]]:
         """The first step that is there from one on, and samples of shape (steps, channels).

@@ -123,6 +123,14 @@ class AskMdi(Request):
     component: Name | None = Field(None, description="none: the only one that takes lines")
 
 
+class AskCommand(Request):
+    """Give a command that the component's panel has."""
+
+    gives: ClassVar[str] = "time from which it acts [s]"
+    component: Name
+    name: Name = Field(description="its name in the panel")
+
+
 class AskStop(Request):
     """Press the machine's emergency stop, or abort where there is none; anybody may."""
 
@@ -211,14 +219,6 @@ class AskChannels(Request):
     """Choose the channels of the scope."""
 
     names: Annotated[list[Name], Field(max_length=_NAMES)]
-
-
-class AskCommand(Request):
-    """Give a command that a component's panel has, such as Start of a network card."""
-
-    gives: ClassVar[str] = "time from which it acts [s]"
-    component: Name
-    name: Name
 
 
 class AskTrigger(Request):
