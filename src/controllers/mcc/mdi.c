@@ -150,8 +150,8 @@ bool mdi_next(struct mcc *m, const struct program *p)
     if (d->from < d->until) {
         return true;
     }
-    const char *text = d->text + (d->until - d->base);
-    d->until += (const char *)memchr(text, '\n', (size_t)(end_of(d) - d->until)) + 1 - text;
+    while (d->text[d->until++ - d->base] != '\n') {
+    }
     d->line++;
     in->offset = d->from;
     in->line = d->line - 1;
