@@ -41,10 +41,10 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     import math
 
     needed("live")
-    from motionfmu.live.server import MachineStart
-
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
+    from motionfmu.live.server import MachineStart
+
     start = MachineStart(
         str(path),
         None if program is None else str(program),
