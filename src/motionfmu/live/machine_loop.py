@@ -157,7 +157,10 @@ class MachineLoop:
             return now + STEPS_MAX
         every = self.exchange.plan.every
         if now % every == 0:
+            was_lost = self.exchange.lost
             self.exchange.step()
+            if self.exchange.lost != was_lost:
+                self.tell({"told": "peer", **self.exchange.state()}, b"")
         return now - now % every + every
 
     # What can be asked. The server's table of requests says what each is for.
@@ -178,6 +181,7 @@ class MachineLoop:
             "actions": len(machine.journal),
             "lines": self._inputs.waiting,
             "scope": self._scope.state(),
+            "exchange": self.exchange and self.exchange.state(),
         }
 
     def do_values(self, names: list[str]) -> dict[str, Any]:

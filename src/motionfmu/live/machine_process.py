@@ -17,6 +17,7 @@ from typing import Any, BinaryIO
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
+from motionfmu.live.exchange import Exchange, ExchangePlan
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.machine_about import about
 from motionfmu.live.machine_loop import Asked, MachineLoop
@@ -108,7 +109,11 @@ def _serve(start: dict[str, Any], requests: BinaryIO, answers: _Answers) -> None
     finally:
         late.cancel()
     with machine:
-        loop = MachineLoop(machine, pace, running=start["running"], tell=answers.put)
+        plan, exchange = start["exchange"], None
+        if plan is not None:
+            exchange = Exchange(machine, ExchangePlan(**plan))
+            answers.put({"told": "exchange", "port": exchange.port, "peer": plan["peer"]})
+        loop = MachineLoop(machine, pace, start["running"], exchange=exchange, tell=answers.put)
         answers.put({"about": about(machine)})
         threading.Thread(target=_listen, args=(requests, loop, answers), daemon=True).start()
         loop.run()
