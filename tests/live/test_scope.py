@@ -63,7 +63,7 @@ def expected(s: TriggerSetting, x: list[float], armed: int) -> list[tuple[int, i
     mode=st.sampled_from(["single", "normal", "auto"]),
     armed=st.integers(0, 5),
 )
-def test_a_trigger_finds_what_a_search_finds_however_it_is_looked_at(
+def test_a_trigger_finds_what_a_search_finds_however_it_is_looked_at(  # noqa: PLR0913
     x: list[float], parts: list[int], kind: Any, pre: float, length: int, mode: Any, armed: int
 ) -> None:
     armed = min(armed, len(x))

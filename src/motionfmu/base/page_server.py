@@ -95,7 +95,7 @@ class PageServer:
                 ws=_Socket,
                 # On a loopback it costs more than it saves.
                 ws_per_message_deflate=False,
-                log_level="warning",
+                log_level="error",  # what strangers send is no news
                 timeout_graceful_shutdown=int(CLOSING),
                 ws_max_size=message_max,
                 ssl_certfile=tls and tls[0],

@@ -5,7 +5,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p, sizeof
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -51,16 +51,24 @@ class _Sampler:
     """Reads channels into a batch: the calls of each of its steps, and where the samples are."""
 
     calls: list[list[Callable[[], None]]]  # by step of the batch
-    # of each type: the batch, shape (steps, elements); the elements; their channels
-    parts: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]]
-    channels: int
+    # of each type: the batch, shape (steps, elements), the elements wanted, where they go
+    parts: list[tuple[NDArray[Any], NDArray[Any], slice]]
+    columns: dict[str, int]  # of the rows, by channel
+    orders: dict[tuple[str, ...], NDArray[Any]] = field(default_factory=dict)  # columns of rings
 
     def rows(self, count: int) -> NDArray[Any]:
-        """Samples of the first steps of the batch, shape (count, channels)."""
-        rows = np.empty((count, self.channels))
+        """Samples of the first steps of the batch, shape (count, channels), sorted by type."""
+        rows = np.empty((count, len(self.columns)))
         for batch, elements, columns in self.parts:
-            rows[:, columns] = batch[:count, elements]
+            rows[:, columns] = batch[:count].take(elements, axis=1)
         return rows
+
+    def of(self, rows: NDArray[Any], channels: tuple[str, ...]) -> NDArray[Any]:
+        """Such rows with some of the channels."""
+        order = self.orders.get(channels)
+        if order is None:
+            self.orders[channels] = order = np.array([self.columns[c] for c in channels], int)
+        return rows.take(order, axis=1)
 
 
 @dataclass
@@ -523,12 +531,13 @@ class LiveMachine:
         InputError
             There is no such signal, or one is an array.
         """
-        sampler = self._sampler(tuple(channels))
+        order = tuple(channels)
+        sampler = self._sampler(order)
 
         def read() -> NDArray[np.float64]:
             for call in sampler.calls[0]:
                 call()
-            return sampler.rows(1)[0]
+            return sampler.of(sampler.rows(1), order)[0]
 
         return read
 
@@ -542,7 +551,7 @@ class LiveMachine:
         finally:
             rows = sampler.rows(self.steps - began)
             for ring in rings:
-                ring.write(rows[:, [channels.index(c) for c in ring.channels]])
+                ring.write(sampler.of(rows, ring.channels))
 
     def _step_and_read(self, calls: Iterable[Iterable[Callable[[], None]]]) -> None:
         step, advance, due = self._system.step_ns * 1e-9, self._advance_one, self._due
@@ -557,12 +566,13 @@ class LiveMachine:
     def _sampler(self, channels: tuple[str, ...]) -> _Sampler:
         if channels in self._samplers:
             return self._samplers[channels]
-        by_type: dict[str, list[tuple[int, str, int]]] = {}
-        for column, name in enumerate(channels):
+        by_type: dict[str, list[tuple[str, str, int]]] = {}
+        for name in dict.fromkeys(channels):
             whole, element = self._element(name)
-            by_type.setdefault(self._places[whole].type, []).append((column, whole, element))
+            by_type.setdefault(self._places[whole].type, []).append((name, whole, element))
         calls: list[list[Callable[[], None]]] = [[] for _ in range(_BATCH)]
-        parts = []
+        parts: list[tuple[NDArray[Any], NDArray[Any], slice]] = []
+        columns: dict[str, int] = {}
         for kind, several in by_type.items():
             names = list(dict.fromkeys(whole for _, whole, _ in several))
             places = [self._places[n] for n in names]
@@ -575,10 +585,12 @@ class LiveMachine:
                 reads.append(self._library.access("Get", places, row))
             view = np.frombuffer(batch, np.dtype(batch._type_)).reshape(_BATCH, count)
             where = np.array([firsts[whole] + element for _, whole, element in several])
-            parts.append((view, where, np.array([column for column, _, _ in several])))
+            first = len(columns)
+            columns |= {name: first + k for k, (name, _, _) in enumerate(several)}
+            parts.append((view, where, slice(first, len(columns))))
         if len(self._samplers) >= _SAMPLERS:
             self._samplers.clear()
-        self._samplers[channels] = _Sampler(calls, parts, len(channels))
+        self._samplers[channels] = _Sampler(calls, parts, columns)
         return self._samplers[channels]
 
     def keep(self) -> None:

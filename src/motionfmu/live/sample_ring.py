@@ -38,7 +38,10 @@ class SampleRing:
         """Add the samples of steps, shape (steps, channels)."""
         self.end += len(rows)
         rows = rows[-self._rows :]
-        self._samples[np.arange(self.end - len(rows), self.end) % self._rows] = rows
+        first = (self.end - len(rows)) % self._rows
+        head = min(len(rows), self._rows - first)
+        self._samples[first : first + head] = rows[:head]
+        self._samples[: len(rows) - head] = rows[head:]
 
     def cut(self, step: int) -> None:
         """Forget what was at a step and later."""

@@ -57,7 +57,7 @@ Path = Annotated[str, Field(min_length=1, max_length=1024)]
 class Request(BaseModel):
     """A request: its docstring is what the documentation says, its fields are the arguments."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config = ConfigDict(extra="forbid", strict=True, defer_build=True)
     hand: ClassVar[bool] = True  # whether one must have the machine in hand
     server: ClassVar[bool] = False  # whether the server itself answers
     socket: ClassVar[bool] = False  # whether it is for a WebSocket only
