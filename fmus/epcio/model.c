@@ -99,6 +99,7 @@ static void read_pins(const struct vars *v, struct epcio_lines *l)
     }
     for (int i = 0; i < 3; i++)
         l->phase[6 + i] = v->enc_phase_aux[i] + v->enc_phase_six_aux[i];
+    memcpy(l->unplugged, v->enc_unplugged, sizeof l->unplugged);
     for (int i = 0; i < 2; i++)
         l->volts[6 + i] = v->io_volts_aux[i];
     l->local = (struct local_io_lines){

@@ -130,6 +130,20 @@ def test_a_signal_too_fast_for_the_filter_miscounts_and_says_so() -> None:
     fmu.free()
 
 
+def test_an_encoder_whose_plug_is_out_counts_on_behind_it() -> None:
+    fmu = card(enc_rate=4)
+    counts = []
+    for k, out in enumerate([False, True, True, False, False]):
+        assert fmu.set("enc_unplugged", first(out, 9, False)) == OK
+        assert fmu.set("enc_phase", [10.0 * (k + 1)] * 6) == OK
+        to_clock(fmu, (k + 1) * TL)
+        to_clock(fmu, (k + 1) * TL + 1)
+        counts.append(fmu.get("enc_count")[:2])
+    assert counts[-1] == [counts[0][0] + 80, counts[0][1] + 160]
+    assert counts[1][0] == counts[2][0] == counts[0][0]
+    fmu.free()
+
+
 def test_a_new_gain_acts_at_the_next_update_and_a_loop_can_be_cleared() -> None:
     fmu = card(host_loop_on=True, host_dac_source=1, p_scale=0, host_p_gain=1)
     to_clock(fmu, TL)

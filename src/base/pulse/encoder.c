@@ -130,6 +130,14 @@ bool encoder_sample(struct encoder *e, double phase, int64_t clock)
     return true;
 }
 
+bool encoder_unplugged(struct encoder *e, double phase, int64_t clock)
+{
+    if (!encoder_sample(e, phase, clock))
+        return false;
+    settle(e);
+    return true;
+}
+
 int encoder_run(struct encoder *e, int64_t until)
 {
     const struct quadrature *q = &e->pins;

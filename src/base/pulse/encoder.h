@@ -28,6 +28,10 @@ void encoder_configure(struct encoder *e, const struct encoder_config *c);
  * number or larger than QUADRATURE_PHASE_MAX. */
 bool encoder_sample(struct encoder *e, double phase, int64_t clock);
 
+/* The same while the encoder's plug is out: no line moves, the counter keeps its value. Plugged in
+ * again, it counts on from there; what the shaft has moved meanwhile is lost. */
+bool encoder_unplugged(struct encoder *e, double phase, int64_t clock);
+
 /* Count the edges up to and including the clock `until`, at most that of the latest sample; that
  * clock must have been reached before the next sample. Returns events (encoder_count.h). */
 int encoder_run(struct encoder *e, int64_t until);

@@ -285,7 +285,8 @@ enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lin
     card->lines = *lines;
     for (int i = 0; i < EPCIO_ENCODERS; i++)
         if (counts(card, i))
-            encoder_sample(&card->encoder[i], lines->phase[i], card->clock);
+            (lines->unplugged[i] ? encoder_unplugged
+                                 : encoder_sample)(&card->encoder[i], lines->phase[i], card->clock);
     sample_local(card, &lines->local);
     run_encoders(card);
     return EPCIO_OK;

@@ -68,8 +68,9 @@ struct epcio_host {
 
 /* Inputs of the card at its pins at an instant. */
 struct epcio_lines {
-    double phase[EPCIO_ENCODERS]; /* [line periods] of the encoders */
-    double volts[ADC_CHANNELS];   /* [V] of the ADC, held until the next instant */
+    double phase[EPCIO_ENCODERS];   /* [line periods] of the encoders */
+    bool unplugged[EPCIO_ENCODERS]; /* the encoder's plug is out */
+    double volts[ADC_CHANNELS];     /* [V] of the ADC, held until the next instant */
     struct local_io_lines local;
     struct remote_io_lines remote[EPCIO_SETS]; /* held until the next instant */
 };

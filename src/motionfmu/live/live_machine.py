@@ -209,7 +209,7 @@ class LiveMachine:
         return tuple(self._outputs), tuple(self._inputs)
 
     def text(self, name: str) -> str | None:
-        """What the scenario sets a text to, such as the path of a program; None if nothing."""
+        """What the scenario sets a text variable to; None if nothing."""
         texts = (s.values[0] for s in self._system.settings if s.end.name == name)
         return next(map(str, texts), None)
 

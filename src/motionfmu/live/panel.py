@@ -70,6 +70,14 @@ class Mdi(_Table):
     refused: str | None = None
 
 
+class Command(_Table):
+    """Commands by number: the code is set, then a new number takes it once."""
+
+    code: str
+    number: str
+    codes: dict[str, int]  # by label
+
+
 class Panel(_Table):
     """The tables of a panel.toml; all names are of variables of its FMU."""
 
@@ -81,6 +89,8 @@ class Panel(_Table):
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
+    command: Command | None = None
+    stop: str | None = None  # the emergency stop: true while it acts
     key: dict[str, Key] = Field(default_factory=dict)
     dial: dict[str, Dial] = Field(default_factory=dict)
     lamp: dict[str, Lamp] = Field(default_factory=dict)
@@ -91,6 +101,8 @@ class Panel(_Table):
         parts = (self.readout, self.jog, self.mdi)
         single = [self.state, self.alarm, self.line, self.stop]
         single += [v for p in parts if p is not None for v in p.model_dump().values()]
+        if self.command:
+            single += [self.command.code, self.command.number]
         tables = (self.key, self.dial, self.lamp, self.fault)
         return [n for n in (*single, *(n for t in tables for n in t)) if n is not None]
 

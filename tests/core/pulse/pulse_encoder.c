@@ -216,6 +216,29 @@ static void start_rate_and_range(void)
 }
 
 /* A signal far beyond the filter costs a few edges, not millions, and is told. */
+/* Pulled out in motion and put back three turns later: the counts of the way between are lost, and
+ * the index stays where it is on the shaft. */
+static void plug_out_and_in(void)
+{
+    struct encoder e;
+    const struct encoder_config c = { .rate = 4, .index_lines = 100 };
+    encoder_reset(&e, &c);
+    CHECK_EQ(go(&e, 0.5, 0), 0);
+    CHECK_EQ(go(&e, 10.5, 4000), 0);
+    CHECK_EQ(e.count, 40);
+    for (int i = 1; i <= 30; i++) { /* over three marks */
+        CHECK(encoder_unplugged(&e, 10.5 + 10.0 * i, 4000 + 4000 * i));
+        CHECK_EQ(encoder_run(&e, 4000 + 4000 * i), 0);
+        CHECK_EQ(e.count, 40);
+    }
+    CHECK_EQ(e.index_seen, 0);
+    CHECK(!encoder_unplugged(&e, NAN, 128000));
+    CHECK_EQ(go(&e, 390.5, 128000), 0);
+    CHECK_EQ(e.count, 40 + 320);
+    CHECK_EQ(go(&e, 410.5, 132000), ENCODER_INDEX); /* at 400 lines of the shaft */
+    CHECK_EQ(e.index_count, 40 + 320 + 38);
+}
+
 static void overload_ends(void)
 {
     struct encoder e;
@@ -321,6 +344,7 @@ int main(void)
                 against_brute_force(130363u * (wiring + 1u) + (unsigned)i, &c, true);
         }
     start_rate_and_range();
+    plug_out_and_in();
     overload_ends();
     wiring_and_formats();
     compare_and_clear();
