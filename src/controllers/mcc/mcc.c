@@ -25,6 +25,9 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     machine_complete_asyn(&m->machine);
     m->cart_max_speed = machine->max_feed;
     m->feed = machine->feed;
+    interpreter_start(&m->program, m->end, m->feed,
+                      (const double(*)[AXES])m->offset);
+    readout_start(m);
     trajectory_start(&m->trajectory);
     m->trajectory.confirm = guard_watched(&m->machine) != 0;
     m->open = true;
@@ -77,6 +80,7 @@ static int accept(struct mcc *m, struct command *c, enum command_status s)
         return s == COMMAND_FAST ? MCC_FEED_RATE : MCC_PARAMETER;
     }
     c->index = ++m->commands;
+    m->moved = true;
     memcpy(m->end, c->path.end, sizeof m->end);
     if (c->type == COMMAND_PTP_ASYN) {
         struct axes_limits l[AXES];
