@@ -1,15 +1,19 @@
 """What a page or a program must know of a live machine to work it."""
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
 from motionfmu.live.live_machine import LiveMachine
+from motionfmu.live.live_scene import scene
 from motionfmu.live.panel import panel_of
 from motionfmu.live.sample_ring import CHANNELS
 from motionfmu.scenarios.port import Port
 
 LINES_MAX = 200_000  # of a program, that a page is given
+# Meanings of numbers as a type's description has them: "0 running, 1 hold".
+_MEANING = re.compile(r"(-?\d+) (.*?)(?=, -?\d+ |$)")
 
 
 def about(machine: LiveMachine) -> dict[str, Any]:
@@ -40,6 +44,7 @@ def about(machine: LiveMachine) -> dict[str, Any]:
         "components": components,
         "channels": CHANNELS,
         "program": _program(machine),
+        "scene": scene(machine),
     }
 
 
@@ -53,7 +58,16 @@ def _variable(port: Port, settable: bool) -> dict[str, Any]:
         "high": port.high if math.isfinite(port.high) else None,
         "causality": port.causality,
         "set": settable,
+        "tunable": port.tunable,
+        "words": _words(port),
     }
+
+
+def _words(port: Port) -> dict[int, str]:
+    """What the numbers of a variable mean, if its type says it."""
+    if port.type != "Int32" or port.declared is None:
+        return {}
+    return {int(number): word for number, word in _MEANING.findall(port.declared[1])}
 
 
 def _program(machine: LiveMachine) -> dict[str, Any] | None:
@@ -66,4 +80,6 @@ def _program(machine: LiveMachine) -> dict[str, Any] | None:
         text = Path(file).read_text(encoding="utf-8-sig", errors="replace")
     except OSError:
         return None
-    return {"file": Path(file).name, "lines": text.splitlines()[:LINES_MAX]}
+    lines = [] if "\0" in text else text.splitlines()[:LINES_MAX]  # a job file has no lines
+    tools = machine.text(f"{name.partition('.')[0]}.tool_table")
+    return {"file": Path(file).name, "path": file, "tools": tools, "lines": lines}
