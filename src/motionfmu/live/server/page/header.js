@@ -24,7 +24,8 @@ part("run").addEventListener("click", () => act(frame?.running ? "pause" : "go")
 part("step").addEventListener("click", () => act("step", { count: 1 }));
 part("take").addEventListener("click", () => act(frame?.hand ? "drop" : "take"));
 part("stop").addEventListener("click", () => {
-  if (stopped()) act("set", { name: shown.stops[0], value: false });
+  const acting = shown.stops.filter((name) => value(name));
+  if (acting.length) acting.forEach((name) => act("set", { name, value: false }));
   else act("stop");
 });
 addEventListener("keydown", (event) => {

@@ -4,27 +4,31 @@ import { act } from "./link.js";
 import { panels, value, variable, watch } from "./machine.js";
 import { figures } from "./words.js";
 
-const KINDS = [[/start|go on|resume/i, "start"], [/hold|pause|single/i, "hold"], [/abort|stop/i, "halt"],
+const KINDS = [[/start|go |resume/i, "start"], [/hold|pause|single/i, "hold"], [/abort|stop/i, "halt"],
   [/home|origin/i, "home"]];
-let keys = [], dials = [], lamps = [];
+let keys = [], commands = [], dials = [], lamps = [];
 
 export function keysOf() {
   const all = panels();
-  keys = all.flatMap((p) => Object.entries(p.key).map(([name, key]) => keyOf(p.full(name), key)));
-  const groups = all.filter((p) => Object.keys(p.key).length);
+  const free = (name) => variable(name)?.set; // nothing else of the machine sets it
+  keys = all.flatMap((p) => Object.entries(p.key).filter(([name]) => free(p.full(name)))
+    .map(([name, key]) => keyOf(p.full(name), key)));
+  commands = all.filter((p) => p.command).flatMap(commandsOf);
+  const groups = all.filter((p) => [...keys, ...commands].some((k) => k.name.startsWith(`${p.component}.`)));
   part("keys").replaceChildren(...groups.map((p) => groupOf(p, groups.length > 1)));
-  dials = all.flatMap((p) => Object.entries(p.dial).map(([name, dial]) => dialOf(p.full(name), dial)));
+  dials = all.flatMap((p) => Object.entries(p.dial).filter(([name]) => free(p.full(name)))
+    .map(([name, dial]) => dialOf(p.full(name), dial)));
   part("dials").replaceChildren(...dials.map((d) => d.box));
   lamps = all.flatMap((p) => Object.entries(p.lamp).flatMap(([name, lamp]) => lampsOf(p.full(name), lamp)));
   part("lamps").replaceChildren(...lamps.map((l) => l.item));
-  for (const [id, list] of [["keys", keys], ["dials", dials], ["lamps", lamps]]) {
+  for (const [id, list] of [["keys", groups], ["dials", dials], ["lamps", lamps]]) {
     part(id).closest("section").hidden = !list.length;
   }
-  watch("keys", [...keys, ...dials, ...lamps].map((x) => x.name));
+  watch("keys", [...keys, ...commands, ...dials, ...lamps].map((x) => x.name));
 }
 
 function groupOf(panel, titled) {
-  const own = keys.filter((k) => k.name.startsWith(`${panel.component}.`)).map((k) => k.button);
+  const own = [...commands, ...keys].filter((k) => k.name.startsWith(`${panel.component}.`)).map((k) => k.button);
   const box = made("div", "", { className: "pads", role: "group", "aria-label": panel.title }, ...own);
   return titled ? made("div", "", {}, made("h3", panel.title), box) : box;
 }
@@ -39,6 +43,19 @@ function keyOf(name, { label, kind }) {
     else act("set", { name, value: number ? Number(!value(name)) : !value(name) });
   });
   return { name, button, kind };
+}
+
+// Commands by number: the code, then a new number takes it once.
+function commandsOf({ command, full }) {
+  const [code, number] = [full(command.code), full(command.number)];
+  return Object.entries(command.codes).map(([label, value_]) => {
+    const [, colour] = KINDS.find(([words]) => words.test(label)) ?? [, "plain"];
+    const button = made("button", label, { type: "button", className: `pad ${colour}` });
+    button.addEventListener("click", async () => {
+      if (await act("set", { name: code, value: value_ }) !== undefined) act("set", { name: number, value: (value(number) ?? 0) + 1 });
+    });
+    return { name: number, button };
+  });
 }
 
 const share = (unit, high) => !unit && high > 0 && high <= 4;

@@ -30,6 +30,12 @@ export function readoutOf() {
   watch("readout", shown.flatMap((s) => Object.values(s.names)));
 }
 
+// A row of a rotary axis counts 1 mm for 1°.
+function unitOf(name, axis) {
+  const { unit, type } = variable(name), shown = shownUnit(unit)[1];
+  return shown === "mm" && axis.kind === "rotary" ? "°" : shown || (type === "Int32" ? "counts" : "");
+}
+
 function tableOf(one) {
   const { names, axes, set, panel } = one;
   const columns = [["machine", "Machine"], ["offset", "Work"], ["to_go", "To go"]].filter(([key]) => names[key]);
@@ -40,7 +46,7 @@ function tableOf(one) {
   one.cells = axes.map((axis) => {
     const row = made("tr", "", {}, made("th", axis.name, { scope: "row" }));
     const cells = columns.map(([key]) => [key, row.appendChild(made("td"))]);
-    row.append(made("td", axis.kind === "rotary" ? "°" : shownUnit(variable(names.machine).unit)[1], { className: "unit" }));
+    row.append(made("td", unitOf(names.machine, axis), { className: "unit" }));
     if (set) {
       const button = made("button", "Set", { type: "button", title: `This place is the value below in ${axis.name}`, "aria-label": `Touch off ${axis.name}` });
       button.addEventListener("click", () => act("mdi", { component: panel.component, line: `G10 L20 P0 ${axis.name}${Number(field.value) || 0}` }));
@@ -63,10 +69,19 @@ export function showReadout() {
     axes.forEach((axis, k) => {
       const at = axis.row - 1, factor = shownUnit(variable(names.machine).unit)[0];
       const numbers = { machine: machine[at] * factor, offset: offset && (machine[at] - offset[at]) * factor, to_go: to_go && to_go[at] * factor };
-      for (const [key, cell] of cells[k].cells) put(cell, fixed(numbers[key]));
+      const whole = variable(names.machine).type === "Int32";
+      for (const [key, cell] of cells[k].cells) put(cell, fixed(numbers[key], whole ? 0 : 3));
     });
     showFacts(one);
   }
+}
+
+// A tool's number, or where its tip is.
+function toolOf(name) {
+  const { shape, unit } = variable(name);
+  if (!shape.length) return `T${value(name) ?? 0}`;
+  const [factor, shown] = shownUnit(unit);
+  return `${values(name).map((x, k) => `${"XYZABC"[k]} ${fixed(factor * x, 2)}`).join("  ")} ${shown}`;
 }
 
 function showFacts({ names, facts }) {
@@ -76,7 +91,7 @@ function showFacts({ names, facts }) {
     told.Feed = factor ? `${fixed(value(names.feed) * factor, 0)} mm/min` : `${figures(value(names.feed))} ${unit ?? ""}`;
   }
   if (names.spindle) told.Spindle = `${fixed(value(names.spindle), 0)} rpm`;
-  if (names.tool) told.Tool = `T${value(names.tool) ?? 0}`;
+  if (names.tool) told.Tool = toolOf(names.tool);
   if (names.modes) told.Modes = values(names.modes).filter((g) => g >= 0).map((g) => `G${g % 10 ? g / 10 : g / 10 | 0}`).join(" ") || "\u2013";
   rows(facts, Object.keys(told), (name) => made("div", "", {}, made("dt", name), made("dd")))
     .forEach((row) => put(row.lastChild, told[row.dataset.key]));

@@ -48,9 +48,9 @@ async function choose(names) {
   if (names.length > about.channels) return;
   try { localStorage.setItem(key(), JSON.stringify(names)); } catch { /* no store */ }
   asking = true;
-  const done = await (frame && !frame.hand ? ask : act)("channels", { names }).then(() => true, () => false);
+  const done = frame && !frame.hand ? undefined : await act("channels", { names });
   asking = false;
-  if (done) adopt(names);
+  if (done !== undefined) adopt(names);
 }
 
 // The channels that the machine's ring has: those of whoever has chosen last.

@@ -26,8 +26,7 @@ part("trigger-form").addEventListener("submit", async (event) => {
   const number = (id) => Number(part(id).value);
   const asked = { channel: part("trigger-channel").value, kind: part("trigger-kind").value, level: number("trigger-level"),
     high: number("trigger-high"), pre: number("trigger-pre"), length: Math.round(number("trigger-length") / about.step), mode: part("trigger-mode").value };
-  const done = await act("trigger", asked).then(() => true, () => false);
-  if (done) put(part("trigger-state"), `waits until ${asked.channel} ${KINDS[asked.kind]} ${asked.kind === "change" ? "" : figures(asked.level)}`);
+  if (await act("trigger", asked) !== undefined) put(part("trigger-state"), `waits until ${asked.channel} ${KINDS[asked.kind]} ${asked.kind === "change" ? "" : figures(asked.level)}`);
 });
-part("trigger-off").addEventListener("click", () => act("trigger").then(() => put(part("trigger-state"), "off")));
+part("trigger-off").addEventListener("click", () => act("trigger").then((done) => { if (done !== undefined) put(part("trigger-state"), "off"); }));
 addEventListener("triggered", ({ detail }) => put(part("trigger-state"), `triggered at ${figures(detail, 8)} s`));
