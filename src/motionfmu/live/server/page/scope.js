@@ -126,38 +126,44 @@ signalList(part("scope-search"), part("scope-found"), (name) => {
 });
 
 function showChannels() {
-  const heads = ["", "Signal", ...(cursors ? ["A", "B", "B \u2212 A"] : ["Now", "Least", "Most"]), ""];
-  part("scope-head").replaceChildren(made("tr", "", {}, ...heads.map((words) => made(words ? "th" : "td", words, words ? { scope: "col" } : {}))));
-  rows(part("scope-channels"), channels.map((c) => c.name), (name) => {
-    const of = () => channels.find((c) => c.name === name);
-    const show = made("button", "", { type: "button", className: "swatch", "aria-label": `Show ${name}`, "aria-pressed": "true" });
-    show.addEventListener("click", () => { of().shown = !of().shown; mark(show, "aria-pressed", of().shown); });
-    const ends = ["low", "high"].map((end) => {
-      const field = made("input", "", { type: "number", step: "any", placeholder: "auto", "aria-label": `${name}: ${end} end of its scale` });
-      field.addEventListener("change", () => { of()[end] = field.value === "" ? undefined : Number(field.value); });
-      return field;
-    });
-    const gone = made("button", "\u00d7", { type: "button", className: "quiet", "aria-label": `Remove ${name}` });
-    gone.addEventListener("click", () => choose(channels.filter((c) => c.name !== name).map((c) => c.name)));
-    return made("tr", "", {}, made("td", "", {}, show), made("th", "", { scope: "row" }, made("b", name), made("small"),
-      made("span", "", { className: "ends" }, ends[0], " to ", ends[1])), made("td"), made("td"), made("td"), made("td", "", {}, gone));
-  }).forEach((row, k) => {
-    row.firstChild.firstChild.style.setProperty("--c", channels[k].colour);
+  rows(part("scope-channels"), channels.map((c) => c.name), channelOf).forEach((row, k) => {
+    row.firstChild.style.setProperty("--c", channels[k].colour);
     put(row.children[1].children[1], channels[k].unit);
-    mark(row.firstChild.firstChild, "aria-pressed", channels[k].shown);
+    mark(row.firstChild, "aria-pressed", channels[k].shown);
   });
+}
+
+function channelOf(name) {
+  const of = () => channels.find((c) => c.name === name);
+  const show = made("button", "", { type: "button", className: "swatch", "aria-label": `Show ${name}`, "aria-pressed": "true" });
+  show.addEventListener("click", () => { of().shown = !of().shown; mark(show, "aria-pressed", of().shown); });
+  const ends = ["low", "high"].map((end) => {
+    const field = made("input", "", { type: "number", step: "any", placeholder: "auto", "aria-label": `${name}: ${end} end of its scale` });
+    field.addEventListener("change", () => { of()[end] = field.value === "" ? undefined : Number(field.value); });
+    return field;
+  });
+  const gone = made("button", "\u00d7", { type: "button", className: "quiet", "aria-label": `Remove ${name}` });
+  gone.addEventListener("click", () => choose(channels.filter((c) => c.name !== name).map((c) => c.name)));
+  return made("li", "", {}, show, made("div", "", {}, made("b", name), made("small")), gone,
+    made("dl", "", {}, ...[0, 1, 2].map(() => made("div", "", {}, made("dt"), made("dd")))),
+    made("span", "", { className: "ends" }, "scale", ends[0], "to", ends[1]));
 }
 
 const window_ = () => (running ? [ring.end - span / step(), ring.end] : seen);
 
 function showValues(from, to) {
   const own = shownRing(), at = cursors?.map((share) => Math.round(from + share * (to - from)));
+  const words = at ? ["A", "B", "B \u2212 A"] : ["now", "least", "most"];
   [...part("scope-channels").children].forEach((row, k) => {
     const peaks = [NaN, NaN];
     if (!at) own.peaks(k, Math.floor(from), Math.ceil(to), peaks);
     const [a, b] = at ? at.map((s) => own.at(k, s)) : [0, 0];
     const told = at ? [a, b, b - a] : [own.at(k, own.end - 1), ...peaks];
-    told.forEach((v, n) => put(row.children[2 + n], figures(v, 5)));
+    told.forEach((v, n) => {
+      const { firstChild, lastChild } = row.children[3].children[n];
+      put(firstChild, words[n]);
+      put(lastChild, figures(v, 5));
+    });
   });
   put(part("scope-time"), at ? betweenCursors(own, at) : "");
 }

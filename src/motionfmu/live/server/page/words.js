@@ -15,7 +15,7 @@ export function figures(value, count = 4) {
   if (!Number.isFinite(value)) return "\u2013";
   if (Number.isInteger(value) && Math.abs(value) < 1e9) return String(value).replace("-", MINUS);
   const size = Math.abs(value), text = size >= 1e6 || size < 1e-4
-    ? value.toExponential(count - 1) : String(Number(value.toPrecision(count)));
+    ? Number(value.toPrecision(count)).toExponential() : String(Number(value.toPrecision(count)));
   return text.replace(/-/g, MINUS);
 }
 
