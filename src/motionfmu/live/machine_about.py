@@ -1,10 +1,13 @@
 """What a page or a program must know of a live machine to work it."""
 
+import ctypes
+import itertools
 import math
 import re
 from pathlib import Path
 from typing import Any
 
+from motionfmu.base.binding import library
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.live_scene import scene
 from motionfmu.live.panel import panel_of
@@ -34,6 +37,8 @@ def about(machine: LiveMachine) -> dict[str, Any]:
                 if name in outputs or name in settable
             },
         }
+        if panel and panel.mdi and panel.mdi.fault:
+            components[component]["variables"][panel.mdi.fault]["words"] = _faults()
     body = scenario.document.body
     return {
         "name": scenario.name,
@@ -68,6 +73,12 @@ def _words(port: Port) -> dict[int, str]:
     if port.type != "Int32" or port.declared is None:
         return {}
     return {int(number): word for number, word in _MEANING.findall(port.declared[1])}
+
+
+def _faults() -> dict[int, str]:
+    """Why a line of a part program is refused, by number."""
+    texts = (library().fault_text(ctypes.c_int32(k)).decode() for k in itertools.count())
+    return dict(enumerate(itertools.takewhile(bool, texts)))
 
 
 def _program(machine: LiveMachine) -> dict[str, Any] | None:

@@ -162,7 +162,7 @@ function showValues(from, to) {
     told.forEach((v, n) => {
       const { firstChild, lastChild } = row.children[3].children[n];
       put(firstChild, words[n]);
-      put(lastChild, figures(v, 5));
+      put(lastChild, figures(v, 4));
     });
   });
   put(part("scope-time"), at ? betweenCursors(own, at) : "");

@@ -1,11 +1,12 @@
 // Faults and parameters: everything that can be set, by component, with what was changed and its undo.
 import { made, mark, part, put } from "./dom.js";
 import { act, ask } from "./link.js";
-import { about, elements, frame, split, variable } from "./machine.js";
+import { about, axisOf, elements, frame, split, variable } from "./machine.js";
 import { figures } from "./words.js";
 
 const AGAIN = 400; // [ms] between two looks at the values
 const OPEN_MOST = 12; // elements of an array that have a field each
+const ROWS = 6; // elements of an array that has one for each axis
 let groups = [], items = [], changed = {}, shownAt = 0;
 
 export function valuesOf() {
@@ -28,15 +29,13 @@ function itemOf(name, label) {
   const own = variable(name), id = `value-${name.replace(/\W/g, "-")}`;
   const names = elements(name), single = names.length === 1;
   const fields = names.length > OPEN_MOST ? [] : names.map((one, k) => fieldOf(one, own, single ? id : `${id}-${k}`, single ? label ?? name : one));
-  const range = [own.low, own.high].some((x) => x !== null) && own.type !== "Boolean"
-    ? `${own.low === null ? "" : figures(own.low)} \u2026 ${own.high === null ? "" : figures(own.high)}` : "";
   const undo = made("button", "Undo", { type: "button", hidden: true, "aria-label": `Undo ${label ?? name}` });
   undo.addEventListener("click", () => act("undo", { name }));
   const all = names.length > OPEN_MOST ? allOf(name, own, names.length) : null;
   const title = made(single ? "label" : "span", label ?? split(name)[1], single ? { htmlFor: id, className: "title" } : { className: "title" });
   const box = made("div", "", { className: "value", role: "group", "aria-label": label ?? name }, made("div", "", { className: "words" }, title,
     ...(label ? [made("code", name)] : []), made("p", own.doc, { className: "hint" }), made("span", "", { className: "was" })),
-  made("div", "", { className: "fields" }, ...fields.map((f) => f.box), ...(all ? [all] : []), made("span", [own.unit, range].filter(Boolean).join("  "), { className: "hint" }), undo));
+  made("div", "", { className: "fields" }, ...fields.map((f) => f.box), ...(all ? [all] : []), made("span", [own.unit, rangeOf(own)].filter(Boolean).join("  "), { className: "hint" }), undo));
   return { name, label: label ?? "", box, fields, undo, was: box.querySelector(".was"), text: `${name} ${label ?? ""} ${own.doc}`.toLowerCase() };
 }
 
@@ -47,10 +46,23 @@ function allOf(name, own, count) {
   return field;
 }
 
+// An element by its axis where an array has one for each row of the axes, else by its number.
+function indexOf(name, own) {
+  const index = /\[([\d,]+)\]$/.exec(name)?.[1];
+  const axis = own.shape.length === 1 && own.shape[0] === ROWS && axisOf(Number(index));
+  return axis ? axis.name : index;
+}
+
+function rangeOf({ low, high, type }) {
+  if (type === "Boolean" || (low === null && high === null)) return "";
+  if (low === null) return `\u2264 ${figures(high)}`;
+  return high === null ? `\u2265 ${figures(low)}` : `${figures(low)} \u2026 ${figures(high)}`;
+}
+
 const given = (own, text) => (own.type === "Boolean" ? text === "true" || text === true : Number(text));
 
 function fieldOf(name, own, id, label) {
-  const index = /\[[\d,]+\]$/.exec(name)?.[0];
+  const index = own.shape.length ? indexOf(name, own) : "";
   const set = (value) => act("set", { name, value });
   if (own.type === "Boolean") {
     const box = made("input", "", { type: "checkbox", id, role: "switch", "aria-label": label });
