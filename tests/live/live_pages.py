@@ -10,6 +10,8 @@ from typing import Any
 
 from motionfmu.base.page_server import PageServer
 from motionfmu.live.server import MachineLink, application
+from motionfmu.live.server.app import MESSAGE_MAX
+from motionfmu.live.server.machine_link import MachineStart
 
 TOKEN = "a-token"
 
@@ -22,8 +24,8 @@ def serving(scenario: str | Path, **more: Any) -> Iterator[str]:
     async def main() -> None:
         try:
             async with (
-                MachineLink(str(scenario), **more) as link,
-                PageServer(application(link, TOKEN), 0) as port,
+                MachineLink(MachineStart(str(scenario), **more)) as link,
+                PageServer(application(link, TOKEN), 0, message_max=MESSAGE_MAX) as port,
             ):
                 found.set_result((asyncio.get_running_loop(), port))
                 await ended.wait()

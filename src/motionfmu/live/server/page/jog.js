@@ -15,14 +15,14 @@ let pads = [], keysOn = false, padded = false;
 
 export function jogOf() {
   letGo();
-  pads = panels().filter((p) => p.jog).map(padOf);
+  pads = panels().filter((p) => p.jog && variable(p.full(p.jog.direction))?.set).map(padOf);
   part("jog").closest("section").hidden = !pads.length;
   part("jog").replaceChildren(...pads.map((p) => p.box));
   watch("jog", pads.flatMap((p) => [p.speed, p.way].filter(Boolean)));
 }
 
 function padOf(panel) {
-  const { jog, component } = panel, full = (name) => name && panel.full(name);
+  const { jog, component } = panel, full = (name) => name && variable(panel.full(name))?.set && panel.full(name);
   const direction = panel.full(jog.direction);
   const axes = axesOf(panel.readout.machine ? panel.full(panel.readout.machine) : direction)
     .filter((a) => a.row <= (variable(direction).shape[0] ?? 1));

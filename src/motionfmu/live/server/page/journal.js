@@ -8,6 +8,7 @@ import { told } from "./header.js";
 
 const LATEST = 200, FOUND = 12;
 let known = -1, checks = new Map(); // names of signals -> whether their value at the end is a check
+const rooms = new Map(); // by name, what somebody typed
 let moved = false;
 
 export function journalOf() {
@@ -32,9 +33,17 @@ function watchChecks() {
   rows(part("checks"), shown, (name) => {
     const box = made("input", "", { type: "checkbox", checked: checks.get(name) ?? false });
     box.addEventListener("change", () => checks.set(name, box.checked));
-    return made("label", "", { className: "check" }, box, made("code", name), made("span"));
+    const row = made("div", "", { className: "check" }, made("label", "", {}, box, made("code", name)), made("span"));
+    if (variable(name.replace(/\[[\d,]+\]$/, ""))?.type === "Float64") row.append(roomOf(name));
+    return row;
   });
 }
+function roomOf(name) {
+  const field = made("input", "", { type: "number", step: "any", min: 0, "aria-label": `${name}: by how much it may differ` });
+  field.addEventListener("change", () => { if (field.value === "") rooms.delete(name); else rooms.set(name, Number(field.value)); });
+  return made("label", "\u00b1 ", { className: "hint" }, field);
+}
+
 part("checks-search").addEventListener("input", watchChecks);
 
 // Present value of a signal or of an element of one.
@@ -45,22 +54,24 @@ function present(name) {
   return all[index.split(",").reduce((at, i, k) => at * shape[k] + Number(i) - 1, 0)];
 }
 
-const TOLERANCE = 1e-9; // of a number that was read and is written as text
+// By how much a number may differ at the end, until somebody says it: a share of it, or a little.
+const SHARE = 1e-3, LEAST = 1e-6;
+export const usualRoom = (now) => Number(Math.max(LEAST, SHARE * Math.abs(now)).toPrecision(1));
 
-// The [check] table: what ends as it is now; a truth as it is, a number within rounding.
-export function checkTable(names, value) {
+// The [check] table: what ends as it is now; a number of which only so much is known, within that.
+export function checkTable(names, value, room) {
   return Object.fromEntries(names.map((name) => {
     const now = value(name);
     if (typeof now !== "number" || Number.isInteger(now)) return [name, { final: now }];
-    const room = TOLERANCE * Math.max(1, Math.abs(now));
-    return [name, { final: [now - room, now + room] }];
+    const apart = room(name) ?? usualRoom(now);
+    return [name, { final: [now - apart, now + apart] }];
   }));
 }
 
 part("save").addEventListener("submit", async (event) => {
   event.preventDefault();
   const ticked = [...checks].filter(([, on]) => on).map(([name]) => name);
-  const check = checkTable(ticked, present);
+  const check = checkTable(ticked, present, (name) => rooms.get(name));
   const place = await act("save", { folder: part("folder").value.trim(), check });
   if (place) told(`Saved: ${place}`, "good");
 });
@@ -83,7 +94,9 @@ export function showJournal() {
   }
   for (const row of part("checks").children) {
     const name = row.dataset.key, now = present(name), own = variable(name);
-    put(row.lastChild, now === undefined ? "" : own?.words && own.words[now] ? own.words[now] : figures(now, 7));
+    put(row.children[1], now === undefined ? "" : own?.words?.[now] ?? figures(now, 7));
+    const field = row.querySelector("[type=number]");
+    if (field && now !== undefined) field.placeholder = usualRoom(now);
   }
   if (frame.actions !== known) list();
 }

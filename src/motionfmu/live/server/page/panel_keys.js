@@ -13,7 +13,7 @@ export function keysOf() {
   const free = (name) => variable(name)?.set; // nothing else of the machine sets it
   keys = all.flatMap((p) => Object.entries(p.key).filter(([name]) => free(p.full(name)))
     .map(([name, key]) => keyOf(p.full(name), key)));
-  commands = all.filter((p) => p.command).flatMap(commandsOf);
+  commands = all.filter((p) => p.command && free(p.full(p.command.number))).flatMap(commandsOf);
   const groups = all.filter((p) => [...keys, ...commands].some((k) => k.name.startsWith(`${p.component}.`)));
   part("keys").replaceChildren(...groups.map((p) => groupOf(p, groups.length > 1)));
   dials = all.flatMap((p) => Object.entries(p.dial).filter(([name]) => free(p.full(name)))
@@ -45,15 +45,13 @@ function keyOf(name, { label, kind }) {
   return { name, button, kind };
 }
 
-// Commands by number: the code, then a new number takes it once.
-function commandsOf({ command, full }) {
-  const [code, number] = [full(command.code), full(command.number)];
-  return Object.entries(command.codes).map(([label, value_]) => {
+// Commands that a panel has by name.
+function commandsOf({ component, command, full }) {
+  const number = full(command.number);
+  return Object.keys(command.codes).map((label) => {
     const [, colour] = KINDS.find(([words]) => words.test(label)) ?? [, "plain"];
     const button = made("button", label, { type: "button", className: `pad ${colour}` });
-    button.addEventListener("click", async () => {
-      if (await act("set", { name: code, value: value_ }) !== undefined) act("set", { name: number, value: (value(number) ?? 0) + 1 });
-    });
+    button.addEventListener("click", () => act("command", { component, name: label }));
     return { name: number, button };
   });
 }
