@@ -264,7 +264,7 @@ def test_every_picture_of_the_oscilloscope_has_ink_of_its_channels(tab: Any, sho
         .map((b) => b.style.getPropertyValue("--c").match(/\\w\\w/g).map((h) => parseInt(h, 16)));
       return colours.filter(([r, g, b]) => { for (let k = 0; k < data.length; k += 4) {
         if (Math.abs(data[k] - r) + Math.abs(data[k + 1] - g) + Math.abs(data[k + 2] - b) < 12
-          && data[k + 3] > 200) return true; } return false; }).length >= 2;
+          && data[k + 3] > 120) return true; } return false; }).length >= 2;
     }"""
     line_of(tab, "G91 G1 X2 Y1 F600")
     until(tab, ink)

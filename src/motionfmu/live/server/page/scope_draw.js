@@ -54,21 +54,37 @@ function curve(pen, ring, channel, { from, to, width, top, height, scale: [low, 
   pen.beginPath();
   pen.rect(LEFT, top - 1, width, height + 2);
   pen.clip();
+  if (to - from > width) bars(pen, channel.colour, count, stretch, y);
+  else through(pen, channel.colour, count, stretch, y);
+  pen.restore();
+}
+
+// Few samples: a line through them.
+function through(pen, colour, count, stretch, y) {
   pen.beginPath();
   for (let k = 0; k < count; k++) {
     const x = LEFT + room.x[k] * stretch;
-    if (room.low[k] === room.high[k]) pen.lineTo(x, y(room.low[k]));
-    else {
-      const up = k === 0 || Math.abs(room.low[k] - room.low[k - 1]) < Math.abs(room.high[k] - room.high[k - 1]);
-      pen.lineTo(x, y(up ? room.low[k] : room.high[k]));
-      pen.lineTo(x, y(up ? room.high[k] : room.low[k]));
-    }
+    pen.lineTo(x, y(room.low[k]));
+    if (room.high[k] !== room.low[k]) pen.lineTo(x, y(room.high[k]));
   }
-  pen.strokeStyle = channel.colour;
+  pen.strokeStyle = colour;
   pen.lineWidth = 1.3;
   pen.lineJoin = "bevel";
   pen.stroke();
-  pen.restore();
+}
+
+// Many samples: a bar from least to largest for each column, joined to the one before. Rectangles
+// are drawn ten times as fast as a line of as many corners.
+const THIN = 1.4; // [px]
+function bars(pen, colour, count, stretch, y) {
+  pen.fillStyle = colour;
+  for (let k = 0; k < count; k++) {
+    const x = Math.round(LEFT + room.x[k] * stretch), next = k + 1 < count ? Math.round(LEFT + room.x[k + 1] * stretch) : x + 1;
+    const low = k ? Math.min(room.low[k], room.high[k - 1]) : room.low[k];
+    const high = k ? Math.max(room.high[k], room.low[k - 1]) : room.high[k];
+    const top = y(high), tall = y(low) - top, more = Math.max(0, THIN - tall);
+    pen.fillRect(x, top - more / 2, Math.max(1, next - x), tall + more);
+  }
 }
 
 function lane(pen, top, height, w, theme) {
@@ -189,7 +205,7 @@ export function againstX(pen, size, { ring, from, to, x, channels, theme }) {
         TOP + height - (ring.at(channel.index, k) - up[0]) / (up[1] - up[0]) * height);
     }
     pen.strokeStyle = channel.colour;
-    pen.lineWidth = 1.2;
+    pen.lineWidth = 1.6;
     pen.stroke();
   }
 }

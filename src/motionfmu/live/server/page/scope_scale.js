@@ -1,4 +1,5 @@
-// Scales of an oscilloscope: round ends, round ticks.
+// Scales of an oscilloscope: round ends, round ticks; a signal's peaks by columns.
+import { BLOCK } from "./trace_ring.js";
 
 // 1, 2 or 5 times a power of ten, not below a value.
 export function roundUp(value) {
@@ -27,7 +28,9 @@ export function ticks(low, high, count) {
 // Peaks of a channel by columns of the screen; columns begin at whole multiples of their width, so
 // that a picture that rolls does not flicker. xs, lows, highs are filled; the number of columns.
 export function columns(ring, channel, from, to, width, out) {
-  const wide = Math.max(1, Math.round((to - from) / width)), peaks = [0, 0];
+  const exact = Math.max(1, Math.round((to - from) / width)), peaks = [0, 0];
+  // Wide columns are of whole blocks, whose peaks are known.
+  const wide = exact > 2 * BLOCK ? Math.round(exact / BLOCK) * BLOCK : exact;
   let count = 0;
   for (let a = Math.floor(Math.max(from, ring.begin) / wide) * wide; a < Math.min(to, ring.end); a += wide) {
     ring.peaks(channel, a, a + wide, peaks);

@@ -1,6 +1,6 @@
 // Samples of channels over steps: the latest so many, with the peaks of each block of them.
 
-const BLOCK = 64;
+export const BLOCK = 64;
 
 export class TraceRing {
   // rows: steps that are kept, a multiple of BLOCK.
