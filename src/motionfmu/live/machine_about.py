@@ -85,7 +85,7 @@ def _program(machine: LiveMachine) -> dict[str, Any] | None:
     """The program's file and its text, if a controller has one."""
     name = machine.scenario.document.body.signals.program
     file = None if name is None else machine.text(name)
-    if not file:
+    if name is None or not file:
         return None
     try:
         text = Path(file).read_text(encoding="utf-8-sig", errors="replace")

@@ -85,7 +85,6 @@ class Panel(_Table):
     state: str | None = None
     alarm: str | None = None
     line: str | None = None
-    stop: str | None = None  # the machine's emergency stop: true while it is pressed
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None

@@ -1,12 +1,12 @@
 // Motion by hand: a key that is held moves an axis; what holds it must say so again and again.
-import { choice, made, part, put, toggle } from "./dom.js";
+import { choice, made, mark, part, put, toggle } from "./dom.js";
 import { act, ask } from "./link.js";
 import { panels, value, variable, watch } from "./machine.js";
 import { axesOf } from "./readout.js";
 import { fixed } from "./words.js";
 
 const AGAIN = 40; // [ms] between two signs of who holds a key
-const WAYS = [0, 0.001, 0.01, 0.1, 1, 10]; // [mm]; 0: for so long as the key is down
+const WAYS = [0, 0.001, 0.01, 0.1, 1, 10]; // in the unit of the variable; 0: for so long as the key is down
 // Keys of the keyboard: axis from 1, direction.
 export const KEYS = { ArrowRight: [1, 1], ArrowLeft: [1, -1], ArrowUp: [2, 1], ArrowDown: [2, -1],
   PageUp: [3, 1], PageDown: [3, -1] };
@@ -18,7 +18,7 @@ export function jogOf() {
   pads = panels().filter((p) => p.jog && variable(p.full(p.jog.direction))?.set).map(padOf);
   part("jog").closest("section").hidden = !pads.length;
   part("jog").replaceChildren(...pads.map((p) => p.box));
-  watch("jog", pads.flatMap((p) => [p.speed, p.way].filter(Boolean)));
+  watch("jog", pads.flatMap((p) => [p.speed, p.way, p.frame].filter(Boolean)));
 }
 
 function padOf(panel) {
@@ -26,11 +26,12 @@ function padOf(panel) {
   const direction = panel.full(jog.direction);
   const axes = axesOf(panel.readout.machine ? panel.full(panel.readout.machine) : direction)
     .filter((a) => a.row <= (variable(direction).shape[0] ?? 1));
-  const pad = { component, axes, direction, speed: full(jog.speed), way: full(jog.way), buttons: new Map() };
+  const pad = { component, axes, direction, speed: full(jog.speed), way: full(jog.way), frame: full(jog.frame), buttons: new Map() };
   const grid = made("div", "", { className: "jog-pad", tabIndex: 0, role: "group",
     "aria-label": "Jog: arrow keys, Page Up and Down while this is in focus" });
   axes.forEach((axis, k) => grid.append(...rowOf(pad, axis, k)));
   const bar = made("div", "", { className: "jog-bar" });
+  if (pad.frame) bar.append(frameOf(pad));
   if (pad.way) bar.append(wayOf(pad));
   if (pad.speed) bar.append(speedOf(pad));
   const keys = made("button", "Keys jog", { type: "button", title: "Arrow keys and Page Up, Page Down jog wherever the focus is" });
@@ -70,9 +71,31 @@ function rowOf(pad, axis, k) {
   });
 }
 
+// In the frame of a base or a tool the directions are X Y Z and turns about them.
+const TURNS = ["X", "Y", "Z", "A", "B", "C"];
+function frameOf(pad) {
+  const { words } = variable(pad.frame), select = made("select");
+  choice(select, Object.entries(words), 0);
+  select.addEventListener("change", () => act("set", { name: pad.frame, value: Number(select.value) }));
+  pad.showFrame = () => {
+    const now = value(pad.frame) ?? 0;
+    if (document.activeElement !== select) select.value = now;
+    for (const axis of pad.axes) {
+      const name = /joint/.test(words[now]) ? axis.name : TURNS[axis.row - 1];
+      for (const way of [-1, 1]) {
+        const button = pad.buttons.get(`${axis.row}${way}`);
+        put(button, `${name}${way < 0 ? "\u2212" : "+"}`);
+        mark(button, "aria-label", `Jog ${name} ${way < 0 ? "minus" : "plus"}`);
+      }
+    }
+  };
+  return made("label", "Frame ", {}, select);
+}
+
 function wayOf(pad) {
   const select = made("select");
-  choice(select, WAYS.map((w) => [w, w ? `${w} mm` : "continuous"]), 0);
+  const unit = variable(pad.way).unit ?? "";
+  choice(select, WAYS.map((w) => [w, w ? `${w} ${unit}` : "continuous"]), 0);
   select.addEventListener("change", () => act("set", { name: pad.way, value: Number(select.value) }));
   pad.showWay = () => { if (document.activeElement !== select && value(pad.way) !== undefined) select.value = value(pad.way); };
   return made("label", "Step ", {}, select);
@@ -155,6 +178,6 @@ function gamepad() {
 }
 
 export function showJog() {
-  for (const pad of pads) { pad.showWay?.(); pad.showSpeed?.(); }
+  for (const pad of pads) { pad.showFrame?.(); pad.showWay?.(); pad.showSpeed?.(); }
   gamepad();
 }

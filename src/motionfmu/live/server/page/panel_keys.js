@@ -56,12 +56,12 @@ function commandsOf({ component, command, full }) {
   });
 }
 
-const share = (unit, high) => !unit && high > 0 && high <= 4;
+const share = ({ unit, type }, high) => type === "Float64" && !unit && high > 0 && high <= 4;
 
 function dialOf(name, { label, low, high }) {
-  const own = variable(name);
-  const [least, most] = [low ?? own.low ?? 0, high ?? own.high ?? 2];
-  const percent = share(own.unit, most), id = `dial-${name.replace(/\W/g, "-")}`;
+  const own = variable(name), [least, most] = [low ?? own.low, high ?? own.high];
+  if (least === null || most === null || least === undefined || most === undefined) return numberOf(name, label);
+  const percent = share(own, most), id = `dial-${name.replace(/\W/g, "-")}`;
   const step = own.type === "Int32" ? 1 : percent ? 0.01 : (most - least) / 200;
   const range = made("input", "", { type: "range", id, min: least, max: most, step, title: own.doc });
   const told = made("output", "", { htmlFor: id });
@@ -82,6 +82,15 @@ function dialOf(name, { label, low, high }) {
     mark(range, "aria-valuetext", say(x));
   };
   return { name, show, box: made("div", "", { className: "dial" }, made("label", label, { htmlFor: id }), told, range, usual) };
+}
+
+// A dial without ends is a field.
+function numberOf(name, label) {
+  const { doc, unit, type } = variable(name), id = `dial-${name.replace(/\W/g, "-")}`;
+  const field = made("input", "", { type: "number", id, step: type === "Int32" ? "1" : "any", title: doc });
+  field.addEventListener("change", () => { if (field.value !== "") act("set", { name, value: Number(field.value) }); });
+  const show = (x) => { if (document.activeElement !== field && field.value !== String(x)) field.value = x; };
+  return { name, show, box: made("div", "", { className: "dial" }, made("label", unit ? `${label} [${unit}]` : label, { htmlFor: id }), field) };
 }
 
 function lampsOf(name, { label }) {
