@@ -222,6 +222,11 @@ class LiveMachine:
         texts = (s.values[0] for s in self._system.settings if s.end.name == name)
         return next(map(str, texts), None)
 
+    def parameter(self, name: str) -> tuple[Any, ...]:
+        """The elements of a parameter as the machine began: set, or of its description."""
+        found = (s.values for s in self._system.settings if s.end.name == name)
+        return next(found, tuple(start_values(self.scenario.resolver.end(name, "", "").port)))
+
     def set(self, name: str, value: Any) -> Action:
         """Give an input or a parameter a value from now on.
 
