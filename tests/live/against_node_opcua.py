@@ -1,4 +1,4 @@
-"""Let node-opcua, an OPC UA client that is not ours, read a live machine over a program with an alarm.
+"""Let node-opcua, a client that is not ours, read a live machine over a program with an alarm.
 
     PYTHONPATH=tests/helpers python tests/live/against_node_opcua.py
 

@@ -11,11 +11,12 @@ from typing import Any
 
 import pytest
 from console import within
-from opcua_bench import ACTIVE, CHANNEL, STATE, TOOL, WHOLE, Bench, bench, client_of
+from opcua_bench import ACTIVE, CHANNEL, STATE, TOOL, WHOLE, Bench, bench, client_of, server_of
 
 from motionfmu.base import extras
 from motionfmu.base.errors import InputError
 from motionfmu.live.opcua import OpcUaServer
+from motionfmu.live.opcua.opcua_server import MESSAGE_MAX
 from motionfmu.live.server import MachineLink
 
 
@@ -111,6 +112,7 @@ def test_a_program_with_hold_override_alarm_and_reset(tmp_path: Path) -> None:
     asyncio.run(work())
 
 
+@pytest.mark.more
 def test_nodes_are_those_of_the_specification(tmp_path: Path) -> None:
     async def work() -> None:
         async with bench(tmp_path) as b:
@@ -176,6 +178,32 @@ def test_nothing_can_be_changed_from_there(tmp_path: Path) -> None:
             assert (await b.link.ask("frame", names=["mcc.override"]))["values"] == {
                 "mcc.override": [1.0]
             }
+
+    asyncio.run(work())
+
+
+@pytest.mark.more
+def test_a_message_that_is_too_long_ends_its_connection(tmp_path: Path) -> None:
+    async def closed(port: int, size: int) -> bool:
+        """Whether the server ends a connection that has sent so much of a long message."""
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(b"HELF" + (1 << 30).to_bytes(4, "little") + bytes(size - 8))
+        try:
+            await writer.drain()
+            return await asyncio.wait_for(reader.read(1), 0.5) == b""
+        except TimeoutError:
+            return False
+        except ConnectionError:
+            return True
+        finally:
+            writer.close()
+
+    async def work() -> None:
+        async with server_of(tmp_path) as (_, port):
+            assert not await closed(port, MESSAGE_MAX)
+            assert await closed(port, MESSAGE_MAX + 1)
+            async with client_of(port) as client:
+                assert await client.ask("read", STATE) == ["Initializing"]
 
     asyncio.run(work())
 

@@ -1,4 +1,4 @@
-"""Published nodesets instead of own types: which files are taken, in which order, what is refused."""
+"""Published nodesets instead of own types: which files are taken, in which order; refusals."""
 
 import asyncio
 import re
@@ -88,10 +88,12 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.more
 def test_types_can_come_from_files(exported: Path, tmp_path: Path) -> None:
     assert started(tmp_path, exported) == ["Initializing"]
 
 
+@pytest.mark.more
 def test_an_older_nodeset_is_refused(exported: Path, tmp_path: Path) -> None:
     for file in exported.glob("*.xml"):
         text = file.read_text()
@@ -106,6 +108,7 @@ def test_an_older_nodeset_is_refused(exported: Path, tmp_path: Path) -> None:
         started(tmp_path, tmp_path)
 
 
+@pytest.mark.more
 def test_a_file_that_cannot_be_loaded_is_told(exported: Path, tmp_path: Path) -> None:
     for file in exported.glob("*.xml"):
         text = file.read_text().replace(' NodeId="ns=', ' NodeId="ns=x', file.stem == "Machinery")

@@ -7,31 +7,20 @@ from asyncua import Server, ua
 from asyncua.common.event_objects import AlarmCondition
 
 from motionfmu.live.opcua.controller_channel import Alarm
-from motionfmu.live.opcua.node_tree import NodeTree, Place
+from motionfmu.live.opcua.node_tree import NodePlace, NodeTree
 
 SEVERITY = 800  # of 1 to 1000: the machine has stopped
 
 
 class AlertEvents:
-    """Sends an alert when it comes and when it goes.
-
-    Parameters
-    ----------
-    server : Server
-    tree : NodeTree
-    emitters : sequence of NodeId
-        Objects whose subscribers get it: the first ones are below the last.
-    """
+    """Sends alerts to the subscribers of some objects, of which each is above the one before."""
 
     def __init__(self, server: Server, tree: NodeTree, emitters: list[ua.NodeId]) -> None:
         self._server, self._tree, self._emitters = server, tree, emitters
 
-    async def send(self, source: Place, component: str, alarm: Alarm, active: bool) -> None:
-        """Tell that an alarm has come, or has gone.
-
-        It counts as acknowledged: nothing can be done about it from here.
-        """
-        place = Place(
+    async def send(self, source: NodePlace, component: str, alarm: Alarm, active: bool) -> None:
+        """Tell that an alarm has come or gone; nothing can be done about it from here."""
+        place = NodePlace(
             "", ua.NodeId(f"{source.path}/Alert/{alarm.code}", source.node.NamespaceIndex)
         )
         event = AlarmCondition(severity=SEVERITY)

@@ -62,56 +62,26 @@ def way(begin: ProgramState, end: ProgramState) -> list[ProgramState]:
 
 @dataclass(frozen=True)
 class ChannelSample:
-    """A controller at an instant.
+    """A controller at an instant."""
 
-    Attributes
-    ----------
-    time : float
-        Simulated time [s].
-    state : int
-        Value of the panel's state.
-    code : int
-        Value of its alarm, 0 none.
-    increment : bool
-        Axes are jogged by increments.
-    actions : sequence of (str, sequence)
-        What was set since the sample before: variables and their values.
-    """
-
-    time: float
-    state: int
-    code: int = 0
-    increment: bool = False
+    time: float  # [s] of the simulation
+    state: int  # value of the panel's state
+    code: int = 0  # of its alarm, 0 none
+    increment: bool = False  # axes are jogged by increments
+    # What was set since the sample before: variables and their values.
     actions: Sequence[tuple[str, Sequence[Any]]] = ()
 
 
 class ChannelWatch:
-    """Follows a channel through samples in the order of time.
-
-    A program that begins and ends between two samples is not seen.
-
-    Parameters
-    ----------
-    monitor : Monitor
-
-    Attributes
-    ----------
-    mode : ChannelMode
-        While nothing moves, that of the latest motion.
-    state : ChannelState
-    program : ProgramState
-    fault : bool
-    run_time : float
-        Simulated time that the program has been running since its begin [s].
-    """
+    """Follows a channel by samples; a program that begins and ends between two is not seen."""
 
     def __init__(self, monitor: Monitor) -> None:
         self._monitor = monitor
-        self.mode = ChannelMode.Automatic
+        self.mode = ChannelMode.Automatic  # while nothing moves that of the latest motion
         self.state = ChannelState.Reset
         self.program = ProgramState.Initializing
         self.fault = False
-        self.run_time = 0.0
+        self.run_time = 0.0  # [s] of the simulation that the program has been running
         self._time = 0.0
         self._begins = ChannelMode.Automatic  # what the latest action that begins something begins
         self._cause = ChannelMode.Automatic  # what has begun, while something moves

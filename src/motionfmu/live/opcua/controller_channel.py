@@ -32,20 +32,12 @@ class Alarm:
 
 @dataclass
 class ControllerChannel:
-    """A controller with a panel that has a [monitor].
-
-    Attributes
-    ----------
-    component, fmu : str
-    panel : Panel
-    variables : mapping
-        Those that can be read, as the machine tells of them.
-    """
+    """A controller with a panel that has a [monitor]."""
 
     component: str
     fmu: str
     panel: Panel
-    variables: Mapping[str, Any]
+    variables: Mapping[str, Any]  # those that can be read, as the machine tells of them
     values: dict[str, Any] = field(default_factory=dict)
     alarm: Alarm | None = None
 
@@ -101,13 +93,7 @@ class ControllerChannel:
 
 
 def channels_of(about: Mapping[str, Any]) -> list[ControllerChannel]:
-    """The channels of a machine that describes itself.
-
-    Raises
-    ------
-    InputError
-        It has none.
-    """
+    """The channels of a machine that describes itself; `InputError` if it has none."""
     found = list(_channels(about))
     if not found:
         raise InputError(f"OPC UA: no FMU of {about['name']} has a panel.toml with [monitor]")

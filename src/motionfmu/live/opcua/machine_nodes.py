@@ -9,7 +9,7 @@ from asyncua import ua
 
 from motionfmu.live.opcua.channel_watch import ChannelMode, ChannelState, ProgramState
 from motionfmu.live.opcua.controller_channel import ControllerChannel
-from motionfmu.live.opcua.node_tree import NodeTree, Place, unit
+from motionfmu.live.opcua.node_tree import NodePlace, NodeTree, unit
 
 _MANUFACTURER = "motionfmu (simulated machine)"
 # Numbers of the nodes of types to which a machine's nodes point.
@@ -69,35 +69,19 @@ def _node(value: ua.NodeId) -> ua.Variant:
 
 
 class MachineNodes:
-    """Makes the nodes of a machine and shows in them what it does.
-
-    Parameters
-    ----------
-    tree : NodeTree
-    about : mapping
-        What the machine tells of itself.
-    channels : sequence of ControllerChannel
-        The first one is what the machine as a whole does; it has the program.
-
-    Attributes
-    ----------
-    machine, messages : Place
-        From begin on.
-    channels : dict
-        The Place of each channel, by component.
-    """
+    """Makes the nodes of a machine and shows what it does; the first channel has the program."""
 
     def __init__(
         self, tree: NodeTree, about: Mapping[str, Any], channels: Sequence[ControllerChannel]
     ) -> None:
         self._tree, self._about, self._channels = tree, about, channels
-        self._places: dict[str, Place] = {}
-        self.channels: dict[str, Place] = {}
+        self._places: dict[str, NodePlace] = {}
+        self.channels: dict[str, NodePlace] = {}  # by component
 
     async def begin(self) -> None:
         """Add all nodes."""
         tree, name = self._tree, str(self._about["name"])
-        machines = Place("", tree.spec("Machinery", _MACHINES))
+        machines = NodePlace("", tree.spec("Machinery", _MACHINES))
         self.machine = await tree.object(
             machines, f":{name}", "MachineTool:MachineToolType", "Organizes", events=True
         )
@@ -143,14 +127,16 @@ class MachineNodes:
             await tree.variable(item, "DI:SoftwareRevision", _text(version), "String")
 
     async def _keep(
-        self, parent: Place, key: str, what: tuple[str, ua.Variant, str], kind: str
-    ) -> Place:
+        self, parent: NodePlace, key: str, what: tuple[str, ua.Variant, str], kind: str
+    ) -> NodePlace:
         """Add a variable that show() writes by its key."""
         name, value, data = what
         self._places[key] = await self._tree.variable(parent, name, value, data, kind)
         return self._places[key]
 
-    async def _percent(self, parent: Place, key: str, name: str, port: Mapping[str, Any]) -> None:
+    async def _percent(
+        self, parent: NodePlace, key: str, name: str, port: Mapping[str, Any]
+    ) -> None:
         """Add an override: 1 of ours is 100 %."""
         what = (f"MachineTool:{name}", _double(100.0), "Double")
         place = await self._keep(parent, key, what, "AnalogUnitRangeType")
@@ -161,8 +147,8 @@ class MachineNodes:
         await self._tree.variable(place, "EURange", limits, "Range")
 
     async def _state_machine(
-        self, parent: Place, key: str, name: str, kind: str, by: str = "HasComponent"
-    ) -> Place:
+        self, parent: NodePlace, key: str, name: str, kind: str, by: str = "HasComponent"
+    ) -> NodePlace:
         """Add a state machine: its present state in words, and as a node."""
         own = await self._tree.object(parent, name, kind, by)
         state = ("CurrentState", _shown(""), "LocalizedText")
@@ -170,7 +156,7 @@ class MachineNodes:
         await self._keep(place, f"{key}/Id", ("Id", _node(ua.NodeId()), "NodeId"), "PropertyType")
         return own
 
-    async def _whole(self, monitoring: Place) -> None:
+    async def _whole(self, monitoring: NodePlace) -> None:
         first, kind = self._channels[0], "MachineTool:MachineOperationMonitoringType"
         own = await self._tree.object(monitoring, "MachineTool:MachineTool", kind)
         mode = "MachineTool:MachineOperationMode"
@@ -190,7 +176,7 @@ class MachineNodes:
         ):
             await self._state_machine(own, key, f"Machinery:{key}", kind, "HasAddIn")
 
-    async def _channel(self, monitoring: Place, channel: ControllerChannel) -> None:
+    async def _channel(self, monitoring: NodePlace, channel: ControllerChannel) -> None:
         tree, name, readout = self._tree, channel.component, channel.panel.readout
         kind = "MachineTool:ChannelMonitoringType"
         own = self.channels[name] = await tree.object(monitoring, f":{name}", kind)
@@ -223,7 +209,9 @@ class MachineNodes:
             for readable in channel.readable(variable):
                 await self._quantity(own, f"{name}/{what}", what, channel.variables[readable])
 
-    async def _quantity(self, parent: Place, key: str, name: str, port: Mapping[str, Any]) -> None:
+    async def _quantity(
+        self, parent: NodePlace, key: str, name: str, port: Mapping[str, Any]
+    ) -> None:
         """Add a variable of ours, which no specification has."""
         data = "Double" if port["type"].startswith("Float") else "Int32"
         kind, count = ua.VariantType[data], math.prod(port["shape"])
@@ -235,7 +223,7 @@ class MachineNodes:
             told = ua.Variant(units, ua.VariantType.ExtensionObject)
             await self._tree.variable(place, "EngineeringUnits", told, "EUInformation")
 
-    async def _spindle(self, monitoring: Place, channel: ControllerChannel) -> None:
+    async def _spindle(self, monitoring: NodePlace, channel: ControllerChannel) -> None:
         tree, name = self._tree, f"{channel.component}_spindle"
         kind = "MachineTool:SpindleMonitoringType"
         own = await tree.object(monitoring, f":{name}", kind)

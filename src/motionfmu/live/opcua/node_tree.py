@@ -37,7 +37,7 @@ def unit(symbol: str | None) -> ua.EUInformation | None:
 
 
 @dataclass(frozen=True)
-class Place:
+class NodePlace:
     """A node of the machine by its path, and its NodeId."""
 
     path: str
@@ -45,13 +45,7 @@ class Place:
 
 
 class NodeTree:
-    """Adds nodes to a server and keeps their values.
-
-    Parameters
-    ----------
-    server : Server
-        Initialized, not started.
-    """
+    """Adds nodes to a server that is initialized and not started, and keeps their values."""
 
     def __init__(self, server: Server) -> None:
         self._server = server
@@ -60,13 +54,7 @@ class NodeTree:
         self._shown: dict[str, Any] = {}
 
     async def begin(self) -> list[TypeNode]:
-        """Make the namespaces and the nodes of the specifications that are not there.
-
-        Returns
-        -------
-        list of TypeNode
-            Those that were not.
-        """
+        """Make the namespaces, and the nodes of the specifications that are not there: these."""
         nodes, server = type_nodes(), self._server
         for node in nodes:
             specification = node.specification
@@ -173,8 +161,13 @@ class NodeTree:
         result.StatusCode.check()
 
     async def object(
-        self, parent: Place, name: str, kind: str, by: str = "HasComponent", events: bool = False
-    ) -> Place:
+        self,
+        parent: NodePlace,
+        name: str,
+        kind: str,
+        by: str = "HasComponent",
+        events: bool = False,
+    ) -> NodePlace:
         """Add an object of the machine."""
         place = self._place(parent, name)
         notifier = ua.EventNotifier.SubscribeToEvents.mask if events else 0
@@ -192,13 +185,13 @@ class NodeTree:
         await self._add(item)
         return place
 
-    def _place(self, parent: Place, name: str) -> Place:
+    def _place(self, parent: NodePlace, name: str) -> NodePlace:
         path = f"{parent.path}/{self.name(name).Name}" if parent.path else self.name(name).Name
-        return Place(path, ua.NodeId(path, self._spaces[""]))
+        return NodePlace(path, ua.NodeId(path, self._spaces[""]))
 
     async def variable(
-        self, parent: Place, name: str, value: ua.Variant, data: str, kind: str = "PropertyType"
-    ) -> Place:
+        self, parent: NodePlace, name: str, value: ua.Variant, data: str, kind: str = "PropertyType"
+    ) -> NodePlace:
         """Add a variable of the machine, or a property, with its first value."""
         place = self._place(parent, name)
         qualified = self.name(name)
@@ -221,7 +214,7 @@ class NodeTree:
         await self._add(item)
         return place
 
-    async def write(self, place: Place, value: ua.Variant) -> None:
+    async def write(self, place: NodePlace, value: ua.Variant) -> None:
         """Give a variable a value, if it is another one."""
         if self._shown.get(place.path) == value:
             return

@@ -70,13 +70,7 @@ def order(nodesets: dict[str, Nodeset], folder: Path, uri: str = MACHINE_TOOL) -
 
 
 async def load(server: Server, folder: Path) -> None:
-    """Load OPC UA for Machine Tools and what it needs.
-
-    Raises
-    ------
-    InputError
-        A file is missing or wrong.
-    """
+    """Load OPC UA for Machine Tools and what it needs; `InputError` if a file is wrong."""
     for nodeset in order(found(folder), folder):
         try:
             # Without code for their structures, which are no values of a live machine's nodes.

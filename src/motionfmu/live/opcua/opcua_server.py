@@ -11,6 +11,7 @@ from typing import Any
 from asyncua import Server, ua
 from asyncua.common.connection import TransportLimits
 from asyncua.crypto.permission_rules import User, UserRole
+from asyncua.server.binary_server_asyncio import BinaryServer, OPCUAProtocol
 from asyncua.server.user_managers import UserManager
 
 from motionfmu.base.errors import InputError
@@ -43,10 +44,57 @@ class _Guests(UserManager):
         return User(role=UserRole.User)
 
 
-class OpcUaServer:
-    """A live machine as a machine tool of OPC UA, in ``async with``: it gives the port.
+class _BoundedConnection(OPCUAProtocol):
+    """A connection that keeps no more than a message of it may have; asyncua keeps any length."""
 
-    It can be read and subscribed to, from this computer, without encryption; nothing can be set.
+    def data_received(self, data: bytes) -> None:
+        if len(self._buffer) + len(data) > MESSAGE_MAX:
+            self._buffer = b""
+            if self.transport is not None:
+                self.transport.close()
+            return
+        super().data_received(data)
+
+
+class _Listener(BinaryServer):
+    def _make_protocol(self) -> OPCUAProtocol:
+        return _BoundedConnection(
+            self.iserver, self._policies, self.clients, self.closing_tasks, self.limits
+        )
+
+
+class _LocalServer(Server):
+    """A server that everybody on this computer may look at."""
+
+    def __init__(self) -> None:
+        super().__init__(user_manager=_Guests())
+        self.application_type = ua.ApplicationType.Server
+        chunks = MESSAGE_MAX // _CHUNK_MAX
+        self.limits = TransportLimits(_CHUNK_MAX, _CHUNK_MAX, chunks, MESSAGE_MAX)
+        self.iserver.max_connections = CONNECTIONS_MAX
+        self.iserver.bind_condition_methods = 1  # the severity of a refresh's begin and end
+        self.set_security_policy([ua.SecurityPolicyType.NoSecurity])
+        self.set_identity_tokens([ua.AnonymousIdentityToken])
+
+    async def start(self) -> None:
+        """Listen, as asyncua's own server does, with connections that are bounded."""
+        await self._setup_server_nodes()
+        await self.iserver.start()
+        port = self.endpoint.port or 0
+        self.bserver = _Listener(self.iserver, HOST, port, self.limits)
+        self.bserver.set_policies(self._policies)
+        try:
+            await self.bserver.start()
+        except OSError:
+            await self.iserver.stop()
+            raise
+
+
+class OpcUaServer:
+    """A live machine as a machine tool of OPC UA.
+
+    In ``async with`` it serves, and gives the port. It can be read and subscribed to, from this
+    computer, without encryption; nothing can be set.
 
     Parameters
     ----------
@@ -72,18 +120,10 @@ class OpcUaServer:
         self._shown: dict[str, Alarm] = {}  # alerts that are active, by component
 
     async def __aenter__(self) -> int:
-        server = self._server = Server(user_manager=_Guests())
-        server.iserver.bind_condition_methods = 1  # the severity of a refresh's begin and end
+        server = self._server = _LocalServer()
         await server.init()
-        name = f"motionfmu: {self._link.about['name']}"
-        server.set_server_name(name)
-        server.application_type = ua.ApplicationType.Server
-        chunks = MESSAGE_MAX // _CHUNK_MAX
-        server.limits = TransportLimits(_CHUNK_MAX, _CHUNK_MAX, chunks, MESSAGE_MAX)
-        server.iserver.max_connections = CONNECTIONS_MAX
+        server.set_server_name(f"motionfmu: {self._link.about['name']}")
         server.set_endpoint(f"opc.tcp://{HOST}:{self._port}/{PATH}")
-        server.set_security_policy([ua.SecurityPolicyType.NoSecurity])
-        server.set_identity_tokens([ua.AnonymousIdentityToken])
         await server.set_application_uri(f"urn:motionfmu:live:{self._link.about['name']}")
         if self._folder is not None:
             await nodesets.load(server, self._folder)
