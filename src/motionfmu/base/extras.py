@@ -27,6 +27,7 @@ EXTRAS = {
     "pandas": Extra(("pandas",), "a table of pandas"),
     "card": Extra(CARD, "planning a drawing"),
     "live": Extra(("starlette", "uvicorn", "websockets"), "a live machine"),
+    "opcua": Extra(("asyncua",), "an OPC UA server"),
     "drawing": Extra(("ezdxf", "lxml", "svgelements"), "a drawing in SVG or DXF"),
     "export": Extra(("ziglang",), "compiling for other platforms"),
 }

@@ -1,6 +1,7 @@
 """The console command for a machine that runs while somebody works at it."""
 
 import sys
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -33,6 +34,14 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         Path | None,
         typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
     ] = None,
+    opcua: Annotated[
+        int | None,
+        typer.Option(metavar="PORT", help="OPC UA for Machine Tools on this port; 0: any."),
+    ] = None,
+    opcua_nodesets: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Its published nodesets, instead of own types."),
+    ] = None,
     exchange: Annotated[
         str | None,
         typer.Option(metavar="udp://HOST:PORT", help="Another program: see --send and --take."),
@@ -59,6 +68,10 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     import math
 
     needed("live")
+    if opcua is not None:
+        needed("opcua")
+    elif opcua_nodesets is not None:
+        raise InputError("--opcua-nodesets goes with --opcua")
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
     from motionfmu.live.exchange import ExchangePlan
@@ -79,7 +92,16 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         None if save_as is None else str(save_as),
         plan,
     )
-    asyncio.run(_serve(start, port, open_))
+    asyncio.run(_serve(start, _Ports(port, opcua, opcua_nodesets), open_))
+
+
+@dataclass(frozen=True)
+class _Ports:
+    """Where the machine can be reached, on this computer."""
+
+    page: int
+    opcua: int | None
+    nodesets: Path | None
 
 
 def _pair(text: str) -> tuple[str, Any]:
@@ -95,7 +117,7 @@ def _number(name: str, value: Any) -> float:
     raise InputError(f"--take {name}={value}: a number, true or false wanted")
 
 
-async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
+async def _serve(start: "MachineStart", ports: _Ports, opened: bool) -> None:
     import asyncio
     import secrets
     import webbrowser
@@ -108,9 +130,9 @@ async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
     ended = asyncio.Event()
     came = on_end(ended.set)
     token = secrets.token_urlsafe(16)
-    link = MachineLink(start, _tell)
+    link = MachineLink(replace(start, running=False), _tell)
     # The port is taken before the machine begins: one that is in use is told at once.
-    serving = PageServer(application(link, token), port, message_max=MESSAGE_MAX)
+    serving = PageServer(application(link, token), ports.page, message_max=MESSAGE_MAX)
     async with AsyncExitStack() as stack:
         begins = asyncio.create_task(stack.enter_async_context(link))
         stops = asyncio.create_task(ended.wait())
@@ -120,9 +142,17 @@ async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
             await asyncio.wait({begins})
         else:
             await begins
+            if ports.opcua is not None:
+                from motionfmu.live.opcua import OpcUaServer
+
+                server = OpcUaServer(link, ports.opcua, ports.nodesets)
+                there = await stack.enter_async_context(server)
+                out.print(f"OPC UA: opc.tcp://127.0.0.1:{there}/motionfmu", soft_wrap=True)
             there = await stack.enter_async_context(serving)
             address = f"http://127.0.0.1:{there}/?token={token}"
             out.print(f"page: {address}", soft_wrap=True)
+            if start.running:  # who looks at it is there now
+                await link.ask("go")
             if opened:
                 webbrowser.open(address)
             ends = asyncio.create_task(link.ended.wait())

@@ -79,6 +79,37 @@ class Command(_Table):
     codes: dict[str, int]  # by label
 
 
+# What a channel of a machine tool may be doing by hand, in the words of OPC 40501-1.
+ByHand = Literal[
+    "MdaMdi", "JogManual", "JogIncrement", "TeachingHandle", "Remote", "Reference", "Other"
+]
+
+
+class Monitor(_Table):
+    """What the values of `state` are to who looks at a controller from outside.
+
+    The program moves, waits, is being ended, has failed, an axis moves by hand; any other value
+    is rest.
+    """
+
+    running: list[int]
+    interrupted: list[int] = Field(default_factory=list)
+    aborting: list[int] = Field(default_factory=list)
+    fault: list[int] = Field(default_factory=list)
+    by_hand: dict[ByHand, list[int]] = Field(default_factory=dict)
+    # Where `running` does not tell: inputs whose new value begins a motion, and what it is then.
+    begins: dict[str, ByHand | Literal["Automatic"]] = Field(default_factory=dict)
+    abort: str | None = None  # its rising edge ends the program
+    feed: str | None = None  # overrides, 1 is 100 %
+    rapid: str | None = None
+    spindle: str | None = None
+
+    def names(self) -> list[str]:
+        """All variables that it names."""
+        single = (self.abort, self.feed, self.rapid, self.spindle)
+        return [*self.begins, *(n for n in single if n is not None)]
+
+
 class Panel(_Table):
     """The tables of a panel.toml; all names are of variables of its FMU."""
 
@@ -90,6 +121,7 @@ class Panel(_Table):
     jog: Jog | None = None
     mdi: Mdi | None = None
     command: Command | None = None
+    monitor: Monitor | None = None
     stop: str | None = None  # the emergency stop: true while it acts
     key: dict[str, Key] = Field(default_factory=dict)
     dial: dict[str, Dial] = Field(default_factory=dict)
@@ -103,6 +135,7 @@ class Panel(_Table):
         single += [v for p in parts if p is not None for v in p.model_dump().values()]
         if self.command:
             single += [self.command.code, self.command.number]
+        single += self.monitor.names() if self.monitor else []
         tables = (self.key, self.dial, self.lamp, self.fault)
         return [n for n in (*single, *(n for t in tables for n in t)) if n is not None]
 
