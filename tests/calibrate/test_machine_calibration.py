@@ -108,7 +108,9 @@ def test_what_the_plant_has_no_parameter_for_is_said(tmp_path: Path) -> None:
 
 def test_an_axis_that_is_not_there_is_refused() -> None:
     records = MachineRecords({"B": laser("B")})
-    with pytest.raises(InputError, match=r"B\.csv: the machine has no axis 'B'"):
+    with pytest.raises(
+        InputError, match=r"B\.csv: 'B' is neither an axis of the machine \(X, Y, Z\)"
+    ):
         machine_calibration(machine("mill3").plan(), records)
 
 
@@ -219,6 +221,11 @@ def test_the_command_writes_what_a_run_takes(mill: Path, tmp_path: Path) -> None
     ("arguments", "told"),
     [
         (["--record", "{bare}"], "which axis was measured?"),
+        (
+            ["--record", "QQ={bare}"],
+            "bare.csv: 'QQ' is neither an axis of the machine (X, Y, Z) nor",
+        ),
+        (["--record", "X={bare}", "--map", "target=A"], "--map target=A: it goes with circles and"),
         (["--record", "X={bare}", "--record", "X={bare}"], "X was measured in"),
         (["--record", "XY={ballbar}"], "--radius"),
         (["--record", "X="], "FILE or NAME=FILE wanted"),
@@ -236,6 +243,17 @@ def test_a_wrong_command_is_one_message(
     assert got.returncode == 2
     assert told in got.stderr, got.stderr
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["", "X="])
+def test_an_arm_takes_no_positioning_test(tmp_path: Path, name: str) -> None:
+    file = tmp_path / "x.csv"
+    written(file, "X", laser("X").test)
+    out = tmp_path / "out"
+    got = within("calibrate", "robot6", "--record", f"{name}{file}", "--no-runs", "--out", out)
+    assert got.returncode == 2
+    assert "robot6 is an arm: poses of its tool are wanted" in got.stderr, got.stderr
+    assert not out.exists()
 
 
 def test_a_scenarios_name_is_enough(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from motionfmu.analysis.measured_response import (
 )
 from motionfmu.excite import ExciteOptions, excitation_of, part_program, write_scenario
 from motionfmu.excite.crest_factor import crest, low_peaks, schroeder, waves
-from motionfmu.identify import AxisRecord, ColumnUse
+from motionfmu.identify import AxisRecord, ColumnUse, read_region
 
 # A mill's axis whose screw rings.
 SET = {"machine.screw_damping": 4e3}
@@ -238,6 +238,8 @@ def test_from_a_machine_to_its_masses_by_commands(tmp_path):
     assert numbers["antiresonance"] == pytest.approx(129.9, rel=0.01)
     assert numbers["loops"][0]["at"] == "drives.phase"
     assert (tmp_path / "found/report.html").is_file()
+    with pytest.raises(InputError, match="two masses by --frf, which have no region"):
+        read_region(tmp_path / "found")  # as `tune --identified found` does
     found = tmp_path / "found/found.toml"
     assert command(tmp_path, "run", str(made / "scenario"), "--set", str(found), "-o", "b")[0] == 0
 

@@ -12,6 +12,8 @@ from motionfmu.identify import AxisRecord, Identified, IdentifyOptions, identify
 
 NOISE = 0.01  # of the torque, as a share of its RMS
 MACHINES = 50
+ALWAYS = ("machine.table_mass", "machine.table_coulomb", "machine.table_viscous")
+SOMETIMES = ("machine.force", "machine.table_viscous_asymmetry")  # half of the machines have them
 HANDFUL = (0, 2, 13)  # backlash of 9 um on a light table; none; 10 um on a heavy one
 
 
@@ -45,11 +47,12 @@ def test_a_machine_is_found(seed: int) -> None:
 
 @pytest.mark.long
 def test_fifty_machines_are_found() -> None:
-    told, near, close = Counter[str](), Counter[str](), Counter[str]()
+    told, near, close, there = (Counter[str]() for _ in range(4))
     wrong = []
     for seed in range(MACHINES):
         truth, record = machine(seed)
         found = identify(truth.scenario(), record, IdentifyOptions(COLUMNS))
+        there.update(n for n in (*ALWAYS, *SOMETIMES) if truth.values[n])
         for name, deviations, share in judged(truth, found):
             told[name] += 1
             near[name] += deviations <= 3.0
@@ -57,8 +60,10 @@ def test_fifty_machines_are_found() -> None:
             if deviations > 3.0 or share > 0.05:
                 wrong.append((seed, name, deviations, share))
     for name, count in sorted(told.items()):
-        print(f"{name}: {count} told, {near[name]} within 3 deviations, {close[name]} within 5 %")
-    assert told["machine.table_mass"] >= 0.95 * MACHINES
+        few = f"{near[name]} within 3 deviations, {close[name]} within 5 %"
+        print(f"{name}: {count} told of {there[name]}, {few}")
+    for name in (*ALWAYS, *SOMETIMES):  # what is withheld proves nothing
+        assert told[name] >= (0.95 if name in ALWAYS else 0.9) * there[name], told
     assert near.total() >= 0.98 * told.total(), wrong
     assert close.total() >= 0.98 * told.total(), wrong
 

@@ -70,6 +70,7 @@ def test_a_region_is_read_back_as_it_was_written(tmp_path: Path) -> None:
     [
         ("{", "no JSON"),
         ('{"settings": {}}', "not the result of motionfmu identify"),
+        ('{"settings": {}, "two_masses": true}', "two masses by --frf, which have no region"),
         ('{"settings": {}, "region": null}', "this record told nothing"),
         ('{"settings": {}, "region": {"free": 1}}', "region.free: input should be a valid list"),
         (None, "No such file"),

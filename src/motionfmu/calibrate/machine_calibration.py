@@ -25,7 +25,12 @@ from motionfmu.calibrate.compensation import (
 from motionfmu.calibrate.estimate import Estimate
 from motionfmu.calibrate.lead_error import LeadError, lead_error
 from motionfmu.calibrate.machine_tests import MachineTests
-from motionfmu.calibrate.plant_geometry import AxisErrors, MachineGeometry
+from motionfmu.calibrate.plant_geometry import (
+    AxisErrors,
+    MachineGeometry,
+    axis_rows,
+    row_of_axis,
+)
 from motionfmu.calibrate.position_record import PositionRecord
 from motionfmu.run.machine_program import Machine
 from motionfmu.run.run_plan import RunPlan
@@ -251,9 +256,7 @@ class _Calibrating:
     ) -> None:
         self.geometry, self.given, self.told = geometry, given, told
         self.notes: list[str] = []
-        rows = {a.name: a.row or k for k, a in enumerate(geometry.plan.document.axes, 1)}
-        rows = rows or {n: k for k, n in enumerate("XYZUVW", 1)}
-        self.rows = rows
+        self.rows = axis_rows(geometry.plan)
         self.plant = geometry.find("axis")
         self.controller = geometry.find("compensation")
         self.axes = {n: self._axis(n, r) for n, r in records.positions.items()}
@@ -266,14 +269,10 @@ class _Calibrating:
         if not self.axes and not self.circles:
             raise InputError(f"{geometry.name}: no record")
 
-    def _row(self, name: str, record: str) -> int:
-        if name not in self.rows:
-            hint = suggestion(name, self.rows) or f" (there are: {', '.join(self.rows)})"
-            raise InputError(f"{record}: the machine has no axis {name!r}{hint}")
-        return self.rows[name]
-
     def _axis(self, name: str, record: PositionRecord) -> AxisCalibration:
-        found = AxisCalibration(name, self._row(name, record.name), record, lead_error(record.test))
+        found = AxisCalibration(
+            name, row_of_axis(self.rows, name, record.name), record, lead_error(record.test)
+        )
         self.notes += [f"{record.name}: {note}" for note in record.notes]
         if self.controller is None:
             return found
@@ -297,7 +296,7 @@ class _Calibrating:
 
     def _errors(self, record: CircleRecord) -> CircleErrors:
         for name in record.plane:
-            self._row(name, record.name)
+            row_of_axis(self.rows, name, record.name)
         return circle_errors(record.test, record.plane)
 
     def _add(self, axis: str, what: str, variable: str | None, seen: Estimate, record: str) -> None:

@@ -2,6 +2,7 @@
 
 import functools
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from motionfmu.analysis.explain.parameter_expression import evaluate
-from motionfmu.base.errors import InputError
+from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.system import System
@@ -94,6 +95,22 @@ def _named(found: Geometry) -> list[str]:
             else:
                 names += value if isinstance(value, list) else [value] if value else []
     return names + ([found.compensation.file] if found.compensation else [])
+
+
+def axis_rows(plan: RunPlan) -> dict[str, int]:
+    """Row of each axis by its name; X, Y, Z, U, V, W where the machine names none."""
+    rows = {a.name: a.row or k for k, a in enumerate(plan.document.axes, 1)}
+    return rows or {n: k for k, n in enumerate("XYZUVW", 1)}
+
+
+def row_of_axis(rows: Mapping[str, int], name: str, record: str) -> int:
+    """Row of an axis; an InputError that begins with the record if there is none."""
+    if name not in rows:
+        raise InputError(
+            f"{record}: {name!r} is neither an axis of the machine ({', '.join(rows)}) nor a plane"
+            f" ({', '.join(PLANES)}){suggestion(name, rows)}"
+        )
+    return rows[name]
 
 
 @dataclass(frozen=True)

@@ -82,8 +82,10 @@ def calibrate(  # noqa: PLR0913  (each is an option of the command)
         options = {"known_base": known_base, "known_tool": known_tool}
         _arm(plan, poses[0], (options, columns, given), values, target)
         return
+    _refuse_arm(plan, named, values)
     asked = {"radius": radius, "feed": feed, "over": columns or {}, "layout": given or {}}
-    records = _records(named, asked)
+    records = _records(plan, named, asked)
+    _refuse_unread(records, over, layout)
     _tool(plan, machine if runs else None, records, values, target)
 
 
@@ -120,11 +122,37 @@ def _has_poses(file: Path, layout: dict[str, Any]) -> bool:
     return not is_position_record(file) and is_pose_record(file, layout)
 
 
-def _records(named: list[tuple[str, Path]], asked: dict[str, Any]) -> "MachineRecords":
+def _refuse_arm(plan: "Scenario", named: list[tuple[str, Path]], values: dict[str, Any]) -> None:
+    """An InputError for records of a machine tool that go with an arm."""
+    from motionfmu.calibrate.plant_geometry import MachineGeometry
+
+    geometry = MachineGeometry.of(plan, values)
+    if geometry.find("pose") and not geometry.find("axis"):
+        raise InputError(
+            f"{named[0][1]}: {plan.name} is an arm: poses of its tool are wanted (--record FILE),"
+            " not a positioning test nor a circle"
+        )
+
+
+def _refuse_unread(records: "MachineRecords", over: list[str], layout: Path | None) -> None:
+    """An InputError for options that say how records are read of which there are none."""
+    if not records.circles and (over or layout):
+        option = f"--map {over[0]}" if over else f"--layout {layout}"
+        names = ", ".join(r.name for r in records.positions.values())
+        raise InputError(
+            f"{option}: it goes with circles and poses; {names}: columns of a positioning test are"
+            " known by their headings: target, position or deviation, direction"
+        )
+
+
+def _records(
+    plan: "Scenario", named: list[tuple[str, Path]], asked: dict[str, Any]
+) -> "MachineRecords":
     """Positioning tests and circles by what their names say."""
     from motionfmu.calibrate import CircleChoice, MachineRecords, circle_record, position_record
-    from motionfmu.calibrate.plant_geometry import PLANES
+    from motionfmu.calibrate.plant_geometry import PLANES, axis_rows, row_of_axis
 
+    rows = axis_rows(plan)
     planes: dict[str, list[Path]] = {}
     positions: dict[str, Any] = {}
     for name, file in named:
@@ -132,6 +160,8 @@ def _records(named: list[tuple[str, Path]], asked: dict[str, Any]) -> "MachineRe
         if plane is not None:
             planes.setdefault(plane, []).append(file)
             continue
+        if name:
+            row_of_axis(rows, name, f"--record {name}={file}")
         found = position_record(file)
         axis = name or found.axis
         if not axis:

@@ -226,6 +226,11 @@ def _numbers(file: Path) -> tuple[_RegionNumbers, dict[str, Any]]:
         every = json.loads(text)
     except ValueError as error:
         raise InputError(f"{file}: no JSON: {error}") from None
+    if isinstance(every, dict) and "two_masses" in every:
+        raise InputError(
+            f"{file}: two masses by --frf, which have no region: its found.toml goes to --set; a"
+            " region is found in a record of a motion"
+        )
     if not isinstance(every, dict) or KEY not in every or "settings" not in every:
         raise InputError(f"{file}: not the result of motionfmu identify: it has no {KEY!r}")
     if every[KEY] is None:

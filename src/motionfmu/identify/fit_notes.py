@@ -8,13 +8,16 @@ from motionfmu.identify import rigid_motion
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.ground import LOW_PASS, OF_RATE, Ground, IdentifyOptions
 from motionfmu.identify.law_choice import Validation
-from motionfmu.identify.span_fit import FOLLOWING
+from motionfmu.identify.shooting import Fitted
+from motionfmu.identify.span_fit import FOLLOWING, misfit
 
 # Share of a law's signal above which the scenario's controller is not that of the record.
 _STRANGE = 0.1
 # A fit is bad where it leaves more than this share of a signal of the part kept back, and so many
 # times what is noise in it.
 _BAD, _TIMES = 0.15, 3.0
+# Times that are told, and how much wider deviations are for it to be told.
+_SHOWN, _WIDER = 5, 1.1
 
 
 def bad_fit(own: Ground, chosen: Validation | None) -> dict[str, tuple[float, float]]:
@@ -37,6 +40,28 @@ def bad_fit(own: Ground, chosen: Validation | None) -> dict[str, tuple[float, fl
         if left > max(_BAD, _TIMES * share):
             found[name] = left, share
     return found
+
+
+def contact_notes(own: Ground, fit: Fitted, span: tuple[int, int]) -> Iterator[str]:
+    """What a fit across a gap left aside, and by how much its deviations are wider for it."""
+    if not own.gap:
+        return
+    aside = fit.weights < 1.0
+    rows = own.stretch(*span)[0].rows
+    begins = rows[aside & ~np.append(False, aside[:-1])]
+    if len(begins):
+        first = ", ".join(f"{t:.4g} s" for t in own.data.time[begins[:_SHOWN]])
+        yield (
+            f"{100 * np.mean(aside):.2g} % of the samples count little: at {first}"
+            f"{' and so on' if len(begins) > _SHOWN else ''} the motion is another than the"
+            " recorded one, as when a passage through the gap falls the other way."
+        )
+    wider = misfit(own, fit, span) if fit.linear.sound else 1.0
+    if wider > _WIDER:
+        yield (
+            f"Standard deviations are {wider:.3g} times what residuals alone would make them: so"
+            " much more than noise does the fit leave."
+        )
 
 
 def notes(

@@ -32,7 +32,6 @@ class Identifiable(BaseModel):
 
     model_config = ConfigDict(extra="forbid", strict=True)
     free: list[str] = Field(default_factory=list)
-    gap: str | None = None  # the parameter that opens a gap
     ties: dict[str, str] = Field(default_factory=dict)
     law: dict[str, FrictionLaw] = Field(default_factory=dict)
     # values of other parameters that are tried, unless the scenario says them

@@ -11,6 +11,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.identify import rigid_motion
 from motionfmu.identify.axis_loop import AxisLoop, axis_loop
 from motionfmu.identify.axis_record import AxisRecord
+from motionfmu.identify.contact_shooting import ContactShooting
 from motionfmu.identify.controller_check import ControllerCheck, controller_check, gains_of
 from motionfmu.identify.free_parameters import (
     FreeParameters,
@@ -47,6 +48,12 @@ _PART = 0.3
 # A plant with a gap has forgotten on which side it began when it has moved at this share of its
 # largest speed, for so long [s].
 _AWAY, _TOUCHED = 0.1, 0.2
+# Time in which the motion of a plant with a gap is held to be another than the recorded one [s].
+_STRANGE = 0.05
+# Share of the points whose slopes of the drive are believed.
+_BELIEVED = 0.9
+# A quantity is not moved by more than so many times what it is believed to be.
+_SEVERAL = 10.0
 # An axis that moves by no more than so many grains, or deviations of the noise, stands still.
 _STILL = 30.0
 # A residual that rounding to a grain leaves.
@@ -198,9 +205,31 @@ class Ground:
         x = self.follow(free, values, np.concatenate([starts, some])).x
         w = self.memory[starts * self.data.every]
         ranges = np.concatenate([np.ptp(x, axis=1), np.ptp(self.memory, axis=0)])
-        bounds = free.low, free.high
-        problem = Shooting(self.motion, stretch, free.values, bounds, ranges, self.gap)
+        given = self.motion, stretch, free.values, (free.low, free.high), ranges
+        problem = Shooting(*given)
+        if self.gap:
+            window = max(_FEWEST, round(_STRANGE / self.data.interval))
+            problem = ContactShooting(*given, self._farthest(free, values), window)
         return problem, PieceStart(x[:, : len(starts)].T.copy(), w.copy())
+
+    def reach(self, free: FreeParameters, values: Array) -> Array:
+        """Change of each free quantity that is as much as all of the drive; infinite if none is."""
+        if not (len(values) and len(self.points)):
+            return np.full(len(values), np.inf)
+        slopes = np.abs(self.follow(free, values, self.points).slopes)
+        # in a gap a slope may be anything
+        slopes = np.minimum(slopes, np.quantile(slopes, _BELIEVED, axis=0))
+        drive = np.sqrt(np.mean(self.force[self.points] ** 2))
+        each = np.sqrt(np.mean(slopes**2, axis=0))
+        return np.where(each > 0.0, drive / np.maximum(each, 1e-300), np.inf)
+
+    def _farthest(self, free: FreeParameters, values: Array) -> Array:
+        """The same, but no more than several times what is believed, nor than a limit."""
+        size = np.maximum(np.abs(values), np.abs(free.start))
+        most = np.where(free.start == 0.0, np.inf, _SEVERAL * size)
+        most = np.minimum(most, np.where(np.isfinite(free.high), np.abs(free.high), np.inf))
+        most = np.minimum(most, self.reach(free, values))
+        return np.where(np.isfinite(most), most, np.maximum(size, 1.0))
 
 
 # CCN 22: one record's way from its columns to what all fits share, each part made of the last.
@@ -261,6 +290,7 @@ def ground(
     at = at[~limited.out[at]]
     at = at[np.abs(speed[at]) > _MOVING * np.abs(speed[at]).max(initial=0.0)]
     way = _way(loop, rates, (drive, position), float(np.abs(speed).max()))
+    motion.contact = bool(way.gap.any())
     return Ground(
         loop=loop,
         data=data,

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from motionfmu.identify import identify_file, rigid_motion
 from motionfmu.identify.axis_record import AxisRecord, of_record
 from motionfmu.identify.controller_check import ControllerCheck
-from motionfmu.identify.fit_notes import notes
+from motionfmu.identify.fit_notes import contact_notes, notes
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.friction_curve import FrictionCurve, friction_curve
 from motionfmu.identify.ground import Ground, IdentifyOptions, ground
@@ -28,10 +28,10 @@ from motionfmu.identify.law_choice import (
     others,
     validated,
 )
-from motionfmu.identify.part_scatter import part_scatter
+from motionfmu.identify.near_fits import near_fits
 from motionfmu.identify.recorded_loop import RecordedLoop
 from motionfmu.identify.shooting import Fitted
-from motionfmu.identify.span_fit import fitted_span, following, stretch_signals
+from motionfmu.identify.span_fit import fitted_span, following, misfit, stretch_signals
 from motionfmu.identify.spread import Spread, autocorrelation
 from motionfmu.identify.tellable import scattered, tellable
 from motionfmu.records import Record
@@ -226,7 +226,6 @@ def identify(
     progress("all of the record", 0.7)
     span = own.first, own.data.samples - 1
     near = chosen.values if chosen else {}
-    own.motion.fine = own.gap
     judge = laws if options.laws is None else ()
     (free, fitted, known, more), laws, idle, late = _all_of_the_record(
         own, (names, laws, judge, asked), span, near, progress
@@ -257,6 +256,7 @@ def identify(
         following=following(own, (measured, simulated), rows),
         notes=(
             *notes(own, free, options, chosen),
+            *contact_notes(own, fitted, span),
             *(
                 f"The law {n} was left out again: in all of the record it may be nothing."
                 for n in idle
@@ -291,8 +291,9 @@ def _all_of_the_record(
         fit = fitted_span(own, extended(own, left, laws, options), span, near)
         free, fitted, known, more = fit
         if known is not None and own.gap:
-            progress("parts of the record", 0.8)
-            known = known.at_least(part_scatter(own, free, fitted, span))
+            progress("fits beside it", 0.8)
+            fitted, known = near_fits(own, free, fitted, span)
+            known = known.widened(misfit(own, fitted, span))
         nothing = idle_laws(own, [n for n in laws if n in judge], (free, fitted, known))
         worst = {} if nothing else scattered(own, free, fitted, known)
         if not nothing and not worst:

@@ -1,7 +1,7 @@
 """The law of friction that explains best what was kept back of a record."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,6 @@ class Validation:
     values: Mapping[str, float]  # of the free quantities, from the part fitted
     sizes: Mapping[str, float]  # root mean square of each signal about its mean, kept back
     idle: tuple[str, ...] = ()  # laws whose quantities may as well be nothing
-    begun: Any = field(default=None, repr=False)  # starts of the pieces of the part fitted
 
 
 def free_names(own: Ground, options: IdentifyOptions) -> list[str]:
@@ -85,15 +84,11 @@ def validated(
     `before` are the first look, by which it is scored, and the one from whose values it begins.
     """
     names, laws = asked
-    first, near, begun = (
-        (before[0], before[1].values, before[1].begun) if before else (None, {}, None)
-    )
+    first, near = (before[0], before[1].values) if before else (None, {})
     low, high = own.first, own.data.samples - 1
     rows = own.stretch(low, high)[0].rows
     cut = int(rows[int((1.0 - options.keep) * len(rows))])
-    free, fit, known, _ = fitted_span(
-        own, extended(own, names, laws, options), (low, cut), near, begun if own.gap else None
-    )
+    free, fit, known, _ = fitted_span(own, extended(own, names, laws, options), (low, cut), near)
     p, u, _, _ = free.values(fit.guess.free)
     fixed = own.fixed(p, u)
     problem, starts = own.shooting(fixed, (cut, high), fixed.start)
@@ -106,10 +101,7 @@ def validated(
         score = first.score * float(np.mean(ratios))
     found = dict(zip(free.names, fit.guess.free.tolist(), strict=True))
     nothing = idle_laws(own, laws, (free, fit, known))
-    begun = fit.guess.start
-    return Validation(
-        tuple(laws), dict(own.other), here, there, score, found, sizes, nothing, begun
-    )
+    return Validation(tuple(laws), dict(own.other), here, there, score, found, sizes, nothing)
 
 
 def idle_laws(

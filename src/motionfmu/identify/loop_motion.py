@@ -6,7 +6,7 @@ in the cache; without one by CasADi's machine, all pieces at once.
 
 import copy
 import ctypes
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +38,7 @@ class Pieces:
     length: NDArray[np.int64]  # communication steps
     every: int  # communication steps between two samples that are compared
     late: int = 0  # communication steps by which outputs of laws are sampled later, below `every`
+    joined: NDArray[np.bool_] | None = None  # which begin where the one before ended; compiled only
 
     @property
     def samples(self) -> NDArray[np.int64]:
@@ -68,7 +69,7 @@ class LoopMotion:
 
     def __init__(self, loop: AxisLoop, rates: PlantRates, compiled: bool = True) -> None:
         self.loop, self.rates, self.sub_steps = loop, rates, 1
-        self.fine = False  # whether steps are short enough for contact that opens
+        self.contact = False  # whether contact opens and closes
         shown = list(rates.outputs)
         self._fed = np.array([shown.index(n) for n in loop.fed], dtype=np.int64)
         cc = compiler() if compiled else None
@@ -100,9 +101,9 @@ class LoopMotion:
         """
         p, u = values[0], np.repeat(values[1][:, None], len(start.x), axis=1)
         fastest = self.rates.fastest(start.x.T, u, p)
-        if not fastest < _FASTEST:
+        if not fastest.max(initial=0.0) < _FASTEST:
             return self._nothing(start, pieces, values)
-        needed = self.rates.steps(self.loop.step, fastest, self.fine)
+        needed = self.rates.steps(self.loop.step, fastest, self.contact)
         # of few numbers, so that a search mostly sees one function
         self.sub_steps = next(k for k in _COUNTS if k >= needed)
         every = self._compiled if self._library is not None else self._mapped
@@ -120,17 +121,22 @@ class LoopMotion:
 
         The others begin at `start`; `values` are p, u. Steps are as short as in the last `run`.
         """
-        x, w = start.x.copy(), start.w.copy()
         p, u = values
         still = p, u, np.zeros((len(self.rates.moved), 0)), np.zeros((len(u), 0))
-        every = self._compiled if self._library is not None else self._mapped
+        if self._library is not None:
+            moved = self._compiled(start, replace(pieces, joined=joined), driven, still, bare=True)
+            at, before = np.flatnonzero(joined), np.flatnonzero(joined) - 1
+            x, w = start.x.copy(), start.w.copy()
+            x[at], w[at] = moved.end.x[before], moved.end.w[before]
+            return PieceStart(x, w), moved.y
+        x, w = start.x.copy(), start.w.copy()
         shown, end = [], PieceStart(x[:1], w[:1])
         for k in range(len(x)):
             here = slice(k, k + 1)
             if joined[k]:
                 x[k], w[k] = end.x[0], end.w[0]
             one = Pieces(pieces.begin[here], pieces.length[here], pieces.every, pieces.late)
-            moved = every(PieceStart(x[here], w[here]), one, driven, still, bare=True)
+            moved = self._mapped(PieceStart(x[here], w[here]), one, driven, still, bare=True)
             shown.append(moved.y)
             end = moved.end
         return PieceStart(x, w), np.concatenate(shown)
@@ -181,7 +187,7 @@ class LoopMotion:
         values: tuple[Array, Array, Array, Array],
         bare: bool = False,
     ) -> Moved:
-        """Move all pieces in C; `bare`: without derivatives."""
+        """Move all pieces in C; `bare`: without derivatives, which `joined` pieces have not."""
         assert self._library is not None
         axis = _LoopAxis(self, values)
         if bare:
@@ -202,10 +208,12 @@ class LoopMotion:
         begin, length = (
             np.ascontiguousarray(a, dtype=np.int64) for a in (pieces.begin, pieces.length)
         )
+        on = None if pieces.joined is None else np.ascontiguousarray(pieces.joined, dtype=np.uint8)
         self._library.loop_run(
             ctypes.byref(axis),
             count,
             *(_pointer(a) for a in (begin, length)),
+            None if on is None else _pointer(on),
             *(pieces.every, pieces.late),
             *(_pointer(a) for a in (given[0], x, s_x, w, s_w, y, s_y)),
             own,
@@ -317,7 +325,7 @@ def _library(rates: PlantRates, cc: Compiler) -> ctypes.CDLL:
     library.loop_run.restype = None
     pointer, whole = ctypes.c_void_p, ctypes.c_longlong
     library.loop_run.argtypes = [
-        *(pointer, whole, pointer, pointer, whole, whole),
+        *(pointer, whole, pointer, pointer, pointer, whole, whole),
         *(pointer,) * 7,
         *(whole, pointer),
     ]

@@ -17,8 +17,9 @@ Array = NDArray[np.float64]
 # Largest step of the integrator times the fastest rate: the error of a mode is 1 % of its own
 # there, and the method is stable to 2.785.
 _H_LAMBDA = 1.25
-# The same where contact opens and closes: there the error is of the step's first order.
-_H_FINE = 0.3
+# Largest step times the usual fastest rate of a motion where contact opens and closes, since there
+# the error is of the step's first order.
+_H_CONTACT = 0.125
 
 
 @dataclass(frozen=True)
@@ -88,16 +89,19 @@ class PlantRates:
             made.append(whole)
         return made[0], made[1], made[2]
 
-    def fastest(self, x: Array, u: Array, p: Array) -> float:
-        """Largest |eigenvalue| [1/s] of the rates at points and at rest beside them."""
+    def fastest(self, x: Array, u: Array, p: Array) -> Array:
+        """Largest |eigenvalue| [1/s] of the rates at each point, then at rest."""
         points, inputs = (
             np.column_stack([x, self.start(p)[0].ravel()]),
             np.column_stack([u, u[:, :1]]),
         )
         slopes = self.dense("rates", self.at("rates", points, inputs, p))[0]
         slopes = slopes[np.isfinite(slopes).all(axis=(1, 2))]
-        return float(np.abs(np.linalg.eigvals(slopes)).max(initial=0.0))
+        return np.asarray(np.abs(np.linalg.eigvals(slopes)).max(axis=1, initial=0.0))
 
-    def steps(self, span: float, fastest: float, fine: bool = False) -> int:
-        """Steps within a time [s] for a fastest rate [1/s]; `fine`: for contact that opens."""
-        return max(1, math.ceil(span * fastest / (_H_FINE if fine else _H_LAMBDA)))
+    def steps(self, span: float, fastest: Array, contact: bool = False) -> int:
+        """Steps within a time [s] for rates [1/s] at points; `contact`: for one that opens."""
+        needed = span * fastest.max(initial=0.0) / _H_LAMBDA
+        if contact and len(fastest):
+            needed = max(needed, span * float(np.median(fastest)) / _H_CONTACT)
+        return max(1, math.ceil(needed))

@@ -31,9 +31,6 @@ _SIZES, _ROUNDS = 0.05, 4
 _TINY = 1e-12
 # A slope above this is that of a motion that runs away.
 _AWAY = 1e100
-# Standard deviations at which better hollows are looked for, and how often at most.
-_FAR = tuple(sign * size for size in (6.0, 30.0, 150.0) for sign in (1.0, -1.0))
-_SHAKES = 3
 # Eigenvalues of the scaled information matrix below this share of the largest are none.
 _NONE = 1e-13
 
@@ -94,6 +91,7 @@ class Fitted:
     steps: int
     settled: bool
     prior: Array  # (n_all,) inverse standard deviation of what was known beforehand
+    weights: Array  # (samples that count,) at most 1, by which squares of residuals count
 
     @property
     def first(self) -> int:
@@ -113,7 +111,6 @@ class Shooting:
     values: Values
     bounds: tuple[Array, Array]
     ranges: Array  # (n_z,) how far each state goes in the record
-    gap: bool = False  # whether parts of the plant move across a gap
 
     def linear(self, guess: Guess) -> Linear:
         """Move the pieces of a guess and eliminate the gaps."""
@@ -151,49 +148,29 @@ class Shooting:
         at = stretch.counted
         return Linear(moved, rest[at], gaps, ahead, follow, slopes[at], shifted[at])
 
-    def fit(self, guess: Guess, sizes: Array | None = None, hollow: bool = False) -> Fitted:
-        """Fit, and weigh each measured signal by the residual that is left of it.
-
-        `hollow`: look for better ones beyond the hollow in the sum of squares where it ends, of
-        which contact makes many.
-        """
+    def fit(self, guess: Guess, sizes: Array | None = None) -> Fitted:
+        """Fit, and weigh each measured signal by the residual that is left of it."""
         now = self.linear(guess)
-        if self.gap and now.sound:
-            here = self._sizes(now)
-            chained, merit = self.chained(guess, here)
-            if merit < self.merit(guess, here):
-                guess, now = chained, self.linear(chained)
         guess, now, found, (steps, settled) = self._settled(guess, now, sizes)
-        for _ in range(_SHAKES if hollow and now.sound else 0):
-            other = self._shaken(guess, now, found)
-            if other is None:
-                break
-            guess, now, used, settled = self._gauss_newton(other, self.linear(other), found)
-            steps += used
-        return Fitted(guess, now, found, steps, settled, self.prior(now, len(guess.free)))
-
-    def followed(self, guess: Guess) -> Guess | None:
-        """The solution near a guess; None if there is no motion."""
-        now = self.linear(guess)
-        if not now.sound:
-            return None
-        return self._settled(guess, now, None)[0]
+        prior = self.prior(now, len(guess.free))
+        return Fitted(guess, now, found, steps, settled, prior, np.ones(len(now.rest)))
 
     def _settled(
         self, guess: Guess, now: Linear, sizes: Array | None
     ) -> tuple[Guess, Linear, Array, tuple[int, bool]]:
         """Gauss-Newton, again with the weights of what is left, unless they are given."""
-        found = sizes if sizes is not None else self._sizes(now)
+        found = sizes if sizes is not None else self.sizes(now)
         steps, settled = 0, False
         for _ in range(1 if sizes is not None else _ROUNDS):
             guess, now, used, settled = self._gauss_newton(guess, now, found)
             steps += used
-            before, found = found, found if sizes is not None else self._sizes(now)
+            before, found = found, found if sizes is not None else self.sizes(now)
             if np.abs(found / before - 1.0).max() < _SIZES:
                 break
         return guess, now, found, (steps, settled)
 
-    def _sizes(self, now: Linear) -> Array:
+    def sizes(self, now: Linear) -> Array:
+        """Root mean square of each residual, by which it is weighed."""
         found: Array = np.sqrt(np.mean(now.rest**2, axis=0) + self.stretch.floor**2)
         return np.maximum(found, _TINY)
 
@@ -216,18 +193,19 @@ class Shooting:
         gaps = np.where(stretch.joined[1:, None], ends - np.hstack([start.x, start.w])[1:], 0.0)
         return self._sum(rest, gaps, sizes)
 
-    def _sum(self, rest: Array, gaps: Array | None, sizes: Array) -> float:
-        held = 0.0 if gaps is None else gaps / np.maximum(_GAP * self.ranges, _TINY)
+    def _sum(self, rest: Array, gaps: Array, sizes: Array) -> float:
+        held = gaps / np.maximum(_GAP * self.ranges, _TINY)
         return float(np.sum((rest / sizes) ** 2) + np.sum(np.square(held)))
 
     def _gauss_newton(
         self, guess: Guess, now: Linear, sizes: Array
     ) -> tuple[Guess, Linear, int, bool]:
         for step in range(_STEPS):
-            change, deviations, _ = self._direction(guess, now, sizes)
+            change, deviations, _ = self.direction(guess, now, sizes)
             share, merit = 1.0, self._sum(now.rest, now.gaps, sizes)
             while True:
-                tried, better = self._tried(self._moved(guess, now, change, share), sizes)
+                tried = self.moved(guess, now, change, share)
+                better = self.merit(tried, sizes)
                 if (np.isfinite(better) and better < merit) or share <= _SHORTEST:
                     break
                 share *= 0.5
@@ -240,38 +218,7 @@ class Shooting:
                 return guess, now, step + 1, True
         return guess, now, _STEPS, False
 
-    def _tried(self, moved: Guess, sizes: Array) -> tuple[Guess, float]:
-        """The better of two with its merit: starts as linearised, or as simulated."""
-        merit = self.merit(moved, sizes)
-        if not self.gap or not np.isfinite(merit):
-            return moved, merit
-        chained, other = self.chained(moved, sizes)
-        return (chained, other) if other < merit else (moved, merit)
-
-    def chained(self, guess: Guess, sizes: Array) -> tuple[Guess, float]:
-        """The same without gaps, with its merit: joined pieces begin where the one before ends."""
-        p, u, _, _ = self.values(guess.free)
-        stretch = self.stretch
-        start, y = self.motion.chained(
-            guess.start, stretch.pieces, stretch.driven, (p, u), stretch.joined
-        )
-        rest = (stretch.measured - y[:, stretch.columns])[stretch.counted]
-        return replace(guess, start=start), self._sum(rest, None, sizes)
-
-    def _shaken(self, guess: Guess, now: Linear, sizes: Array) -> Guess | None:
-        """The best guess around one in whose hollow Gauss-Newton has ended, if one is better."""
-        cover = self._direction(guess, now, sizes)[2]
-        values, vectors = np.linalg.eigh(cover)
-        best, least = None, self._sum(now.rest, now.gaps, sizes) - _FALLEN
-        for axis in (vectors * np.sqrt(np.maximum(values, 0.0))).T:
-            for far in _FAR:
-                free = np.clip(guess.free + far * axis, *self.bounds)
-                there, merit = self.chained(replace(guess, free=free), sizes)
-                if merit < least:
-                    best, least = there, merit
-        return best
-
-    def _direction(self, guess: Guess, now: Linear, sizes: Array) -> tuple[Array, Array, Array]:
+    def direction(self, guess: Guess, now: Linear, sizes: Array) -> tuple[Array, Array, Array]:
         """Change of the unknowns; of the free ones deviations and covariance for white noise."""
         weighed = (now.slopes / sizes[:, None]).reshape(-1, now.slopes.shape[2])
         right = weighed.T @ (now.shifted / sizes).ravel()
@@ -305,7 +252,8 @@ class Shooting:
         cover[np.ix_(left, left)] = inverse / np.outer(scale[left], scale[left])
         return change, deviations[free:], cover[free:, free:]
 
-    def _moved(self, guess: Guess, now: Linear, change: Array, share: float) -> Guess:
+    def moved(self, guess: Guess, now: Linear, change: Array, share: float) -> Guess:
+        """The guess moved by a share of a change of the unknowns."""
         starts = now.ahead + now.follow @ change
         n = guess.start.x.shape[1]
         x, w = guess.start.x + share * starts[:, :n], guess.start.w + share * starts[:, n:]

@@ -1,14 +1,12 @@
 """The fit of a span of samples, and how far it is from what was measured there."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.ground import Ground
-from motionfmu.identify.loop_motion import PieceStart
 from motionfmu.identify.shooting import Fitted, Guess
 from motionfmu.identify.spread import Spread, spread
 from motionfmu.identify.tellable import UNTOLD, quantity_sizes, reason, start_values
@@ -16,9 +14,10 @@ from motionfmu.identify.tellable import UNTOLD, quantity_sizes, reason, start_va
 Array = NDArray[np.float64]
 # Name under which the difference of command and position is told.
 FOLLOWING = "following error"
-# Shares of a gap in which a solution is followed to the whole of it: three times as far apart it is
-# lost.
-_OPENED = tuple(k / 10.0 for k in range(10))
+# Share of a signal below which nobody asks for more, noise or not.
+_ENOUGH = 0.01
+# Median of the size of a normal deviate, and that of fourth differences of white noise.
+_MEDIAN, _FOURTH = 0.6745, np.sqrt(70.0)
 
 
 def fitted_span(
@@ -26,12 +25,10 @@ def fitted_span(
     names: Sequence[str],
     span: tuple[int, int],
     near: Mapping[str, float],
-    begun: PieceStart | None = None,
 ) -> tuple[FreeParameters, Fitted, Spread | None, dict[str, str]]:
     """Fit a span of samples; quantities that it cannot tell are fixed one after the other.
 
-    `near` are values found before, from which those quantities begin, and `begun` the starts of
-    the pieces of the same span that go with them.
+    `near` are values found before, from which those quantities begin.
     """
     left = list(names)
     why: dict[str, str] = {}
@@ -40,11 +37,7 @@ def fitted_span(
         values = start_values(own, free)[0]
         values = np.array([near.get(n, v) for n, v in zip(left, values.tolist(), strict=True)])
         problem, starts = own.shooting(free, span, values)
-        guess = Guess(values, starts if begun is None else begun)
-        if own.gap and begun is None:
-            guess = through_gap(own, free, span, values) or guess
-        fit = problem.fit(guess, hollow=own.motion.fine)
-        begun = fit.guess.start if own.gap else None
+        fit = problem.fit(Guess(values, starts))
         if not left:
             return free, fit, None, why
         if not fit.linear.sound:  # extensions of the law stand last
@@ -59,28 +52,6 @@ def fitted_span(
         left.pop(worst)
 
 
-def through_gap(
-    own: Ground, free: FreeParameters, span: tuple[int, int], values: Array
-) -> Guess | None:
-    """The solution followed from a plant without its gap to nearly the whole one.
-
-    With the gap the sum of squares has a hollow for each way in which contacts can fall between
-    samples; without it there is one. None if the way is lost.
-    """
-    if own.known.gap is None:
-        return None
-    k = [d.name for d in own.loop.ode.parameters].index(own.known.gap)
-    guess: Guess | None = None
-    for share in _OPENED:
-        p = free.p.copy()
-        p[k] *= share
-        problem, starts = own.shooting(replace(free, p=p), span, values)
-        guess = problem.followed(guess or Guess(values, starts))
-        if guess is None:
-            return None
-    return guess
-
-
 def stretch_signals(own: Ground, fit: Fitted, span: tuple[int, int]) -> tuple[Array, Array]:
     """Signals of the record and of a fit."""
     stretch = own.stretch(*span)[0]
@@ -93,8 +64,10 @@ def errors_of(
 ) -> tuple[dict[str, float], dict[str, float]]:
     """Norm of the difference over that of the signal about its mean, and root mean square of that.
 
-    By signal, and of the following error [m or rad; signal's unit in the second].
+    By signal, and of the following error [m or rad; signal's unit in the second]. Samples count as
+    they did in the fit.
     """
+    weights = fit.weights
     measured, simulated = stretch_signals(own, fit, span)
     rows = {n: (measured[:, k], simulated[:, k], 1.0) for k, n in enumerate(own.data.compared)}
     error = following(own, (measured, simulated), own.stretch(*span)[0].rows)
@@ -104,9 +77,30 @@ def errors_of(
     shares, sizes = {}, {}
     for name, (a, b, per) in rows.items():
         size = float(np.std(a))
-        shares[name] = float(np.sqrt(np.mean((a - b) ** 2))) / max(size, 1e-300)
+        shares[name] = float(np.sqrt(np.mean(weights * (a - b) ** 2))) / max(size, 1e-300)
         sizes[name] = per * size
     return shares, sizes
+
+
+def misfit(own: Ground, fit: Fitted, span: tuple[int, int]) -> float:
+    """How many times what noise leaves a fit leaves, of the signal that it explains worst; >= 1.
+
+    A position is judged by the following error: of itself it always leaves little.
+    """
+    shares, sizes = errors_of(own, fit, span)
+    position = f"{own.loop.component}.{own.rates.outputs[own.position]}"
+    most = 1.0
+    for name, left in shares.items():
+        if name != position or FOLLOWING not in shares:
+            column = position if name == FOLLOWING else name
+            noise = _noise(own.data.measured[:, own.data.compared.index(column)])
+            most = max(most, left / max(noise / max(sizes[name], 1e-300), _ENOUGH))
+    return most
+
+
+def _noise(signal: Array) -> float:
+    """Standard deviation of the white noise in a signal, which impacts do not count for."""
+    return float(np.median(np.abs(np.diff(signal, 4)))) / _MEDIAN / float(_FOURTH)
 
 
 def following(

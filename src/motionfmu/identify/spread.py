@@ -35,16 +35,17 @@ class Spread:
     information: Array  # (free, free) inverse of the covariance, were residuals white
     lag: int  # samples up to which residuals count as one another's
 
-    def at_least(self, deviations: Array) -> "Spread":
-        """The same with deviations that are no smaller than these."""
-        return replace(self, deviations=np.fmax(self.deviations, deviations))
+    def widened(self, factor: float) -> "Spread":
+        """The same with deviations so many times as large."""
+        return replace(self, deviations=factor * self.deviations)
 
 
 def spread(fitted: Fitted) -> Spread:
     """Standard deviations and correlations of the free quantities of a fit."""
     now, sizes, first = fitted.linear, fitted.sizes, fitted.first
-    slopes = now.slopes / sizes[:, None]
-    rest = now.rest / sizes
+    root = np.sqrt(fitted.weights)[:, None]
+    slopes = now.slopes * (root / sizes)[:, :, None]
+    rest = now.rest * (root / sizes)
     samples, outputs, every = slopes.shape
     free = every - first
     rows = slopes.reshape(-1, every)

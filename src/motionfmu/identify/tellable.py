@@ -83,7 +83,8 @@ def tellable(own: Ground, names: Sequence[str]) -> tuple[list[str], dict[str, st
     else:
         return [], dict.fromkeys(names, "no motion of the plant is near the record")
     sizes = np.sqrt(np.mean(now.rest**2, axis=0) + problem.stretch.floor**2)
-    fit = Fitted(Guess(values, starts), now, sizes, 0, False, problem.prior(now, len(values)))
+    prior = problem.prior(now, len(values))
+    fit = Fitted(Guess(values, starts), now, sizes, 0, False, prior, np.ones(len(now.rest)))
     size = quantity_sizes(own, free, values)
     known = spread(fit).information * np.outer(size, size) + np.eye(len(size))
     share = np.sqrt(np.diag(np.linalg.inv(known)))

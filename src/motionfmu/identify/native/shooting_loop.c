@@ -198,18 +198,24 @@ __attribute__((visibility("default"))) long long loop_room(const struct axis *a,
 }
 
 /* Pieces of the record: piece i begins at communication point begin[i] and has length[i] steps. x,
- * w and their derivatives are the starts and become the ends. Every `every`th point of a piece from
+ * w and their derivatives are the starts and become the ends; where joined[i] (if given) is not 0,
+ * the start of x and w is the end of the piece before. Every `every`th point of a piece from
  * its first on is a sample: outputs of the plant there, of the laws `late` steps later, go
  * to y and s_y, one piece behind the other. */
 __attribute__((visibility("default"))) void
 loop_run(const struct axis *a, long long pieces, const long long *begin, const long long *length,
-         long long every, long long late, const double *driven, double *x, double *s_x, double *w,
-         double *s_w, double *y, double *s_y, long long casadi, double *all)
+         const unsigned char *joined, long long every, long long late, const double *driven,
+         double *x, double *s_x, double *w, double *s_w, double *y, double *s_y, long long casadi,
+         double *all)
 {
     struct room r;
     furnish(a, casadi, all, &r);
     const long long n = a->directions, shown = a->n_y + a->n_shown;
     for (long long i = 0; i < pieces; i++) {
+        if (joined && joined[i]) {
+            memcpy(x, x - a->n_x, (size_t)a->n_x * sizeof *x);
+            memcpy(w, w - a->n_w, (size_t)a->n_w * sizeof *w);
+        }
         for (long long k = 0; k < length[i]; k++) {
             const long long point = begin[i] + k, j = point % a->cycle;
             exchange(a, &r, driven + point * a->n_driven, j, x, s_x, w, s_w, r.y, r.s_y);
