@@ -181,6 +181,26 @@ class LiveMachine:
         texts = (s.values[0] for s in self._system.settings if s.end.name == name)
         return next(map(str, texts), None)
 
+    def parameters(self, component: str) -> dict[str, list[Any]]:
+        """Values of a component's parameters that are numbers, as the machine has begun with them.
+
+        Parameters
+        ----------
+        component : str
+
+        Returns
+        -------
+        dict
+            By name of the variable, a list of the elements.
+        """
+        values = {s.end.name: s.values for s in self._system.settings}
+        found = {}
+        for port in self.scenario.resolver.ports[component].values():
+            if port.causality == "parameter" and port.type in _NUMBERS:
+                given = values.get(f"{component}.{port.name}", tuple(start_values(port)))
+                found[port.name] = list(given * port.count if len(given) == 1 else given)
+        return found
+
     def set(self, name: str, value: Any) -> Action:
         """Give an input or a parameter a value from now on.
 

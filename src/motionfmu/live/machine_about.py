@@ -29,6 +29,7 @@ def about(machine: LiveMachine) -> dict[str, Any]:
                 for name in [f"{component}.{port.name}"]
                 if name in outputs or name in settable
             },
+            "parameters": machine.parameters(component),
         }
     body = scenario.document.body
     return {

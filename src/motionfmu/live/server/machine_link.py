@@ -120,7 +120,7 @@ class MachineLink:
             if not waiting.done():
                 waiting.set_exception(InputError("the machine's process has ended"))
 
-    async def ask(self, name: str, **arguments: Any) -> Any:
+    async def ask(self, name: str, /, **arguments: Any) -> Any:
         """The value that the loop's method ``do_NAME`` gives.
 
         Raises
@@ -130,7 +130,7 @@ class MachineLink:
         """
         return (await self.ask_with_data(name, **arguments))[0]
 
-    async def ask_with_data(self, name: str, **arguments: Any) -> tuple[Any, bytes]:
+    async def ask_with_data(self, name: str, /, **arguments: Any) -> tuple[Any, bytes]:
         """The same, with the bytes that come behind the value."""
         if self.ended.is_set():
             raise InputError("the machine's process has ended")
