@@ -253,6 +253,7 @@ static struct pc_config config_of(const struct vars *v)
                            .batch = v->batch,
                            .block_delete = v->block_delete,
                            .optional_stop = v->optional_stop,
+                           .wait_start = !v->auto_start,
                            .dry_run = v->dry_run,
                            .law = law_of(v) };
     for (int i = 0; i < PC_MODULES; i++) {

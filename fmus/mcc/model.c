@@ -9,9 +9,12 @@
 struct model {
     struct pc pc;
     int64_t bus;        /* [ns] period of the bus grid */
+    int32_t taken;      /* number of the latest text of mdi that was taken */
     int64_t instant;    /* [ns] next instant of the grid, at which inputs are read */
     bool unpublished;   /* the outputs of the latest instant are shown at the next one */
     int32_t told_error; /* run-time error that was reported last */
+    int32_t told_refusals; /* starts of the program that were refused, */
+    int32_t told_refused;  /* and line by hand that was, as reported last */
     bool told_change;   /* the tool change for which the program waits was reported */
 };
 
@@ -81,6 +84,11 @@ static struct source source_of_program(const struct fmu *f)
     return (struct source){ program_look, f->blob };
 }
 
+static const char *axes_of(const struct vars *v)
+{
+    return v->rotary_names ? "XYZABC" : "XYZUVW";
+}
+
 static void publish_card(struct vars *v, const struct pc *pc)
 {
     struct link_host link;
@@ -125,18 +133,25 @@ static void publish(struct fmu *f)
     v->done = pc_done(&m->pc);
     v->homed = MCC_check_homef(mcc) == 1;
     v->error = MCC_get_errcode(mcc);
-    v->line = mcc->written.line;
+    v->line = mcc->written.line > 0 ? mcc->written.line : 0;
     v->command = mcc->written.command;
     v->command_newest = mcc->written.newest;
     v->path_feed = mcc->written.feed;
     MCC_get_cpos(mcc, v->position);
     memcpy(v->compensation, mcc->written.added, sizeof v->compensation);
-    v->spindle_speed = mcc->written.outputs.spindle;
+    const bool fixed = (mcc->trajectory.overrides & OUTPUTS_SPEED_FIXED) != 0;
+    v->spindle_speed = mcc->written.outputs.spindle * (fixed ? 1.0 : v->spindle_override);
     v->coolant = mcc->written.outputs.coolant;
     v->digital_out = (int32_t)mcc->written.outputs.digital;
     v->tool = mcc->written.outputs.tool;
     v->tool_asked = mcc->written.outputs.asks ? mcc->written.outputs.asked : -1;
     memcpy(v->analog, mcc->written.outputs.analog, sizeof v->analog);
+    v->mdi_taken = m->taken;
+    v->mdi_room = mdi_room(&mcc->mdi);
+    v->mdi_lines = mcc->mdi.line;
+    v->mdi_done = mcc->mdi.ended;
+    v->mdi_fault = (int32_t)mcc->mdi.fault.fault;
+    v->mdi_refused = mcc->mdi.refused;
     v->queue = mcc->queue.count;
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
@@ -227,6 +242,31 @@ static int set_out(struct fmu *f, const struct machine *machine)
     return (v->comp_file[0] && set_compensation(f)) || set_tools(f) ? -1 : 0;
 }
 
+/* Report a line by hand, or a start of the program, that has just been refused. */
+static void tell_refusals(struct fmu *f)
+{
+    struct model *m = &f->s.m;
+    const struct mdi *d = &m->pc.mcc.mdi;
+
+    if (d->refused != m->told_refused) {
+        struct source files = source_of_program(f);
+        struct mdi_view lines = { d, &files };
+        const struct source text = mdi_source(&lines);
+        const struct named_program named = { "mdi", "mdi", axes_of(&f->s.v), &text };
+        m->told_refused = d->refused;
+        struct fault_report r = d->fault;
+        r.line = d->refused;
+        fmu_warn(f, "%s", fault_words(&named, &r).text);
+    }
+    if (m->pc.process.refusals != m->told_refusals) {
+        const struct source text = source_of_program(f);
+        const struct named_program named = { "program", f->s.v.program, axes_of(&f->s.v), &text };
+        m->told_refusals = m->pc.process.refusals;
+        fmu_warn(f, "the program is not started: %s",
+                 fault_words(&named, &m->pc.process.refused).text);
+    }
+}
+
 /* Write plan_file; the library is left at the end of the program. */
 static int write_plan(struct fmu *f)
 {
@@ -234,7 +274,8 @@ static int write_plan(struct fmu *f)
     const struct source source = source_of_program(f);
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
-    task_operate(&f->s.m.pc.mcc, false, f->s.v.override);
+    task_operate(&f->s.m.pc.mcc, false, f->s.v.override,
+                 f->s.v.override * f->s.v.rapid_override);
     char said[80];
     const struct plan_rows rows = { &f->s.m.pc.mcc, &source, said, sizeof said };
     const char *why = output_write(path.text, inputs.of, INPUTS, plan_fill, &rows);
@@ -257,8 +298,7 @@ static int model_start(struct fmu *f)
         const struct source source = source_of_program(f);
         struct fault_list all;
         task_check_all(&m->pc.mcc, &source, &all);
-        const char *axes = v->rotary_names ? "XYZABC" : "XYZUVW";
-        const struct named_program named = { "program", v->program, axes, f->blob };
+        const struct named_program named = { "program", v->program, axes_of(v), &source };
         if (judge_program(f, &named, &all)) {
             return -1;
         }
@@ -273,6 +313,19 @@ static int model_start(struct fmu *f)
     return 0;
 }
 
+/* Take the text of mdi when its number changes, as soon as there is room for it. */
+static void take_lines(struct fmu *f)
+{
+    const struct vars *v = &f->s.v;
+    struct model *m = &f->s.m;
+
+    if (v->mdi_seq != m->taken
+        && mdi_take(&m->pc.mcc, v->mdi, (int32_t)strlen(v->mdi))) {
+        m->taken = v->mdi_seq;
+        tell_refusals(f);
+    }
+}
+
 /* Read the inputs at an instant of the bus grid and let the PC work. */
 static void read_bus(struct fmu *f, int64_t at)
 {
@@ -280,6 +333,10 @@ static void read_bus(struct fmu *f, int64_t at)
     struct pc *pc = &f->s.m.pc;
     const struct source source = source_of_program(f);
     struct pc_panel panel = { .hold = v->hold,
+                              .block_delete = v->block_delete,
+                              .optional_stop = v->optional_stop,
+                              .run_from = v->run_from,
+                              .rapid = v->rapid_override,
                               .abort = v->abort,
                               .cycle_start = v->cycle_start,
                               .single_block = v->single_block,
@@ -294,6 +351,7 @@ static void read_bus(struct fmu *f, int64_t at)
     memcpy(panel.software_gain, v->software_gain, sizeof panel.software_gain);
     memcpy(panel.p_gain, v->p_gain, sizeof panel.p_gain);
     memcpy(panel.jog, v->jog, sizeof panel.jog);
+    memcpy(panel.jog_step, v->jog_step, sizeof panel.jog_step);
     struct link_card link;
 #define READ(type, name, elements) LINK_CARRY(link.name, v->card_##name)
     LINK_SHOWN(READ)
@@ -303,7 +361,9 @@ static void read_bus(struct fmu *f, int64_t at)
     panel.signals.digital = (uint32_t)v->digital_in;
     memcpy(panel.signals.analog, v->analog_in, sizeof panel.signals.analog);
     const struct pcl_card card = card_of(&pc->pcl, &link);
+    take_lines(f);
     pc_instant(pc, at / CLOCK_NS, &card, &panel, &source);
+    tell_refusals(f);
 }
 
 /* Fail because the card has refused too many frames in a row: a full FIFO would have drained by
@@ -361,7 +421,8 @@ static int model_end(struct fmu *f)
     in.tools.table = mcc->tools;
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, v->path_file, FMU_WRITTEN);
-    const struct path_rows rows = { &in, &program, mcc->trajectory.started };
+    const int32_t started = mcc->trajectory.started, last = mcc->first;
+    const struct path_rows rows = { &in, &program, !mcc->begun || started < last ? started : last };
     const char *why = output_write(path.text, inputs.of, INPUTS, path_fill, &rows);
     return why ? cannot_write(f, "path_file", v->path_file, why) : 0;
 }

@@ -198,7 +198,7 @@ static int create(struct fmu *f, int n)
         group_program(&m->groups, code,
                       (int64_t)ceil(clocks(v->start_delay[n]) - FMU_PERIOD_TOLERANCE));
         task_check_all(mcc, &source, &all);
-        const struct named_program named = { name, w.program, "XYZUVW", programs->of[n] };
+        const struct named_program named = { name, w.program, "XYZUVW", &source };
         return judge_program(f, &named, &all);
     }
     return 0;

@@ -181,7 +181,8 @@ static int rehearse(struct fmu *f, const struct orders_text *t)
     struct fault_list all;
 
     orders_check(&b->config.orders, t, &s->robot.pose, &all);
-    const struct named_program named = { "program", f->s.v.program, "XYZABC", b->gcode };
+    const struct source source = { program_look, b->gcode };
+    const struct named_program named = { "program", f->s.v.program, "XYZABC", &source };
     if (judge_program(f, &named, &all)) {
         return -1;
     }

@@ -37,6 +37,7 @@
 #define MCC_IN_USE(mcc) \
     FMU_LIST(mcc.tools.tool, mcc.tools.count) \
     INTERPRETER_IN_USE(mcc.program) \
+    FMU_LIST(mcc.mdi.text, mcc.mdi.length) \
     RING_IN_USE(mcc.ring) \
     MEAN_IN_USE(mcc.mean, mcc.trajectory) \
     CURVE_IN_USE(mcc.curve_plan, mcc.trajectory) \

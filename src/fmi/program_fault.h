@@ -14,11 +14,11 @@ struct quote {
     char text[SOURCE_LINE_MAX + 1];
 };
 
-static struct quote quote(struct program_file *program, const struct fault_report *r, int32_t at,
+static struct quote quote(const struct source *program, const struct fault_report *r, int32_t at,
                           int32_t length)
 {
     const char *text = "";
-    const int64_t there = program_look(program, r->file, r->offset, &text);
+    const int64_t there = program->look(program->context, r->file, r->offset, &text);
     struct quote q;
     snprintf(q.text, sizeof q.text, "%.*s", there < at + length ? 0 : (int)length, text + at);
     return q;
@@ -39,13 +39,19 @@ static struct file_name file_of(const char *program, const struct fault_report *
 /* A program as a parameter names it, and the letters of its axes; A B C turn. */
 struct named_program {
     const char *parameter, *name, *axes;
-    struct program_file *file;
+    const struct source *text;
 };
 
-/* Report a fault in a line of a program; returns -1. */
-static int tell_fault(struct fmu *f, const struct named_program *p, const struct fault_report *r)
+/* What is told about a fault. */
+struct fault_words {
+    char text[FMU_STRING_MAX + 2 * SOURCE_LINE_MAX + 256];
+};
+
+/* The words for a fault in a line of a program. */
+static struct fault_words fault_words(const struct named_program *p, const struct fault_report *r)
 {
-    struct program_file *program = p->file;
+    const struct source *program = p->text;
+    struct fault_words words;
     char detail[SOURCE_LINE_MAX + 96] = "";
 
     if (r->other_length) {
@@ -67,15 +73,22 @@ static int tell_fault(struct fmu *f, const struct named_program *p, const struct
         snprintf(detail, sizeof detail, " (%.6g mm, half the distance is %.6g mm)", r->value,
                  r->limit);
     }
-    return fmu_fail(f, "%s: line %d: %s \"%s\"%s, column %d", file_of(p->name, r).text,
-                    (int)r->line, fault_text(r->fault), quote(program, r, r->at, r->length).text,
-                    detail, (int)r->at + 1);
+    const struct quote q = quote(program, r, r->at, r->length);
+    const int n = snprintf(words.text, sizeof words.text, "%s: line %d: %s",
+                           file_of(p->name, r).text, (int)r->line, fault_text(r->fault));
+    const bool quoted = r->fault < FAULT_WHILE_PROGRAM || r->fault > FAULT_FROM_HELD;
+    if (quoted && n > 0 && (size_t)n < sizeof words.text) {
+        snprintf(words.text + n, sizeof words.text - (size_t)n, " \"%s\"%s, column %d", q.text,
+                 detail, (int)r->at + 1);
+    }
+    return words;
 }
 
 /* Send the notes on a program, and refuse it if it has a fault. */
 static int judge_program(struct fmu *f, const struct named_program *p, const struct fault_list *all)
 {
-    struct program_file *program = p->file;
+    const struct program_file *file = p->text->context;
+    const struct source *program = p->text;
     int status = 0;
 
     for (int i = 0; i < all->notes; i++) {
@@ -90,9 +103,9 @@ static int judge_program(struct fmu *f, const struct named_program *p, const str
     }
     for (int i = 0; i < all->count; i++) {
         status = all->of[i].fault != FAULT_READ
-                     ? tell_fault(f, p, &all->of[i])
+                     ? fmu_fail(f, "%s", fault_words(p, &all->of[i]).text)
                      : fmu_fail(f, "%s: cannot read %s: %s", p->parameter,
-                                file_of(p->name, &all->of[i]).text, strerror(program->error));
+                                file_of(p->name, &all->of[i]).text, strerror(file->error));
     }
     return all->more ? fmu_fail(f, "%s: ... and more", p->name) : status;
 }

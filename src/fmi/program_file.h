@@ -140,11 +140,11 @@ static struct program_file *program_called(struct program_file *p, const char *n
     return c;
 }
 
-/* The function `look` of a struct source. */
+/* The function `look` of a struct source; without a program (NULL) there is no file. */
 static int64_t program_look(void *context, const char *file, int64_t offset, const char **text)
 {
     struct program_file *p = context;
-    struct program_file *of = file[0] ? program_called(p, file) : p;
+    struct program_file *of = p && file[0] ? program_called(p, file) : p;
 
     if (!of) {
         return SOURCE_NONE;

@@ -211,7 +211,7 @@ static void cycle(struct group *g, int64_t clock, const struct group_panel *pane
     if (key_take(&g->cycle_start)) {
         task_continue(&g->mcc); /* refused where nothing waits for it */
     }
-    task_operate(&g->mcc, panel->hold, panel->override);
+    task_operate(&g->mcc, panel->hold, panel->override, panel->override);
     task_run(&g->mcc, g->program ? program : NULL);
 }
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "mcc.h"
+#include "task.h"
 
 /* True if nothing is under way and nothing is to come. */
 static bool idle(const struct mcc *m)
@@ -58,7 +59,7 @@ int MCC_motion_abort(struct mcc *m)
     if (m->trajectory.abort || idle(m)) {
         return MCC_ABORT_ILLEGAL;
     }
-    m->running = false;
+    task_drop(m);
     trajectory_abort(&m->trajectory, &m->ring);
     control_settle(m);
     return MCC_NO_ERR;

@@ -117,6 +117,8 @@ void manual_use(struct mcc *m, int axis, enum manual_use use)
         }
     }
     m->manual.axis[axis].use = use;
+    m->manual.axis[axis].steps = false;
+    m->moved = true;
 }
 
 static enum manual_use use_of(const struct mcc *m, int axis)
@@ -191,19 +193,26 @@ int MCC_jog_c(struct mcc *m, int axis, int direction, double percent)
     return MCC_NO_ERR;
 }
 
-/* Jog an axis that stands to a target [mm]. */
-static int step(struct mcc *m, int axis, double target, const struct axes_limits *l)
+/* Let an axis go to a target [mm]. */
+static int go(struct mcc *m, int axis, double target, const struct axes_limits *l)
 {
     const double pulses = target * machine_pulses_per_mm(&m->machine.axis[axis]);
     if (!(fabs(pulses) < COMMAND_PULSES_MAX)) {
         return MCC_PARAMETER;
     }
-    if (use_of(m, axis) != MANUAL_NONE) {
-        return MCC_COMMAND_NOTFINISHED;
-    }
     manual_use(m, axis, MANUAL_JOG);
     axes_go(&m->trajectory.axes, axis, target, l);
     return MCC_NO_ERR;
+}
+
+/* Jog an axis that stands to a target [mm]. */
+static int step(struct mcc *m, int axis, double target, const struct axes_limits *l)
+{
+    const bool used = use_of(m, axis) != MANUAL_NONE;
+    const double pulses = target * machine_pulses_per_mm(&m->machine.axis[axis]);
+
+    return used && fabs(pulses) < COMMAND_PULSES_MAX ? MCC_COMMAND_NOTFINISHED
+                                                     : go(m, axis, target, l);
 }
 
 int MCC_jog_i(struct mcc *m, int axis, double distance, double percent)
@@ -229,6 +238,55 @@ int MCC_jog_s(struct mcc *m, int axis, int32_t pulses)
         machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
     return step(m, axis,
                 (pulses_of(m, axis) + pulses) / machine_pulses_per_mm(&m->machine.axis[axis]), &l);
+}
+
+/* The software limit of a direction. [mm] */
+static double limit_of(const struct machine_axis *a, double direction)
+{
+    return direction > 0.0 ? machine_high(a) : machine_low(a);
+}
+
+int manual_jog(struct mcc *m, int axis, int direction, double percent)
+{
+    const bool limited = axis >= 0 && axis < AXES && m->machine.axis[axis].check_ot;
+
+    if (!limited || (direction != -1 && direction != 1) || !machine_share(percent / 100.0)
+        || use_of(m, axis) == MANUAL_WHEEL) {
+        return MCC_jog_c(m, axis, direction, percent);
+    }
+    const int code = movable(m, axis, direction);
+    const double limit = limit_of(&m->machine.axis[axis], direction);
+    if (code || direction * (limit - place_of(m, axis)) <= 0.0) {
+        return code ? code : MCC_COMMAND_NOTACCEPTED;
+    }
+    const struct axes_limits l = jog_limits(m, axis, percent);
+    return go(m, axis, limit, &l);
+}
+
+int manual_step(struct mcc *m, int axis, double distance, double percent)
+{
+    const int code = movable(m, axis, distance);
+    if (code) {
+        return code;
+    }
+    const bool on = use_of(m, axis) == MANUAL_JOG && m->manual.axis[axis].steps;
+    if (!machine_share(percent / 100.0)) {
+        return MCC_PARAMETER;
+    }
+    if (use_of(m, axis) != MANUAL_NONE && !on) {
+        return MCC_COMMAND_NOTFINISHED;
+    }
+    const struct machine_axis *a = &m->machine.axis[axis];
+    const double target =
+        (on ? m->trajectory.axes.axis[axis].goal : place_of(m, axis)) + distance;
+    const double over = (target - limit_of(a, distance)) * (distance > 0.0 ? 1.0 : -1.0);
+    if (a->check_ot && over * machine_pulses_per_mm(a) >= 0.5) {
+        return MCC_COMMAND_NOTACCEPTED;
+    }
+    const struct axes_limits l = jog_limits(m, axis, percent);
+    const int done = go(m, axis, target, &l);
+    m->manual.axis[axis].steps = done == MCC_NO_ERR || on;
+    return done;
 }
 
 /* Hand wheel. */

@@ -16,6 +16,7 @@ enum { MANUAL_ENCODERS = 9 }; /* counters of the card, those of the axes first *
 
 struct manual_axis {
     enum manual_use use;
+    bool steps;      /* JOG: its goal is the end of steps (manual_step) */
     int32_t encoder; /* encoder counter of the handwheel, 0 .. 8 */
     double ratio;    /* [pulses/count] of the axis by the handwheel */
     int32_t count;   /* [counts] of that counter at the latest look */
@@ -32,6 +33,15 @@ int manual_allowed(const struct mcc *m);
 
 /* Take an axis into use. The first one lets all axes of the trajectory move by themselves. */
 void manual_use(struct mcc *m, int axis, enum manual_use use);
+
+/* As MCC_jog_c; with the software limits of the axis in force the jog ends at rest at the limit
+ * that it leads to. Refused with MCC_COMMAND_NOTACCEPTED at that limit and beyond. */
+int manual_jog(struct mcc *m, int axis, int direction, double percent);
+
+/* As MCC_jog_i; a step while the axis is under way by steps moves its goal on. A step that would
+ * end beyond a software limit in force, further out than the axis is, is refused with
+ * MCC_COMMAND_NOTACCEPTED. */
+int manual_step(struct mcc *m, int axis, double distance, double percent);
 
 /* True while some axis follows a handwheel. */
 bool manual_wheel(const struct mcc *m);

@@ -77,6 +77,7 @@ static int accept(struct mcc *m, struct command *c, enum command_status s)
         return s == COMMAND_FAST ? MCC_FEED_RATE : MCC_PARAMETER;
     }
     c->index = ++m->commands;
+    m->moved = true;
     memcpy(m->end, c->path.end, sizeof m->end);
     if (c->type == COMMAND_PTP_ASYN) {
         struct axes_limits l[AXES];

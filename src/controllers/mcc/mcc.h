@@ -15,6 +15,7 @@
 #include "comp.h"
 #include "interpreter.h"
 #include "manual.h"
+#include "mdi.h"
 #include "trajectory.h"
 #include "signals.h"
 
@@ -114,8 +115,13 @@ struct mcc {
     int32_t error;              /* run-time error, enum mcc_error; 0 none */
     int32_t commands;           /* number of commands accepted, which is the index of the latest */
     double end[AXES];           /* [mm] where the latest command ends and the next begins */
-    bool running;               /* the part program has blocks still to be read */
+    bool running;               /* program or lines by hand have blocks still to be read */
+    bool begun;                 /* a program, or a line by hand, has been started */
+    int32_t first;              /* index of the last command of the first program started */
+    bool dropped, moved;        /* since then: what was read has not been driven; axes have been
+                                 * moved otherwise */
     struct interpreter program;
+    struct mdi mdi;
     struct ring ring;
     struct trajectory trajectory;
     struct lookahead_mean mean;

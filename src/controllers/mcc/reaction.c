@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "reach.h"
+#include "task.h"
 
 /* Pulses of the DDA time under way still come. Without any for two DDA times, none will come. */
 static const int64_t QUIET = 2; /* [DDA times] */
@@ -89,7 +90,7 @@ void reaction_stop(struct mcc *m, int32_t error)
     const bool again = m->error != 0;
 
     m->error = again ? m->error : error;
-    m->running = false;
+    task_drop(m);
     if (again) {
         trajectory_stop(&m->trajectory, &m->ring);
     } else {
@@ -109,7 +110,7 @@ static void stop_at_once(struct mcc *m, int32_t error, int32_t stay)
     const struct point *last = stay > 0 ? queue_peek(&m->queue, stay - 1) : &m->written;
 
     m->error = m->error ? m->error : error;
-    m->running = false;
+    task_drop(m);
     trajectory_stop(&m->trajectory, &m->ring);
     memcpy(m->trajectory.pulses, last->pulses, sizeof m->trajectory.pulses);
     memcpy(m->trajectory.rest, last->place, sizeof m->trajectory.rest);
@@ -148,7 +149,7 @@ static void follow(struct mcc *m)
 static void emergency(struct mcc *m)
 {
     m->error = MCC_ERROR_STOP;
-    m->running = false;
+    task_drop(m);
     trajectory_stop(&m->trajectory, &m->ring);
     queue_clear(&m->queue);
     m->written.outputs = m->trajectory.outputs; /* they go off now, not with a point */

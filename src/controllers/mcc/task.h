@@ -26,6 +26,20 @@ void task_check_all(const struct mcc *m, const struct source *s, struct fault_li
  * program runs, an abort is under way or axes move by hand, with MCC_RUN_TIME after an error. */
 int task_start(struct mcc *m);
 
+/* Check a program, with the modes, origins and parameters that are in force, and start it; with a
+ * line `from` > 1 it begins there: the lines before are read for what they set, without motion.
+ * MCC_PARAMETER: it is not good, and *r has the first fault. Else the codes of task_start. */
+int task_start_at(struct mcc *m, const struct source *s, int32_t from, struct fault_report *r);
+
+/* Let the interpreter go on with another text: lines by hand, or the program from its first line.
+ * The first that is started begins with the modes of interpreter_start; what comes later has what
+ * is left (resuming.h). */
+void task_resume(struct mcc *m, bool by_hand);
+
+/* Read no further; what has been read is dropped, so its modes are those of a start, and lines by
+ * hand that wait are forgotten. */
+void task_drop(struct mcc *m);
+
 /* Set an origin [mm] with which programs start: system 1 is that of G54, 6 that of G59. Refused
  * while a program runs. */
 int task_set_origin(struct mcc *m, int system, const double origin[AXES]);
@@ -50,9 +64,9 @@ int task_set_single_block(struct mcc *m, bool on);
  * axes rest there and the card has taken every point. */
 int task_continue(struct mcc *m);
 
-/* Hold or go on, and set the override of both feed and point-to-point (1 is 100 %), as a panel does
+/* Hold or go on, and set the overrides of feed and of point-to-point (1 is 100 %), as a panel does
  * in every cycle. A call that the library refuses has no effect. */
-void task_operate(struct mcc *m, bool hold, double override);
+void task_operate(struct mcc *m, bool hold, double feed, double ptp);
 
 /* One cycle: fill the point queue, as far as there are commands. s is the text that task_check has
  * found good; NULL if no program runs. */

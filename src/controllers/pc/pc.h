@@ -46,13 +46,14 @@ struct pc_config {
     int32_t output_mode[AXES]; /* 0 pulses, 1 position loop of the card, 2 software voltage */
     struct law_config law;     /* control law of output mode 2; a gain of 0 takes the panel's;
                                 * period, on and pulses_per_mm are filled in */
-    bool block_delete, optional_stop; /* for task_set_switches */
+    bool block_delete, optional_stop; /* for task_set_switches, until there is a panel */
     struct home_config home[AXES];    /* how an axis is homed whose home_order is not 0 */
     int32_t home_order[AXES];         /* for MCC_go_home */
     bool home_first;                  /* home the axes before the program */
     double home_settle;               /* [s] for homing_set_settle */
     bool encoder_backward[AXES];      /* `inverted` of homing_set */
     bool dry_run;                     /* begin with a dry run */
+    bool wait_start;                  /* the program begins with cycle_start only */
     bool no_panel; /* the panel's hold, single block, overrides and P gain do not act: calls set
                     * them */
 };
@@ -62,12 +63,16 @@ struct pc_config {
  * forgotten. */
 struct pc_panel {
     bool hold, abort, cycle_start, single_block, go_home, clear_error;
+    bool block_delete, optional_stop;
+    int32_t run_from;           /* line at which cycle_start begins the program; 0: the first */
     int32_t jog[AXES];          /* direction of a jog: -1, 0, +1 */
+    double jog_step[AXES];      /* [mm] way of a jog; 0: until its direction is 0 */
     double jog_percent;         /* [%] of the safe motor speed */
     int32_t wheel_axis;         /* axis that follows the handwheel, from 1; 0: none */
     int32_t wheel_encoder;      /* encoder counter of the handwheel, from 1 */
     double wheel_ratio;         /* [pulses/count] */
     double override;            /* 0..2 */
+    double rapid;               /* 0..1 share of it that rapids and axes by themselves get */
     double adaptive;            /* 0..1 share of the feed while a program lets it (M52) */
     double software_gain[AXES]; /* [V/count] gain of output mode 2 */
     int32_t p_gain[AXES];       /* gain of the card's position loops, for MCC_set_P_gain */
@@ -78,8 +83,11 @@ struct pc_panel {
 struct pc_process {
     struct key abort, cycle_start, go_home, clear_error;
     int32_t jog[AXES], wheel_axis; /* the panel's values that were obeyed last */
+    bool steps[AXES];              /* the latest jog of an axis was a step */
     bool started;                  /* the program has been started, or an abort has dropped it */
     bool anew; /* an error has been cleared: cycle_start runs the program from its begin */
+    int32_t refusals;            /* how often cycle_start found the program not good to run, */
+    struct fault_report refused; /* and why, the latest time */
 };
 
 /* The run of a module that is under way. */

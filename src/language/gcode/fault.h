@@ -155,6 +155,15 @@
     X(FAULT_CUTTER_BACK, "contour turns back on itself at the start of") \
     /* more than 21 commands between two motions */ \
     X(FAULT_CUTTER_FULL, "too much between two motions of cutter compensation") \
+    /* O words but a call, IF, GOTO, WHILE, M99 in a line by hand */ \
+    X(FAULT_ALONE, "it needs other lines, and a line by hand has none") \
+    /* a line by hand that comes while something else has the machine */ \
+    X(FAULT_WHILE_PROGRAM, "no line by hand is taken while a program runs") \
+    X(FAULT_WHILE_HAND, "no line by hand is taken while axes are jogged or homed") \
+    X(FAULT_WHILE_ERROR, "no line by hand is taken until the run-time error is cleared") \
+    /* a program is to begin at such a line */ \
+    X(FAULT_FROM_LINE, "the program does not come to line") \
+    X(FAULT_FROM_HELD, "a motion before waits for this line: begin where it is whole") \
     /* a note, no fault: (PRINT, ...) and the like */ \
     X(FAULT_NOTE_COMMENT, "a comment that does nothing here") \
     /* a note: M19 only stops the spindle */ \

@@ -326,7 +326,9 @@ static enum fault find_sub(struct interpreter *in, const struct program *p, cons
         if (i == 2 && words == OWORD_SUB) {
             g = find_file(in, p, label, &file[i]);
         }
-        if (g == FAULT_NONE && file[i] >= 0 && (i == 0 || file[i] > 0 || in->file > 0)) {
+        const bool lines = file[i] == 0 && p->by_hand; /* which have no subprograms */
+        if (g == FAULT_NONE && file[i] >= 0 && !lines
+            && (i == 0 || file[i] > 0 || in->file > 0)) {
             *place = (struct oword_place){ .file = file[i] };
             g = oword_seek(p, flow_file(in, file[i]), label, words, 0, place, &is);
         }
@@ -479,6 +481,9 @@ enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_pla
     struct flow_step l = { .in = in, .s = s, .here = here, .at = s->at };
     enum fault f = oword_read(s, &l.o);
 
+    if (f == FAULT_NONE && in->file == 0 && s->program->by_hand && l.o.is != OWORD_CALL) {
+        f = flow_refuse(&l, FAULT_ALONE);
+    }
     if (f != FAULT_NONE) {
         return f;
     }
@@ -499,6 +504,18 @@ enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_pla
     case OWORD_CONTINUE:  return leave_line(&l);
     default:              return if_line(&l);
     }
+}
+
+void flow_drop(struct interpreter *in)
+{
+    struct flow *f = &in->flow;
+
+    for (; f->level > 0; f->level--) {
+        const struct flow_call *c = &f->call[f->level - 1];
+        put_locals(&in->parameters, c->locals, &c->before);
+        parameters_leave(&in->parameters, f->level);
+    }
+    memset(f, 0, sizeof *f);
 }
 
 enum fault flow_end(const struct interpreter *in, const struct program *p, struct fault_report *r)
@@ -615,13 +632,16 @@ enum fault flow_user(struct interpreter *in, const struct program *p, int32_t nu
     return f;
 }
 
-enum fault flow_return(struct interpreter *in, struct fault_report *r)
+enum fault flow_return(struct interpreter *in, const struct program *p, struct fault_report *r)
 {
     struct flow *f = &in->flow;
 
     if (f->level > 0) {
         return f->call[f->level - 1].caller == FLOW_SUB ? fault_at(r, FAULT_M99, r->at, r->length)
                                                         : leave(in, r);
+    }
+    if (p->by_hand) {
+        return fault_at(r, FAULT_ALONE, r->at, r->length);
     }
     f->opens = 0;
     f->begun = in->percent = false;

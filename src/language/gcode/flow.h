@@ -139,8 +139,12 @@ enum fault flow_user(struct interpreter *in, const struct program *p, int32_t nu
                      const double given[2], struct oword_place here, struct fault_report *r);
 
 /* M99: back to the caller; in the main program, back to its beginning. FAULT_M99: the subprogram
- * ends with endsub; FAULT_ENDLESS. */
-enum fault flow_return(struct interpreter *in, struct fault_report *r);
+ * ends with endsub; FAULT_ALONE: a line by hand has no beginning; FAULT_ENDLESS. */
+enum fault flow_return(struct interpreter *in, const struct program *p, struct fault_report *r);
+
+/* Reading goes on with another text: no call, loop or condition is open, and the local parameters
+ * are those of the program. */
+void flow_drop(struct interpreter *in);
 
 /* The text has ended. FAULT_O_END, in the line that began it: a condition, loop or call is open. */
 enum fault flow_end(const struct interpreter *in, const struct program *p, struct fault_report *r);

@@ -18,6 +18,8 @@ enum {
 /* What a program is read with. Nothing of it changes while the program runs. */
 struct program {
     const struct source *source;
+    bool by_hand; /* lines given by hand: behind the last one there may come more */
+    int32_t upto; /* reading stops in front of this line of the program; 0: it does not */
     struct mechanism machine;
     struct motion_limits limits;
     struct path_tolerance arc; /* of the ends of arcs [mm]; least 0: rounded at 2 decimals */

@@ -86,6 +86,9 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
         t->count = 0; /* whatever stands behind it */
         return FAULT_NONE;
     }
+    if (f == FAULT_NONE && t->percent && p->by_hand) {
+        return FAULT_NONE; /* as senders of programs have it at both ends */
+    }
     if (f == FAULT_NONE && t->percent) {
         in->ended = in->percent; /* the second % closes the program */
         in->percent = true;
@@ -93,6 +96,9 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
     }
     if (f == FAULT_NONE && t->flow) {
         t->count = 0;
+        if (flow_fanuc_begins(s) && p->by_hand && in->file == 0) {
+            return tokens_at_line(r, FAULT_ALONE, t);
+        }
         return flow_fanuc_begins(s) ? fanuc(in, p, t, &s, here) : flow_line(in, &s, here);
     }
     return words(in, p, t, here, f, r);

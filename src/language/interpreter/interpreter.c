@@ -233,7 +233,7 @@ static enum fault subprogram(struct interpreter *in, const struct program *p, co
         return tokens_at_word(r, FAULT_UNUSED, b->g.by[GCODE_STOP]);
     }
     tokens_at_word(r, FAULT_NO_SUB, number ? number : b->g.by[GCODE_STOP]);
-    return code == 990 ? flow_return(in, r)
+    return code == 990 ? flow_return(in, p, r)
            : !number   ? FAULT_NO_SUB
                        : flow_subprogram(in, p, number->value, runs ? &runs->value : NULL, NULL, r);
 }
@@ -383,6 +383,23 @@ static enum interpreter_result hand_out(struct interpreter *in, const struct com
     return INTERPRETER_COMMAND;
 }
 
+bool interpreter_due(const struct interpreter *in)
+{
+    return in->cutter.ready == 0 && in->taken >= in->count && !in->waits && !in->ended
+           && !in->cycle.running && !in->nurbs.running && in->file == 0 && in->flow.level == 0
+           && !in->flow.rest;
+}
+
+/* Whether the next line of the program itself is not to be read, or not there yet. */
+static bool used_up(const struct interpreter *in, const struct program *p)
+{
+    const char *text;
+
+    return (p->by_hand || p->upto > 0) && interpreter_due(in)
+           && (p->by_hand ? p->source->look(p->source->context, "", in->offset, &text) == 0
+                          : in->line + 1 >= p->upto);
+}
+
 enum interpreter_result interpreter_read(struct interpreter *in, const struct program *p,
                                          struct command *c, struct fault_report *r)
 {
@@ -399,6 +416,9 @@ enum interpreter_result interpreter_read(struct interpreter *in, const struct pr
         }
         if (!made && in->ended && !cutter_on(in)) {
             return INTERPRETER_END;
+        }
+        if (!made && used_up(in, p)) {
+            return INTERPRETER_LINES;
         }
         if (made) {
             r->fault = cutter_follow(in, p, &in->made[in->taken++], r);

@@ -14,13 +14,18 @@ enum interpreter_result {
     INTERPRETER_COMMAND,
     INTERPRETER_WAIT,
     INTERPRETER_END,
-    INTERPRETER_FAULT
+    INTERPRETER_FAULT,
+    INTERPRETER_LINES /* lines given by hand are used up, more may come; or the next is p->upto */
 };
 
 /* Begin at the first line, at rest in a point (machine coordinates [mm], [deg]), with an F [mm/s]
  * and the origins of G54 .. G59.3. In force are G17 G21 G90 G91.1 G94 G54 G61 G80 G98 M5 M9. */
 void interpreter_start(struct interpreter *in, const double point[AXES], double feed,
                        const double origin[INTERPRETER_SYSTEMS][AXES]);
+
+/* Whether what is to be done next is to read a line of the program itself: nothing of the lines
+ * before is left but what waits for it. */
+bool interpreter_due(const struct interpreter *in);
 
 /* Read on until there is a command; its index is left to the caller. A fault is in *r, and it ends
  * the program. */

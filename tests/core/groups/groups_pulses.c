@@ -270,7 +270,7 @@ static void as_the_single_library(int64_t start)
                                       .min_stock = g.min_stock,
                                       .batch = g.batch,
                                       .start = start };
-    const struct pc_panel panel = { .override = 1.0 };
+    const struct pc_panel panel = { .override = 1.0, .rapid = 1.0 };
     struct card c;
     uint64_t seed = 22;
     random_program(&seed, &job[0], 3);

@@ -1,7 +1,7 @@
 /* Axis parameters of the document: taken at standstill, the axes stay where they are. */
 #include "mcc_card.h"
 
-static const struct pc_panel calm = { .override = 1.0 };
+static const struct pc_panel calm = { .override = 1.0, .rapid = 1.0 };
 static const struct pc_config usual = {
     .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3, .batch = 4
 };

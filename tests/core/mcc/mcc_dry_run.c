@@ -31,7 +31,7 @@ static void dry_equals_wet(void)
     int64_t at;
 
     for (int dry = 0; dry < 2; dry++) {
-        panel = (struct pc_panel){ .override = 1.0 };
+        panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0 };
         card_start(&c, &m, &usual, false);
         CHECK(MCC_line_x(&pc.mcc, -3.0) > 0);
         at = wait(&c, 0, 10000, NULL);
@@ -80,7 +80,7 @@ static void dry_refusals(void)
     struct card c;
     int64_t at;
 
-    panel = (struct pc_panel){ .override = 1.0 };
+    panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0 };
     card_start(&c, &m, &usual, false);
     CHECK(MCC_line_x(&pc.mcc, 1.0) > 0);
     was = pc.mcc;
@@ -114,7 +114,7 @@ static void blocks(void)
     struct card c;
     int64_t at;
 
-    panel = (struct pc_panel){ .override = 1.0 };
+    panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0 };
     card_start(&c, &m, &usual, true);
     panel.single_block = true;
     at = wait(&c, 0, 3000, text);
@@ -148,7 +148,7 @@ static void on_and_off(void)
     int64_t at;
 
     m.queue_depth = 16; /* the task is not far ahead of the card */
-    panel = (struct pc_panel){ .override = 1.0 };
+    panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0 };
     card_start(&c, &m, &usual, false);
     CHECK_EQ(MCC_enable_quit(&pc.mcc), 0);
     for (int k = 1; k <= 6; k++) {
@@ -207,7 +207,7 @@ static void chain(char type)
     struct card c;
     int64_t at;
 
-    panel = (struct pc_panel){ .override = 1.0 };
+    panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0 };
     m.acc_type = m.dec_type = type;
     m.queue_depth = 16;
     card_start(&c, &m, &usual, true);

@@ -47,7 +47,7 @@ static void power_on(struct bench *b, const struct machine *m, int mode, bool pr
     struct local_io_control io = { .gate = true, .stop_enable = true };
     CHECK_EQ(epcio_set_local_io(&b->card, &io), EPCIO_OK);
     b->lines.local.power = true;
-    b->panel.override = 1.0;
+    b->panel.override = b->panel.rapid = 1.0;
     b->lag = 1.0;
 }
 

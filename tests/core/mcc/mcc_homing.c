@@ -48,7 +48,7 @@ static void start(const struct pc_config *c, int32_t at, bool program)
     struct machine m = mcc_machine();
     m.queue_depth = depth;
     memset(&room, 0, sizeof room);
-    room.panel.override = 1.0;
+    room.panel.override = room.panel.rapid = 1.0;
     for (int i = 0; i < AXES; i++) {
         room.motor[i].start = room.motor[i].now = at - 1700 * i;
         room.motor[i].place = room.motor[i].start;

@@ -30,7 +30,7 @@ static void start(const char *text, enum inquiry_place place)
     struct machine m = mcc_machine();
     m.queue_depth = 12;
     memset(&room, 0, sizeof room);
-    room.panel.override = 1.0;
+    room.panel.override = room.panel.rapid = 1.0;
     room.panel.adaptive = 1.0;
     room.text = text;
     card_start(&room.card, &m, &c, text != NULL);

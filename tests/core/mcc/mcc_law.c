@@ -161,7 +161,7 @@ static void limit_beside_the_path(void)
 static void speed_of_the_frame(bool inverted)
 {
     struct machine m = mcc_machine();
-    struct pc_panel panel = { .override = 1.0 };
+    struct pc_panel panel = { .override = 1.0, .rapid = 1.0 };
     struct pc_config p = { .bus = 4000,
                            .ipo = 40000,
                            .latency = 8000,
@@ -203,7 +203,7 @@ static void tool_on_the_path(bool stops)
 {
     static struct comp_table table = { .interval = 2000, .home = 100 };
     struct machine m = mcc_machine();
-    struct pc_panel panel = { .override = 1.0 };
+    struct pc_panel panel = { .override = 1.0, .rapid = 1.0 };
     struct pc_config p = { .bus = 4000,
                            .ipo = 40000,
                            .latency = 8000,

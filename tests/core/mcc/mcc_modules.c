@@ -2,7 +2,7 @@
  * cycles, priorities and times are. */
 #include "mcc_card.h"
 
-static const struct pc_panel calm = { .override = 1.0 };
+static const struct pc_panel calm = { .override = 1.0, .rapid = 1.0 };
 
 /* Bus 0.1 ms, IPO 1 ms, latency 0.25 ms; the usual priorities. [clocks] */
 static struct pc_config usual(void)

@@ -1,7 +1,7 @@
 /* PC and card together: FIFO timing of the source document, late service, conservation. */
 #include "mcc_card.h"
 
-static const struct pc_panel calm = { .override = 1.0 };
+static const struct pc_panel calm = { .override = 1.0, .rapid = 1.0 };
 
 /* Bus 0.1 ms, IPO 1 ms, in clocks of 25 ns. */
 static struct pc_config usual(int32_t n, int32_t batch, double latency)

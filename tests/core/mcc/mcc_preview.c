@@ -57,7 +57,7 @@ static void points_are_those_of_a_run(void)
     const struct pc_config usual = {
         .bus = 4000, .ipo = 40000, .latency = 8000.0, .seed = 1, .min_stock = 3, .batch = 4
     };
-    const struct pc_panel panel = { .override = 1.0 };
+    const struct pc_panel panel = { .override = 1.0, .rapid = 1.0 };
     const struct machine machine = mcc_machine();
     struct card c;
     int k = 0, met = 0;
