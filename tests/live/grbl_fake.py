@@ -41,7 +41,7 @@ class FakeMachine:
     lines : list of str
         All that it was given.
     looks : int
-        So many are a line's motion.
+        So many are a line's motion; a line that moves nothing takes one.
     refusals : dict
         Fault by text of a line.
     """
@@ -52,14 +52,14 @@ class FakeMachine:
         self.values: dict[str, Any] = {}
         self.pressed: list[str] = []
         self.refusals: dict[str, int] = {}
-        self.looks, self._left = looks, 0
+        self.looks, self._left, self._stops, self._slows = looks, 0, False, 0
         self.ahead = 256
         self.view = MachineView()
         self.homing: Callable[[MachineView], MachineView] | None = None
 
-    def mdi(self, line: str) -> None:
+    def mdi(self, text: str) -> None:
         self.count += 1
-        self.lines.append(line)
+        self.lines += text.split("\n")
 
     def set(self, name: str, value: Any) -> None:
         self.count += 1
@@ -71,6 +71,9 @@ class FakeMachine:
         view = self.view
         if name == "abort":
             self.view = replace(view, lines=len(self.lines), done=len(self.lines), feed=0.0)
+        elif name == "cycle_start" and self._stops:
+            self._stops = False
+            self.view = replace(view, done=view.done + 1)
         elif name == "clear_error":
             self.view = replace(view, error=0)
         elif name == "go_home" and self.homing:
@@ -85,12 +88,16 @@ class FakeMachine:
             view = replace(view, lines=number)
             if fault:
                 view = replace(view, fault=fault, refused=number)
-        held = bool(self.values.get("hold"))
+        held = bool(self.values.get("hold")) or self._stops
         if view.done < view.lines and not held:
-            self._left = (self._left or self.looks) - 1
-            if not self._left:
+            moves = set("XYZ") & set(self.lines[view.done])
+            self._left = (self._left or (self.looks if moves else 1)) - 1
+            self._stops = not self._left and self.lines[view.done].endswith("M0")
+            if not self._left and not self._stops:
                 view = replace(view, done=view.done + 1)
-        status = 2 if held and view.done < view.lines else 0
+        held = held or self._stops
+        self._slows = self._slows + 1 if held and view.done < view.lines else 0
+        status = 2 if self._slows > 1 else 0
         busy = view.done < view.lines and not held
         self.view = replace(
             view,

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from motionfmu.live.grbl import grbl_block, grbl_codes, grbl_report, line_input
 from motionfmu.live.grbl.grbl_block import GrblBlock, GrblState, read_block, refuse
 from motionfmu.live.grbl.grbl_codes import GrblAlarm, GrblError, GrblRefusal
-from motionfmu.live.grbl.grbl_faults import alarm_of, error_of
+from motionfmu.live.grbl.grbl_faults import alarm_of, error_of, fault_text
 from motionfmu.live.grbl.grbl_machine import RESTS, MachineOrders, MachineView
 from motionfmu.live.grbl.grbl_overrides import GrblOverrides
 from motionfmu.live.grbl.grbl_report import GrblFacts, StatusReport
@@ -23,6 +23,11 @@ from motionfmu.live.grbl.line_input import ROOM, LineInput
 DOOR, JOG_CANCEL, SPINDLE_STOP, FLOOD, MIST = 0x84, 0x85, 0x9E, 0xA0, 0xA1
 SETTLED = 0.02  # [s] of simulated time in which the library has seen what it was told
 CLEARED = 1.0  # [s] in which an error goes that can go
+# Lines that come while the machine rests are held back until the sender pauses, or so many are
+# there, as Grbl fills its planner before it begins: so the first ones are planned with the others.
+PAUSE = 0.02  # [s] of simulated time
+PLAN_LINES, PLAN_BYTES = 200, 6000
+TEXT = 1000  # [byte] of lines that are given at once; a text variable has 1023
 EXACT_STOP = "G61"
 _NUMBER = re.compile(r"N[+-]?[0-9.]+")
 
@@ -94,6 +99,9 @@ class GrblController:
         self._asked: deque[_Asked] = deque()
         self._kept_line: tuple[str, int] | None = None  # it waits for those before it
         self._given = self._moves = 0  # lines given; number of the last one that moves
+        self._plan: list[str] = []  # lines that are held back
+        self._early: set[int] = set()  # numbers of lines that were answered before they were read
+        self._heard, self._fresh = 0.0, False  # time of the latest bytes
         self._names: dict[int, int] = {}  # N of a line by its number
         self._probed = grbl_report.probe_line(grbl_block.ORIGIN, False, False)
         self._asked_status = False
@@ -124,6 +132,7 @@ class GrblController:
 
     def receive(self, data: bytes) -> None:
         """Take bytes."""
+        self._fresh = True
         for byte, at_once in line_input.split(data):
             if at_once:
                 self._real_time(byte)
@@ -135,11 +144,14 @@ class GrblController:
     def observe(self, view: MachineView) -> None:
         """Take a look at the machine, and go on."""
         self.view = view
+        if self._fresh:
+            self._heard, self._fresh = view.time, False
         self._pass_fence()
         if self._fence is None:
             self._notice()
             self._answer()
             self._pull()
+            self._begin()
         if self._asked_status and not self._critical:
             self._asked_status = False
             self._out.append(self.report.text(self._facts()))
@@ -152,7 +164,8 @@ class GrblController:
     @property
     def eager(self) -> bool:
         """Whether it wants to look at the machine as soon as can be."""
-        return bool(self._asked or self._fence or self._asked_status or self._kept_line)
+        asked = self._asked or self._asked_status or self._kept_line
+        return bool(asked or self._fence or self._plan or self._homing)
 
     def _tell(self, text: str) -> None:
         self._out.append(text)
@@ -197,7 +210,8 @@ class GrblController:
     @property
     def rests(self) -> bool:
         """Whether a hold has come to rest."""
-        return self.view.status == RESTS or not self.busy
+        view = self.view
+        return view.status == RESTS or not self.busy or view.lines == view.done
 
     def _state_text(self) -> str:
         name = self.name
@@ -321,6 +335,7 @@ class GrblController:
         """Drop everything; when the machine rests, greet."""
         self.input.clear()
         self._asked.clear()
+        self._plan.clear()
         self._kept_line = None
         self._asked_status = self._critical = self._asleep = self._check = False
         self._homing, self._jogging = None, False
@@ -349,12 +364,13 @@ class GrblController:
             return
         if new and view.error:
             self.orders.press("clear_error")
-        settled = age >= SETTLED and view.feed == 0 and view.lines >= self._given
+        settled = age >= SETTLED and view.feed == 0 and view.lines == view.done
         if not settled or (view.error and age < CLEARED):
             return
         self._fence = None
-        self._moves = min(self._moves, view.done)
+        self._given = self._moves = view.lines
         self._names.clear()
+        self._early.clear()
         self.state = replace(self.state, position=view.position)
         if self._restarts:
             self._restarts = False
@@ -409,8 +425,21 @@ class GrblController:
         if self._jogging and not self.busy and not self._asked:
             self._jogging = False
             self._restore()
-        if not (self.busy or self._asked) and view.done >= self._given:
+        if view.refused in self._early:
+            self._early.discard(view.refused)
+            self._refuse_late()
+        if not (self.busy or self._asked) and view.lines == view.done >= self._given:
             self.state = replace(self.state, position=view.position)
+            self._given = view.lines
+            self._early.clear()
+
+    def _refuse_late(self) -> None:
+        """A line that was answered is not driven: nothing behind it may be."""
+        self._message(fault_text(self.view.fault))
+        self.orders.set("hold", True)
+        alarm = GrblAlarm.SOFT_LIMIT if error_of(self.view.fault) is None else GrblAlarm.ABORTED
+        self._hold = self._hold or "hold"
+        self._raise(alarm, critical=True)
 
     def _see_homing(self) -> None:
         view = self.view
@@ -472,9 +501,7 @@ class GrblController:
         """The library does not take a line; those behind it were read as if it had."""
         error = error_of(self.view.fault)
         if error is None:
-            self._hold = self._hold or "hold"
-            self.orders.set("hold", True)
-            self._raise(GrblAlarm.SOFT_LIMIT, critical=True)
+            self._refuse_late()
             return
         asked.answer = str(int(error))
         self._foreign = True
@@ -516,11 +543,16 @@ class GrblController:
             self._line(text, size)
 
     def _must_wait(self, text: str) -> bool:
-        """Commands of Grbl's own are done when all lines before them are read, and rest."""
+        """Commands of Grbl's own are done when all lines before them have been read.
+
+        Lines that do not move are no reason to call it busy: they are waited for.
+        """
         if not text.startswith("$"):
-            return self._jogging and bool(self._asked)
+            return False
+        if self._asked and not self._jogging:
+            return True
         quiet = self.view.done >= self._given
-        return bool(self._asked and not self._jogging) or not (self.busy or quiet)
+        return text not in ("$G", "$X") and not (self.busy or quiet)
 
     def _line(self, text: str | None, size: int) -> None:
         asked = _Asked(size)
@@ -543,32 +575,59 @@ class GrblController:
         block = read_block(text, self.state)
         asked.block = block
         if not self._check:
-            self._go(text, block)
+            quiet = self.view.done >= self._given
+            self._go(text, block, held=bool(self._plan) or quiet)
             asked.number = self._given
+            if self._plan and not asked.waits:
+                asked.answer = "ok"
+                self._early.add(asked.number)
+                self._begin()
+            else:
+                self._send_plan()
             return
         self.state = grbl_block.after(block, self.state)
         asked.answer = "ok"
         if block.flow in (2, 30):
             self._message(grbl_codes.END)
 
-    def _go(self, text: str, block: GrblBlock) -> None:
-        """Give the library a line, with what Grbl takes for granted."""
+    def _begin(self) -> None:
+        """Give what is held back, if there is enough, or nothing more comes."""
+        enough = len(self._plan) >= PLAN_LINES or sum(map(len, self._plan)) >= PLAN_BYTES
+        paused = not self._fresh and self.view.time >= self._heard + PAUSE
+        if self._plan and not self._hold and (enough or paused):
+            self._send_plan()
+
+    def _send_plan(self) -> None:
+        lines, self._plan = self._plan, []
+        while lines:
+            size, count = 0, 0
+            while count < len(lines) and size + len(lines[count]) < TEXT:
+                size += len(lines[count]) + 1
+                count += 1
+            self.orders.mdi("\n".join(lines[:count]))
+            lines = lines[count:]
+
+    def _go(self, text: str, block: GrblBlock, held: bool = False) -> None:
+        """Give the library a line, with what Grbl takes for granted; or hold it back."""
         self._restore()
         line = _NUMBER.sub("", text)
         if block.command == "motion" and "motion" not in block.groups:
             line = f"G{block.modes.motion}{line}"
         if block.action == 100 and "P" not in block.words:
             line += "P0"
-        self._give(line)
+        self._give(line, held)
         self.state = grbl_block.after(block, self.state)
         if (block.command == "motion" and block.axes) or block.action in (280, 300):
             self._moves = self._given
         if block.words.get("N"):
             self._names[self._given] = int(block.words["N"])
 
-    def _give(self, line: str) -> None:
-        if line:
-            self._given += 1
+    def _give(self, line: str, held: bool = False) -> None:
+        self._given += 1
+        if held:
+            self._plan.append(line)
+        else:
+            self._send_plan()
             self.orders.mdi(line)
 
     def _restore(self) -> None:

@@ -5,6 +5,11 @@ import functools
 from motionfmu.base.binding import library
 from motionfmu.live.grbl.grbl_codes import GrblAlarm, GrblError
 
+OCCUPIED = (
+    "no line by hand is taken while a program runs",
+    "no line by hand is taken while axes are jogged or homed",
+    "no line by hand is taken until the run-time error is cleared",
+)
 # By the text of the fault; what is not here is an unsupported command.
 ERRORS = {
     "unexpected character": GrblError.LETTER,
@@ -31,6 +36,8 @@ ERRORS = {
     "probing leads nowhere": GrblError.TARGET,
     "a word is missing that goes with": GrblError.MISSING,
     "no such tool in the tool table": GrblError.TOOL,
+    "axis is not active": GrblError.UNSUPPORTED,
+    **dict.fromkeys(OCCUPIED, GrblError.LOCKED),
 }
 TRAVEL = "path leaves the software limits"
 # Alarms by the library's run-time errors; that of a search is 63232 + 16 * fault + axis.

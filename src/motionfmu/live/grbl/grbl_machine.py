@@ -26,12 +26,12 @@ class MachineView:
         [mm/min].
     speed : float
         Of the spindle [rpm].
-    given, lines, done : int
-        Lines sent to the library, read by it, those whose motion has ended.
+    lines, done : int
+        Lines that the library has read, refused or dropped; those of them that are over.
     fault, refused : int
         Of the latest line that the library has refused, and its number.
-    room : int
-        Bytes that there is room for in the library.
+    pins : str
+        Inputs that are on, as Grbl names them.
     """
 
     time: float = 0.0
@@ -46,12 +46,10 @@ class MachineView:
     speed: float = 0.0
     coolant: int = 0
     homed: bool = False
-    given: int = 0
     lines: int = 0
     done: int = 0
     fault: int = 0
     refused: int = 0
-    room: int = 1 << 14
     pins: str = ""
 
 
@@ -62,8 +60,8 @@ class MachineOrders(Protocol):
     def count(self) -> int:
         """Orders given so far."""
 
-    def mdi(self, line: str) -> None:
-        """Give the library a line."""
+    def mdi(self, text: str) -> None:
+        """Give the library a line, or several with LF between them."""
 
     def set(self, name: str, value: Any) -> None:
         """Set an input or a parameter of the library."""

@@ -81,8 +81,8 @@ class _LinkOrders:
         self.count += 1
         self.waiting.append(self._link.ask(name, **arguments))
 
-    def mdi(self, line: str) -> None:
-        self._ask("mdi", component=self._component, line=line)
+    def mdi(self, text: str) -> None:
+        self._ask("mdi", component=self._component, line=text)
 
     def set(self, name: str, value: Any) -> None:
         if name in self._known:
