@@ -3,7 +3,7 @@
 import json
 import math
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,6 +36,7 @@ NAME = "system"
 STATES_MAX = 512 << 20
 # What a scenario says of its own run, at times that this one need not reach.
 _CLAIMS = "limit", "settle", "contrary", "figure", "waveform", "iso9283"
+_TEXT = "String"
 _NUMBERS = {
     "Float64",
     "Float32",
@@ -105,20 +106,20 @@ class LiveMachine:
             self._library.close()
             raise
 
-    def _ends(self, causality: str) -> list[End]:
+    def _ends(self, causality: str, types: Collection[str] = _NUMBERS) -> list[End]:
         resolver = self.scenario.resolver
         return [
             resolver.end(f"{component}.{port.name}", "", "")
             for component, ports in resolver.ports.items()
             for port in ports.values()
-            if port.causality == causality and port.type in _NUMBERS
+            if port.causality == causality and port.type in types
         ]
 
     def _changeable(self) -> list[End]:
         """Inputs that no wire feeds and no stimulus drives, and tunable parameters."""
         taken = {w.target.name for w in self._system.wires}
         taken |= {s.end.name for s in self._system.stimuli}
-        tunable = [e for e in self._ends("parameter") if e.port.tunable]
+        tunable = [e for e in self._ends("parameter", _NUMBERS | {_TEXT}) if e.port.tunable]
         both = [*self._ends("input"), *tunable]
         return [e for e in both if e.name not in taken and e.name in self._places]
 

@@ -8,7 +8,8 @@ import sys
 from types import TracebackType
 
 from motionfmu.base.errors import InputError
-from motionfmu.live.server.grbl_session import GrblSession, controller_of
+from motionfmu.live.grbl import GrblBinding
+from motionfmu.live.server.grbl_session import GrblSession
 from motionfmu.live.server.machine_link import MachineLink
 
 HOST = "127.0.0.1"
@@ -41,7 +42,7 @@ class GrblPort:
     """
 
     def __init__(self, link: MachineLink, where: str) -> None:
-        controller_of(link.about)
+        GrblBinding(link.about)
         if where != TERMINAL and not (where.isdecimal() and int(where) < 1 << 16):
             raise InputError(f"--grbl {where}: a port from 0 to 65535, or {TERMINAL}")
         if where == TERMINAL and sys.platform == "win32":
