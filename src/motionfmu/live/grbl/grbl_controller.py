@@ -132,11 +132,11 @@ class GrblController:
 
     def receive(self, data: bytes) -> None:
         """Take bytes."""
-        self._fresh = True
         for byte, at_once in line_input.split(data):
             if at_once:
                 self._real_time(byte)
                 continue
+            self._fresh = True
             self.input.put(byte, ROOM - self._taken())
             if byte in b"\r\n":
                 self._pull()
@@ -539,6 +539,7 @@ class GrblController:
             text, size = got
             if text is not None and self._must_wait(text):
                 self._kept_line = (text, size)
+                self._send_plan()
                 return
             self._line(text, size)
 
