@@ -138,6 +138,12 @@ static void publish(struct fmu *f)
     v->command_newest = mcc->written.newest;
     v->path_feed = mcc->written.feed;
     MCC_get_cpos(mcc, v->position);
+    memcpy(v->work_offset, readout_zero(&mcc->readout)->offset, sizeof v->work_offset);
+    for (int i = 0; i < AXES; i++) {
+        v->distance_to_go[i] = v->status == TASK_STOPPED ? 0.0 : mcc->written.left[i];
+    }
+    v->system = readout_zero(&mcc->readout)->system;
+    memcpy(v->modes, mcc->readout.codes, sizeof v->modes);
     memcpy(v->compensation, mcc->written.added, sizeof v->compensation);
     const bool fixed = (mcc->trajectory.overrides & OUTPUTS_SPEED_FIXED) != 0;
     v->spindle_speed = mcc->written.outputs.spindle * (fixed ? 1.0 : v->spindle_override);

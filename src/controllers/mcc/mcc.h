@@ -16,6 +16,7 @@
 #include "interpreter.h"
 #include "manual.h"
 #include "mdi.h"
+#include "readout.h"
 #include "trajectory.h"
 #include "signals.h"
 
@@ -122,6 +123,7 @@ struct mcc {
                                  * moved otherwise */
     struct interpreter program;
     struct mdi mdi;
+    struct readout readout;
     struct ring ring;
     struct trajectory trajectory;
     struct lookahead_mean mean;

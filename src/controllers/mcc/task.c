@@ -66,6 +66,7 @@ void task_resume(struct mcc *m, bool by_hand)
         resuming_place(in, m->end);
     }
     m->first = m->begun ? m->first : by_hand ? 0 : INT32_MAX;
+    readout_note(m);
     m->mdi.on = by_hand;
     m->begun = true;
     m->dropped = m->moved = false;
@@ -83,6 +84,7 @@ void task_drop(struct mcc *m)
     }
     m->first = m->first == INT32_MAX ? m->commands : m->first;
     m->dropped = true;
+    readout_start(m);
 }
 
 /* A fault of the speed of a motor is reported in rpm. */
@@ -205,6 +207,7 @@ int task_start_at(struct mcc *m, const struct source *s, int32_t from, struct fa
     task_start(m);
     if (from > 1) {
         m->program = in;
+        readout_note(m);
         m->first = m->first == INT32_MAX ? m->commands : m->first;
     }
     return MCC_NO_ERR;
@@ -228,6 +231,7 @@ int task_set_origin(struct mcc *m, int system, const double origin[AXES])
     }
     memcpy(m->offset[system - 1], origin, sizeof m->offset[system - 1]);
     memcpy(m->program.origin[system - 1], origin, sizeof m->offset[system - 1]);
+    readout_note(m);
     return MCC_NO_ERR;
 }
 
@@ -338,8 +342,9 @@ void task_read(struct mcc *m, const struct source *s)
     case INTERPRETER_WAIT:  break;
     case INTERPRETER_LINES: mdi_read(m); break;
     case INTERPRETER_END:   end(m); break;
-    case INTERPRETER_FAULT: reaction_stop(m, reaction_error_of(&r)); break;
+    case INTERPRETER_FAULT: reaction_stop(m, reaction_error_of(&r)); return;
     }
+    readout_note(m);
 }
 
 /* Read commands while there is room for them. Returns how often it read. */

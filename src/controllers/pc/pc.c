@@ -65,6 +65,7 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     pc->mcc.signals = signals_turned(&panel->signals, &pc->mcc.machine);
     manual_look(&pc->mcc);
     mdi_look(&pc->mcc);
+    readout_look(&pc->mcc);
     homing_look(&pc->mcc, pc->config.bus);
 }
 

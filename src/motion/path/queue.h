@@ -55,6 +55,7 @@ struct point {
     int32_t pulses[AXES];   /* [pulses] position at the end, without compensation */
     int32_t added[AXES];    /* [pulses] compensation in all frames up to the end */
     double place[AXES];     /* [mm] ideal position at the end */
+    double left[AXES];      /* [mm] from there to the end of the command that moves; 0 at rest */
     double feed;            /* [mm/s] speed along the path at the end */
     int32_t line, command;  /* line and command that move at the end; if two are mixed, the older */
     int32_t newest;         /* command that moves at the end; if two are mixed, the newer */

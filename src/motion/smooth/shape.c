@@ -368,8 +368,12 @@ static bool room(const struct shape *s)
 
 static void push_mark(struct shape *s, const struct command *c)
 {
-    s->mark[s->marks++ % SHAPE_MARKS] =
-        (struct shape_mark){ 0.0, c->index, c->line, c->set, c->clear, c->analog };
+    struct shape_mark *m = &s->mark[s->marks++ % SHAPE_MARKS];
+
+    *m = (struct shape_mark){ 0.0, c->index, c->line, c->set, c->clear, c->analog, { 0.0F } };
+    for (int i = 0; i < AXES; i++) {
+        m->end[i] = (float)c->path.end[i];
+    }
     s->marks_loose++;
 }
 

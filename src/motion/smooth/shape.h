@@ -35,6 +35,7 @@ struct shape_mark {
     int32_t index, line; /* of the command */
     uint32_t set, clear; /* digital outputs */
     struct outputs_analog analog;
+    float end[AXES]; /* [mm] end of the command, for a display */
 };
 
 enum shape_status {

@@ -346,6 +346,9 @@ static void begin_command(struct trajectory *p, const struct command *c)
                                   .clear = c->clear,
                                   .analog = c->analog };
     begin(p, &k);
+    if (command_lasts(c)) {
+        memcpy(p->end, c->path.end, sizeof p->end);
+    }
 }
 
 static void begin_axes(struct trajectory *p, const struct command *c,
@@ -410,6 +413,9 @@ static void begin_curved(struct trajectory *p, const struct curve_plan *m)
     const struct shape_mark *k;
     while ((k = curve_begun(&p->curve, m)) != NULL) {
         begin(p, k);
+        for (int i = 0; i < AXES; i++) {
+            p->end[i] = k->end[i];
+        }
     }
 }
 
@@ -555,6 +561,23 @@ static void sample(struct trajectory *p, const struct trajectory_beside *b, doub
     }
 }
 
+/* Way left of the command that moves, or of axes that have a place to go to. */
+static void way_left(const struct trajectory *p, const double place[AXES], double left[AXES])
+{
+    const double *end = p->motion == TRAJECTORY_MIX && p->mix.count > 0
+                            ? p->mix.move[0].command.path.end
+                            : p->end;
+    const bool ordered = trajectory_ordered(p);
+
+    for (int i = 0; i < AXES; i++) {
+        const struct axes_axis *a = &p->axes.axis[i];
+        left[i] = !trajectory_busy(p)                ? 0.0
+                  : !ordered                         ? end[i] - place[i]
+                  : a->order == AXES_GO              ? a->goal - place[i]
+                                                     : 0.0;
+    }
+}
+
 bool trajectory_point(struct trajectory *p, const struct trajectory_beside *b,
                       const struct mechanism *m, double dt, struct point *point)
 {
@@ -568,6 +591,7 @@ bool trajectory_point(struct trajectory *p, const struct trajectory_beside *b,
     if (point->feed == 0.0) {
         point->feed = sqrt(v[3] * v[3] + v[4] * v[4] + v[5] * v[5]);
     }
+    way_left(p, point->place, point->left);
     mechanism_near(m, p->pulses, joint);
     const bool reached = trajectory_joints(p, m, point->place, joint);
     if (trajectory_in_joints(p)) {

@@ -59,6 +59,7 @@ struct trajectory {
     bool untold;                /* outputs or line have changed since the latest point */
     struct outputs outputs;
     struct outputs_surface surface; /* if it has a speed, outputs.spindle is the most */
+    double end[AXES];               /* [mm] end of the latest command begun that takes time */
     int32_t started, line;          /* index and source line of the latest command begun */
 };
 

@@ -36,7 +36,6 @@ NAME = "system"
 STATES_MAX = 512 << 20
 # What a scenario says of its own run, at times that this one need not reach.
 _CLAIMS = "limit", "settle", "contrary", "figure", "waveform", "iso9283"
-_TEXT = "String"
 _NUMBERS = {
     "Float64",
     "Float32",
@@ -119,8 +118,9 @@ class LiveMachine:
         """Inputs that no wire feeds and no stimulus drives, and tunable parameters."""
         taken = {w.target.name for w in self._system.wires}
         taken |= {s.end.name for s in self._system.stimuli}
-        tunable = [e for e in self._ends("parameter", _NUMBERS | {_TEXT}) if e.port.tunable]
-        both = [*self._ends("input"), *tunable]
+        types = {*_NUMBERS, "String"}
+        tunable = [e for e in self._ends("parameter", types) if e.port.tunable]
+        both = [*self._ends("input", types), *tunable]
         return [e for e in both if e.name not in taken and e.name in self._places]
 
     def _begin(self) -> None:
