@@ -70,6 +70,7 @@ class FakeMachine:
         self.pressed.append(name)
         view = self.view
         if name == "abort":
+            self._left, self._stops = 0, False
             self.view = replace(view, lines=len(self.lines), done=len(self.lines), feed=0.0)
         elif name == "cycle_start" and self._stops:
             self._stops = False
