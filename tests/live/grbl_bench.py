@@ -1,7 +1,7 @@
 """A Grbl session at a real machine, in simulated time: the same at any speed of the computer."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from motionfmu.live import LiveMachine
@@ -65,11 +65,17 @@ class GrblBench:
         self.controller.connect()
         self.text = ""
 
-    def turn(self) -> str:
-        """Go on for a turn; what was sent."""
+    @property
+    def name(self) -> str:
+        """The session's state."""
+        return self.controller.name
+
+    def turn(self, look: Callable[[], None] = lambda: None) -> str:
+        """Go on for a turn, with a look behind each step; what was sent."""
         for _ in range(TURN):
             self.orders.act()
             self.live.step()
+            look()
         names = self.binding.names
         values = dict(zip(names, self.live.read(names), strict=True))
         self.controller.observe(self.binding.view(self.live.time, self.orders.count, values))

@@ -114,7 +114,7 @@ class GrblController:
         self._later: list[str] = []  # lines for the library behind the fence
         self._restarts = False  # what was behind the fence ends with a greeting
         self._stopped = False  # the spindle, by hand
-        self._flipped = 0  # coolant, by hand
+        self._flipped = self._switched = 0  # coolant by hand; number of a later line that says it
         self._first = True
 
     # -- what the transport calls ---------------------------------------------------------------
@@ -318,7 +318,7 @@ class GrblController:
 
     def _flip(self, bit: int) -> None:
         if self.name in ("Idle", "Run", "Hold", "Jog"):
-            self._flipped ^= bit
+            self._flipped, self._switched = self._flipped ^ bit, 0
             self._by_hand(self._stopped, self._flipped)
 
     # -- reset ----------------------------------------------------------------------------------
@@ -369,6 +369,7 @@ class GrblController:
             return
         self._fence = None
         self._given = self._moves = view.lines
+        self._switched = 0
         self._names.clear()
         self._early.clear()
         self.state = replace(self.state, position=view.position)
@@ -425,6 +426,9 @@ class GrblController:
         if self._jogging and not self.busy and not self._asked:
             self._jogging = False
             self._restore()
+        if self._flipped and 0 < self._switched <= view.done:
+            self._flipped = 0
+            self._by_hand(self._stopped, 0)
         if view.refused in self._early:
             self._early.discard(view.refused)
             self._refuse_late()
@@ -512,9 +516,6 @@ class GrblController:
         if block.probes:
             self.state = replace(self.state, position=self.view.position)
             self._tell(self._probed_line(self.view.found))
-        if "coolant" in block.groups and self._flipped:
-            self._flipped = 0
-            self._by_hand(self._stopped, 0)
         if block.flow in (2, 30):
             self.overrides.reset()
             self._set_overrides()
@@ -620,6 +621,8 @@ class GrblController:
         self.state = grbl_block.after(block, self.state)
         if (block.command == "motion" and block.axes) or block.action in (280, 300):
             self._moves = self._given
+        if "coolant" in block.groups:
+            self._switched = self._given
         if block.words.get("N"):
             self._names[self._given] = int(block.words["N"])
 

@@ -8,16 +8,13 @@ import sys
 from types import TracebackType
 
 from motionfmu.base.errors import InputError
-from motionfmu.live.grbl import GrblBinding
 from motionfmu.live.server.grbl_session import GrblSession
 from motionfmu.live.server.machine_link import MachineLink
 
 HOST = "127.0.0.1"
 TERMINAL = "pty"
-LINK = "grbl"  # a port that senders find by name: a link beside where the command was given
 CHUNK = 4096  # [byte]
 BACKLOG = 1 << 20  # [byte] that a sender may leave unread before it is dropped
-_RETRY = 0.05  # [s] between two looks whether somebody has opened the terminal
 
 
 class GrblPort:
@@ -42,12 +39,12 @@ class GrblPort:
     """
 
     def __init__(self, link: MachineLink, where: str) -> None:
-        GrblBinding(link.about)
+        self._session = GrblSession(link)
         if where != TERMINAL and not (where.isdecimal() and int(where) < 1 << 16):
             raise InputError(f"--grbl {where}: a port from 0 to 65535, or {TERMINAL}")
         if where == TERMINAL and sys.platform == "win32":
             raise InputError(f"--grbl {TERMINAL}: Windows has none; give a port")
-        self._link, self._where = link, where
+        self._where = where
         self._busy = False
         self._tasks: set[asyncio.Task[None]] = set()
         self.address = ""
@@ -96,25 +93,20 @@ class GrblPort:
             else:
                 writer.transport.abort()
 
-        session = GrblSession(self._link, write)
-        task = asyncio.ensure_future(session.run())
+        task = asyncio.ensure_future(self._session.run(write))
         self._tasks.add(task)
         try:
             while data := await reader.read(CHUNK):
-                session.receive(data)
+                self._session.receive(data)
         except ConnectionError:
             pass
         finally:
-            await self._end(task, session)
+            task.cancel()
+            await asyncio.gather(task, return_exceptions=True)
+            self._tasks.discard(task)
+            await self._session.end()
+            self._busy = False
             writer.close()
-
-    async def _end(self, task: asyncio.Task[None], session: GrblSession) -> None:
-        task.cancel()
-        with contextlib.suppress(asyncio.CancelledError):
-            await task
-        self._tasks.discard(task)
-        await session.end()
-        self._busy = False
 
     def _open_terminal(self) -> None:
         import tty
@@ -132,18 +124,17 @@ class GrblPort:
             with contextlib.suppress(BlockingIOError):
                 os.write(self._master, data)
 
-        session = GrblSession(self._link, write)
         loop = asyncio.get_running_loop()
 
         def read() -> None:
             try:
-                session.receive(os.read(self._master, CHUNK))
+                self._session.receive(os.read(self._master, CHUNK))
             except OSError as error:
                 if error.errno not in (errno.EIO, errno.EAGAIN):
                     raise
 
         loop.add_reader(self._master, read)
         try:
-            await session.run()
+            await self._session.run(write)
         finally:
             loop.remove_reader(self._master)

@@ -42,25 +42,24 @@ class GrblSession:
     ----------
     link : MachineLink
         It is open.
-    write : callable
-        Gets the bytes for the sender.
     """
 
-    def __init__(self, link: MachineLink, write: Callable[[bytes], None]) -> None:
-        self._link, self._write = link, write
+    def __init__(self, link: MachineLink) -> None:
+        self._link = link
+        self._write: Callable[[bytes], None] = _nobody
         self._binding = GrblBinding(link.about)
         self._orders = _LinkOrders(link, self._binding)
         self.controller = self._binding.controller(self._orders)
         self._wakened = asyncio.Event()
-        self.errors: list[str] = []
 
     def receive(self, data: bytes) -> None:
         """Take bytes of the sender."""
         self.controller.receive(data)
         self._wakened.set()
 
-    async def run(self) -> None:
-        """Go on until the machine ends."""
+    async def run(self, write: Callable[[bytes], None]) -> None:
+        """Go on with a sender, who gets bytes by a function, until the machine ends."""
+        self._write = write
         self.controller.connect()
         with contextlib.suppress(InputError):
             while True:
@@ -73,6 +72,7 @@ class GrblSession:
 
     async def end(self) -> None:
         """The sender has gone."""
+        self._write = _nobody
         self.controller.disconnect()
         with contextlib.suppress(InputError):
             await self._turn()
@@ -84,7 +84,12 @@ class GrblSession:
         *done, frame = await asyncio.gather(*orders, looks, return_exceptions=True)
         if isinstance(frame, BaseException):
             raise frame
-        self.errors += [str(e) for e in done if isinstance(e, BaseException)]
+        for error in (e for e in done if isinstance(e, BaseException)):
+            self._write(f"[MSG:{' '.join(str(error).split())}]\r\n".encode("ascii", "replace"))
         self.controller.observe(self._binding.view(frame["time"], count, frame["values"]))
         if data := self.controller.sent():
             self._write(data)
+
+
+def _nobody(data: bytes) -> None:
+    """Nobody hears it."""
