@@ -180,6 +180,19 @@ def test_a_wrong_plan_has_one_message(
         Exchange(mill, ExchangePlan(**{"peer": "udp://127.0.0.1:9", **plan}))  # type: ignore[arg-type]
 
 
+def test_the_command_says_what_is_wrong_with_an_exchange() -> None:
+    url = ["--exchange", "udp://127.0.0.1:9"]
+    for given, said in (
+        (["--take", "mcc.hold=1"], "--send and --take go with --exchange udp://HOST:PORT"),
+        ([*url, "--take", "mcc.hold=no"], "--take mcc.hold=no: a number, true or false wanted"),
+        ([*url, "--take", "mcc.hold"], "--take mcc.hold: INPUT=SAFE wanted"),
+        ([*url, "--take", "mcc.hlod=1"], "mcc.hlod: no such signal"),
+    ):
+        command = [sys.executable, "-m", "motionfmu", "live", "mill3", "--port", "0", *given]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 2 and said in done.stderr, done.stderr
+
+
 @pytest.mark.parametrize("peer_of", ["peer.c", "peer.py"])
 def test_a_spring_in_another_process_pulls_the_table_back(
     mill: LiveMachine, tmp_path: Path, peer_of: str

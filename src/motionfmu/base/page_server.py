@@ -26,6 +26,8 @@ class PageServer:
         0: the system chooses.
     tls : tuple of Path, optional
         Files of a certificate and its key: the page is ``https://``.
+    message_max : int
+        Bytes of a WebSocket's message to the server.
 
     Raises
     ------
@@ -33,7 +35,13 @@ class PageServer:
         The port is taken.
     """
 
-    def __init__(self, app: Starlette, port: int, tls: tuple[Path, Path] | None = None) -> None:
+    def __init__(
+        self,
+        app: Starlette,
+        port: int,
+        tls: tuple[Path, Path] | None = None,
+        message_max: int = MESSAGE_MAX,
+    ) -> None:
         try:
             self._socket = socket.create_server((HOST, port))
         except OSError as error:
@@ -46,7 +54,7 @@ class PageServer:
                 app,
                 log_level="warning",
                 timeout_graceful_shutdown=int(CLOSING),
-                ws_max_size=MESSAGE_MAX,
+                ws_max_size=message_max,
                 ssl_certfile=tls and tls[0],
                 ssl_keyfile=tls and tls[1],
             )

@@ -55,10 +55,11 @@ def excite(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.cli.frf import band_of
     from motionfmu.excite import ExciteOptions
     from motionfmu.report import result_folder
+    from motionfmu.run.machine_program import machine_scenario
 
     low, high = band_of(band)
     options = ExciteOptions(axis, input, low or 2.0, high, period, periods, speed, margin, seed)
-    scenario = _scenario(path)
+    scenario = machine_scenario(path)
     target = result_folder.usable(folder or results(scenario.name, "excite"))
     made = _made(scenario, options, settings(set_))
     _write(target, made)
@@ -66,21 +67,6 @@ def excite(  # noqa: PLR0913  (each is an option of the command)
     print(f"command: {target / 'excitation.csv'}")
     print(f"scenario: {target / 'scenario'}")
     report(target / "report.html")
-
-
-def _scenario(path: Path) -> "Scenario":
-    """The scenario of a path or name, or a machine's own tables as one."""
-    from motionfmu import run
-    from motionfmu.scenarios import package_files
-
-    file = path / "machine.toml" if path.is_dir() else path
-    if file.is_file() and file.name == "machine.toml":
-        machine = str(file.parent.absolute())
-        return run.scenario({"machine": machine, "stop": 1.0}, name=file.parent.absolute().name)
-    name = str(path)
-    if name in package_files.machines() and package_files.scenario(path) is None:
-        return run.scenario({"machine": name, "stop": 1.0}, name=name)
-    return run.load(path)
 
 
 def _made(

@@ -1,12 +1,19 @@
 """The console command for a machine that runs while somebody works at it."""
 
+import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
-from motionfmu.cli.common import Set, app, mode, out, settings
+from motionfmu.cli.common import FAILED, Set, app, out, setting, settings
+
+if TYPE_CHECKING:
+    from motionfmu.live.server import MachineStart
+
+PORT_MAX = 65535
 
 
 @app.command()
@@ -22,37 +29,120 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         float, typer.Option(help="Simulated seconds for each on the wall: 0.01 to 100, or inf.")
     ] = 1.0,
     paused: Annotated[bool, typer.Option("--paused", help="Stand at first.")] = False,
+    save_as: Annotated[
+        Path | None,
+        typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
+    ] = None,
+    exchange: Annotated[
+        str | None,
+        typer.Option(metavar="udp://HOST:PORT", help="Another program: see --send and --take."),
+    ] = None,
+    send: Annotated[
+        list[str], typer.Option(metavar="SIGNAL", help="Goes to it: COMP.VAR or COMP.VAR[I].")
+    ] = [],  # noqa: B006
+    take: Annotated[
+        list[str],
+        typer.Option(metavar="INPUT=SAFE", help="Comes from it; SAFE while it is not heard."),
+    ] = [],  # noqa: B006
+    every: Annotated[int, typer.Option(help="Of so many communication steps one exchanges.")] = 1,
+    watchdog: Annotated[
+        float, typer.Option(help="Simulated time after which it counts as lost [s].")
+    ] = 0.1,
+    bind: Annotated[
+        str, typer.Option(metavar="HOST:PORT", help="Where it sends to; port 0: any.")
+    ] = "127.0.0.1:0",
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
     set_: Set = [],  # noqa: B006
 ) -> None:
     """Run a machine in real time with a page to work at it; until Ctrl-C."""
     import asyncio
+    import math
 
     needed("live")
-    given = {"pace": None if pace == float("inf") else pace, "running": not paused}
-    asyncio.run(_serve(str(path), settings(set_), port, given, open_))
+    from motionfmu.live.exchange import ExchangePlan
+    from motionfmu.live.server import MachineStart
+
+    if not 0 <= port <= PORT_MAX:
+        raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
+    plan = None
+    if exchange is None and (send or take):
+        raise InputError("--send and --take go with --exchange udp://HOST:PORT")
+    if exchange is not None:
+        taken = {name: _number(name, value) for name, value in map(_pair, take)}
+        plan = ExchangePlan(exchange, tuple(send), taken, every, watchdog, bind)
+    start = MachineStart(
+        str(path),
+        None if program is None else str(program),
+        settings(set_),
+        None if pace == math.inf else pace,
+        not paused,
+        None if save_as is None else str(save_as),
+        plan,
+    )
+    asyncio.run(_serve(start, port, open_))
 
 
-async def _serve(
-    path: str, set_: dict[str, Any], port: int, given: dict[str, Any], opened: bool
-) -> None:
+def _pair(text: str) -> tuple[str, Any]:
+    if "=" not in text:
+        raise InputError(f"--take {text}: INPUT=SAFE wanted, its value while nobody is heard")
+    return setting(text)
+
+
+def _number(name: str, value: Any) -> float:
+    """The safe value of an input."""
+    if isinstance(value, bool | int | float):
+        return float(value)
+    raise InputError(f"--take {name}={value}: a number, true or false wanted")
+
+
+async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
     import asyncio
     import secrets
     import webbrowser
+    from contextlib import AsyncExitStack
 
     from motionfmu.base.page_server import PageServer
     from motionfmu.cli.card import on_end, stopped
-    from motionfmu.live.server import MachineLink, application
+    from motionfmu.live.server import MESSAGE_MAX, MachineLink, application
 
     ended = asyncio.Event()
     came = on_end(ended.set)
     token = secrets.token_urlsafe(16)
-    async with MachineLink(path, set_, **given) as link:
-        async with PageServer(application(link, token), port) as there:
+    link = MachineLink(start, _tell)
+    # The port is taken before the machine begins: one that is in use is told at once.
+    serving = PageServer(application(link, token), port, message_max=MESSAGE_MAX)
+    async with AsyncExitStack() as stack:
+        begins = asyncio.create_task(stack.enter_async_context(link))
+        stops = asyncio.create_task(ended.wait())
+        await asyncio.wait({begins, stops}, return_when=asyncio.FIRST_COMPLETED)
+        if stops.done():
+            begins.cancel()
+            await asyncio.wait({begins})
+        else:
+            await begins
+            there = await stack.enter_async_context(serving)
             address = f"http://127.0.0.1:{there}/?token={token}"
             out.print(f"page: {address}", soft_wrap=True)
-            if opened or mode.open:
+            if opened:
                 webbrowser.open(address)
-            waits = [asyncio.create_task(e.wait()) for e in (ended, link.ended)]
-            await asyncio.wait(waits, return_when=asyncio.FIRST_COMPLETED)
+            ends = asyncio.create_task(link.ended.wait())
+            await asyncio.wait({stops, ends}, return_when=asyncio.FIRST_COMPLETED)
+    if not came:
+        print(f"motionfmu: {link.why}", file=sys.stderr)
+        raise typer.Exit(FAILED)
     stopped(came)
+
+
+def _tell(message: dict[str, Any], data: bytes) -> None:
+    """Say on the console what the machine's process says by itself."""
+    import contextlib
+
+    with contextlib.suppress(OSError):  # the terminal is gone
+        if message["told"] == "compiling":
+            print(f"{message['name']}: its program is compiled, once; this takes some seconds")
+        if message["told"] == "saved":
+            print(f"saved: {message['file']}")
+        if message["told"] == "exchange":
+            print(f"exchange: {message['peer']} sends to port {message['port']}", flush=True)
+        if message["told"] == "peer":
+            print(f"exchange: {message['peer']} is {'lost' if message['lost'] else 'heard'}")

@@ -53,17 +53,6 @@ class ExchangePlan:
     watchdog: float = WATCHDOG
     bind: str = "127.0.0.1:0"
 
-    def as_json(self) -> dict[str, Any]:
-        """Its values, to be made again by `ExchangePlan(**...)`."""
-        return {
-            "peer": self.peer,
-            "send": list(self.send),
-            "take": dict(self.take),
-            "every": self.every,
-            "watchdog": self.watchdog,
-            "bind": self.bind,
-        }
-
 
 @dataclass
 class ExchangeCount:
@@ -204,6 +193,10 @@ class Exchange:
                 self.counts.wrong += 1
             else:
                 self._given[name] = now
+
+    def state(self) -> dict[str, Any]:
+        """Whether the peer is lost, and what has happened on the wire."""
+        return {"peer": self.plan.peer, "lost": self.lost, **vars(self.counts)}
 
     def close(self) -> None:
         """Free the port."""

@@ -46,10 +46,28 @@ class Journal:
         action : Action
             Not before those that are there.
         """
-        same = [a for a in self.actions if (a.step, a.name) == (action.step, action.name)]
-        for old in same:
-            self.actions.remove(old)
+        for place in range(len(self.actions) - 1, -1, -1):
+            old = self.actions[place]
+            if old.step != action.step:
+                break
+            if old.name == action.name:
+                del self.actions[place]
+                break
         self.actions.append(action)
+
+    def latest(self, count: int) -> list[Action]:
+        """So many of the latest actions.
+
+        Parameters
+        ----------
+        count : int
+
+        Returns
+        -------
+        list of Action
+            In their order.
+        """
+        return self.actions[max(0, len(self.actions) - count) :]
 
     def forget(self, step: int) -> None:
         """Take away what acts at a step or later.

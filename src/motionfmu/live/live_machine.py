@@ -4,7 +4,7 @@ import json
 import math
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from ctypes import byref, c_size_t, c_void_p
+from ctypes import byref, c_size_t, c_void_p, sizeof
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -29,8 +29,10 @@ from motionfmu.scenarios.system import End, Stimulus
 from motionfmu.scenarios.toml_text import document_lines
 from motionfmu.scenarios.values import start_values, values_of
 
-# Calls that read the channels of a ring, and what writes them into its row.
-_Gather = tuple[list[Callable[[], None]], Callable[[NDArray[Any]], None]]
+# Steps whose samples are gathered before they are sorted into rings: 16 of a turn at 0.1 ms.
+_BATCH = 64
+# Sets of channels whose calls are kept.
+_SAMPLERS = 16
 NAME = "system"
 # Bytes of all states that are kept to go back to.
 STATES_MAX = 512 << 20
@@ -42,6 +44,23 @@ _NUMBERS = {
     "Boolean",
     *(f"{u}Int{n}" for u in ("", "U") for n in (8, 16, 32, 64)),
 }
+
+
+@dataclass
+class _Sampler:
+    """Reads channels into a batch: the calls of each of its steps, and where the samples are."""
+
+    calls: list[list[Callable[[], None]]]  # by step of the batch
+    # of each type: the batch, shape (steps, elements); the elements; their channels
+    parts: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]]
+    channels: int
+
+    def rows(self, count: int) -> NDArray[Any]:
+        """Samples of the first steps of the batch, shape (count, channels)."""
+        rows = np.empty((count, self.channels))
+        for batch, elements, columns in self.parts:
+            rows[:, columns] = batch[:count, elements]
+        return rows
 
 
 @dataclass
@@ -95,7 +114,7 @@ class LiveMachine:
         self.warnings: list[str] = []
         self._library = Library(self._made.folder / about["library"], 3)
         self._kept: deque[_SavedState] = deque()
-        self._gathers: dict[tuple[str, ...], _Gather] = {}
+        self._samplers: dict[tuple[str, ...], _Sampler] = {}
         self._readers: dict[tuple[str, ...], Callable[[], list[Any]]] = {}
         self.journal = Journal(self._system.step_ns)
         self.steps, self._closed = 0, False
@@ -134,6 +153,7 @@ class LiveMachine:
         self._values = {
             e.name: values.get(e.name, tuple(start_values(e.port))) for e in self._inputs.values()
         }
+        self._first = dict(self._values)
         due = system.due()
         self._due: dict[int, Sequence[Stimulus]] = dict(due)
 
@@ -145,6 +165,7 @@ class LiveMachine:
             library.leave()
 
         self._refusable(begin)
+        self._advance_one = library.stepper(system.step_ns * 1e-9)
 
     def _tell(self, status: int, text: str) -> None:
         told = text.strip().removeprefix(f"{NAME}: ")
@@ -171,6 +192,17 @@ class LiveMachine:
     def step_seconds(self) -> float:
         """Communication step [s]."""
         return self._system.step_ns / 1e9
+
+    @property
+    def step_ns(self) -> int:
+        """Communication step [ns]."""
+        return self._system.step_ns
+
+    def unit(self, channel: str) -> str:
+        """The unit of a signal or of an element of it."""
+        whole, _ = self._element(channel)
+        known = self._outputs.get(whole) or self._inputs[whole]
+        return known.port.unit or ""
 
     @property
     def names(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -221,6 +253,21 @@ class LiveMachine:
         InputError
             There is no such name, something else sets it, or the value is out of its range.
         """
+        whole, values = self.checked(name, value)
+        self._refusable(lambda: self._library.set([(self._places[whole], values)]))
+        self._values[whole] = values
+        action = Action(self.steps, whole, values)
+        self.journal.add(action)
+        return action
+
+    def checked(self, name: str, value: Any) -> tuple[str, tuple[Any, ...]]:
+        """The variable that a name means, and the values of all its elements with this one.
+
+        Parameters
+        ----------
+        name, value :
+            As of `set`, which raises the same errors.
+        """
         whole, element = self._split(name)
         end = self._inputs[whole]
         had = self._values[whole]
@@ -233,11 +280,35 @@ class LiveMachine:
                 values = values_of(end, [*had[:element], value, *had[element + 1 :]])
         except ValueError as error:
             raise InputError(str(error)) from None
-        self._refusable(lambda: self._library.set([(self._places[whole], values)]))
-        self._values[whole] = values
-        action = Action(self.steps, whole, values)
-        self.journal.add(action)
-        return action
+        return whole, values
+
+    @property
+    def changed_values(self) -> dict[str, tuple[tuple[Any, ...], tuple[Any, ...]]]:
+        """What has another value than at the beginning, by name: that value, and the present."""
+        pairs = {n: (_all(self._first[n], v), v) for n, v in self._values.items()}
+        return {n: (first, now) for n, (first, now) in pairs.items() if first != _all(now, first)}
+
+    def first(self, name: str) -> tuple[str, Any]:
+        """What `set` takes to give a variable the value that it had when the machine began.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``, or an element of it, which means all of them.
+
+        Returns
+        -------
+        name : str
+        value : number, bool or list
+
+        Raises
+        ------
+        InputError
+            It is nothing that can be set.
+        """
+        whole, _ = self._split(name)
+        first = self._first[whole]
+        return whole, first[0] if len(first) == 1 else list(first)
 
     def _split(self, name: str) -> tuple[str, int | None]:
         try:
@@ -336,18 +407,19 @@ class LiveMachine:
             It is no such number, or an FMU refuses to go on.
         """
         _whole_number(count)
+        self._open()
         end = self.steps + count
         while self.steps < end:
-            now = self._due.get(self.steps, ())
-            if now:
-                self._refusable(
-                    lambda now=now: self._library.set(  # type: ignore[misc]
-                        (self._places[s.end.name], s.values) for s in now
-                    )
-                )
-            later = [k for k in self._due if self.steps < k < end]
+            if self.steps in self._due:
+                self._refusable(self._drive)
+            later = [k for k in self._due if self.steps < k < end] if self._due else []
             following = min(later, default=end)
             self._advance(following - self.steps)
+
+    def _drive(self) -> None:
+        """Set what the scenario drives at this step."""
+        now = self._due[self.steps]
+        self._library.set((self._places[s.end.name], s.values) for s in now)
 
     def _advance(self, count: int) -> None:
         step = self._system.step_ns * 1e-9
@@ -421,12 +493,13 @@ class LiveMachine:
             raise InputError(f"{name}: {whole} has the elements 1 to {count}")
         return whole, element or 0
 
-    def fill(self, ring: SampleRing, count: int) -> None:
-        """Make communication steps; write a ring's channels before each.
+    def fill(self, rings: Sequence[SampleRing], count: int) -> None:
+        """Make communication steps; write the channels of rings before each.
 
         Parameters
         ----------
-        ring : SampleRing
+        rings : sequence of SampleRing
+            All of which end at this step.
         count : int
 
         Raises
@@ -435,16 +508,16 @@ class LiveMachine:
             An FMU refuses to go on.
         """
         _whole_number(count)
-        if not ring.channels:
-            self.step(count)
-            ring.cut(self.steps)
-            return
-        calls, gather = self._gather(ring.channels)
-        for _ in range(count):
-            for call in calls:
-                call()
-            ring.write(gather)
-            self.step()
+        end = self.steps + count
+        channels = tuple(dict.fromkeys(c for ring in rings for c in ring.channels))
+        try:
+            while channels and self.steps < end:
+                self._sample(rings, channels, min(end - self.steps, _BATCH))
+            self.step(end - self.steps)
+        finally:
+            for ring in rings:
+                if not ring.channels:
+                    ring.cut(self.steps)
 
     def reading(self, channels: Sequence[str]) -> Callable[[], NDArray[np.float64]]:
         """A quick function that reads elements of signals.
@@ -457,7 +530,7 @@ class LiveMachine:
         Returns
         -------
         callable
-            Without arguments; their present values, of shape (channels,), in an array of its own.
+            Without arguments: their present values, of shape (channels,), good until its next call.
 
         Raises
         ------
@@ -466,41 +539,63 @@ class LiveMachine:
         """
         for name in channels:
             self._element(name)
-        calls, gather = self._gather(tuple(channels))
-        row = np.zeros(len(channels))
+        sampler = self._sampler(tuple(channels))
 
         def read() -> NDArray[np.float64]:
-            for call in calls:
+            for call in sampler.calls[0]:
                 call()
-            gather(row)
-            return row
+            return sampler.rows(1)[0]
 
         return read
 
-    def _gather(self, channels: tuple[str, ...]) -> _Gather:
-        if channels in self._gathers:
-            return self._gathers[channels]
+    def _sample(self, rings: Sequence[SampleRing], channels: tuple[str, ...], count: int) -> None:
+        """Make the steps of a batch, and sort its samples into the rings."""
+        self._open()
+        sampler = self._sampler(channels)
+        began = self.steps
+        try:
+            self._refusable(lambda: self._step_and_read(sampler.calls[:count]))
+        finally:
+            rows = sampler.rows(self.steps - began)
+            for ring in rings:
+                ring.write(rows[:, [channels.index(c) for c in ring.channels]])
+
+    def _step_and_read(self, calls: Iterable[Iterable[Callable[[], None]]]) -> None:
+        step, advance, due = self._system.step_ns * 1e-9, self._advance_one, self._due
+        for reads in calls:
+            for read in reads:
+                read()
+            if self.steps in due:
+                self._drive()
+            advance(self.steps * step)
+            self.steps += 1
+
+    def _sampler(self, channels: tuple[str, ...]) -> _Sampler:
+        if channels in self._samplers:
+            return self._samplers[channels]
         by_type: dict[str, list[tuple[int, str, int]]] = {}
         for column, name in enumerate(channels):
             whole, element = self._element(name)
             by_type.setdefault(self._places[whole].type, []).append((column, whole, element))
-        calls, parts = [], []
+        calls: list[list[Callable[[], None]]] = [[] for _ in range(_BATCH)]
+        parts = []
         for kind, several in by_type.items():
             names = list(dict.fromkeys(whole for _, whole, _ in several))
             places = [self._places[n] for n in names]
             firsts = dict(zip(names, np.cumsum([0, *(p.count for p in places)]), strict=False))
-            buffer = self._library.buffer(kind, sum(p.count for p in places))
-            calls.append(self._library.access("Get", places, buffer))
-            view = np.frombuffer(buffer, np.dtype(buffer._type_))
+            count = sum(p.count for p in places)
+            batch = self._library.buffer(kind, _BATCH * count)
+            single = type(self._library.buffer(kind, count))
+            for k, reads in enumerate(calls):
+                row = single.from_buffer(batch, k * sizeof(single))
+                reads.append(self._library.access("Get", places, row))
+            view = np.frombuffer(batch, np.dtype(batch._type_)).reshape(_BATCH, count)
             where = np.array([firsts[whole] + element for _, whole, element in several])
             parts.append((view, where, np.array([column for column, _, _ in several])))
-
-        def gather(row: NDArray[Any]) -> None:
-            for view, where, columns in parts:
-                row[columns] = view[where]
-
-        self._gathers[channels] = calls, gather
-        return self._gathers[channels]
+        if len(self._samplers) >= _SAMPLERS:
+            self._samplers.clear()
+        self._samplers[channels] = _Sampler(calls, parts, len(channels))
+        return self._samplers[channels]
 
     def keep(self) -> None:
         """Keep the state, to go back to; the oldest go beyond 512 MB."""
@@ -639,6 +734,11 @@ class LiveMachine:
 
     def __repr__(self) -> str:
         return f"<LiveMachine {self.scenario.name}: {self.time:.9g} s, {len(self.journal)} actions>"
+
+
+def _all(values: tuple[Any, ...], like: tuple[Any, ...]) -> tuple[Any, ...]:
+    """One value for as many elements as another has."""
+    return values * len(like) if len(values) == 1 else values
 
 
 def _whole_number(count: Any) -> None:

@@ -6,21 +6,30 @@ the process saves what it was told to save, and ends.
 
 import contextlib
 import json
+import math
+import os
 import struct
 import sys
 import threading
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, BinaryIO
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
+from motionfmu.live.exchange import Exchange, ExchangePlan
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.machine_about import about
 from motionfmu.live.machine_loop import Asked, MachineLoop
 from motionfmu.live.pace import Pace
+from motionfmu.run.machine_program import machine_of, machine_scenario
+from motionfmu.run.runner import Scenario
 
 HEAD = struct.Struct("<II")  # bytes of JSON, bytes behind it
 # [s] A thread that sends an answer may have the interpreter for so long while the clock waits.
 _SWITCH = 5e-4
+# [s] within which a program that was made before is there.
+_SOON = 1.5
 _Message = tuple[dict[str, Any], bytes]
 
 
@@ -83,13 +92,58 @@ def main() -> None:
 
 
 def _serve(start: dict[str, Any], requests: BinaryIO, answers: _Answers) -> None:
-    with LiveMachine(start["scenario"], start["set"]) as machine:
-        factor = start["pace"]
-        pace = Pace(float("inf") if factor is None else factor)
-        loop = MachineLoop(machine, pace, running=start["running"])
+    factor = start["pace"]
+    pace = Pace()
+    try:
+        pace.set(math.inf if factor is None else factor)
+    except ValueError as error:
+        raise InputError(str(error)) from None
+    save_as = start["save_as"]
+    if save_as is not None and os.path.lexists(save_as):
+        raise InputError(f"{save_as} is there already")
+    scenario = _scenario(start["path"], start["program"])
+    late = threading.Timer(_SOON, answers.put, ({"told": "compiling", "name": scenario.name},))
+    late.start()
+    try:
+        machine = LiveMachine(scenario, start["set"])
+    finally:
+        late.cancel()
+    with machine:
+        plan, exchange = start["exchange"], None
+        if plan is not None:
+            exchange = Exchange(machine, ExchangePlan(**plan))
+            answers.put({"told": "exchange", "port": exchange.port, "peer": plan["peer"]})
+        loop = MachineLoop(machine, pace, start["running"], exchange=exchange, tell=answers.put)
         answers.put({"about": about(machine)})
         threading.Thread(target=_listen, args=(requests, loop, answers), daemon=True).start()
         loop.run()
+        if save_as is not None and machine.steps:
+            answers.put({"told": "saved", "file": str(_saved(machine, save_as))})
+
+
+def _scenario(path: str, program: str | None) -> Scenario:
+    """What is to be run, with a program; an operator starts it where a run would do so."""
+    if program is None:
+        return machine_scenario(path)
+    machine = machine_of(path)
+    if machine is not None:
+        return machine.scenario(program, drive=[])
+    scenario = machine_scenario(path)
+    name = scenario.document.body.signals.program
+    if name is None:
+        raise InputError(f"{path}: its machine takes no program")
+    if not is_file(Path(program)):
+        raise InputError(f"{program}: no such program")
+    return scenario.changed(set={name: str(Path(program).absolute())})
+
+
+def _saved(machine: LiveMachine, folder: str) -> Path:
+    """Save what was done; beside a folder that has come there in the meantime."""
+    place, more = Path(folder), 1
+    while os.path.lexists(place):
+        more += 1
+        place = Path(f"{folder}-{more}")
+    return machine.save(place)
 
 
 def _listen(requests: BinaryIO, loop: MachineLoop, answers: _Answers) -> None:

@@ -85,11 +85,11 @@ class Panel(_Table):
     state: str | None = None
     alarm: str | None = None
     line: str | None = None
+    stop: str | None = None  # the machine's emergency stop: true while it is pressed
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
     command: Command | None = None
-    stop: str | None = None  # the emergency stop: true while it acts
     key: dict[str, Key] = Field(default_factory=dict)
     dial: dict[str, Dial] = Field(default_factory=dict)
     lamp: dict[str, Lamp] = Field(default_factory=dict)

@@ -1,6 +1,6 @@
 """Signals at every communication step, as many of the latest as there is room for."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ ROWS = 1 << 18  # 26 s at 0.1 ms, 34 MB with all channels
 
 
 class SampleRing:
-    """Samples of channels, each written before its communication step.
+    """Samples of channels, each of before its communication step.
 
     Parameters
     ----------
@@ -34,10 +34,11 @@ class SampleRing:
         """The earliest step that is still there."""
         return max(self.first, self.end - self._rows)
 
-    def write(self, gather: Callable[[NDArray[Any]], None]) -> None:
-        """Add the samples of a step."""
-        gather(self._samples[self.end % self._rows])
-        self.end += 1
+    def write(self, rows: NDArray[Any]) -> None:
+        """Add the samples of steps, shape (steps, channels)."""
+        self.end += len(rows)
+        rows = rows[-self._rows :]
+        self._samples[np.arange(self.end - len(rows), self.end) % self._rows] = rows
 
     def cut(self, step: int) -> None:
         """Forget what was at a step and later."""
@@ -53,5 +54,9 @@ class SampleRing:
         begin = max(step, self.begin)
         if most is not None:
             begin = max(begin, self.end - most)
-        places = np.arange(begin, max(begin, self.end)) % self._rows
-        return begin, self._samples[places]
+        return begin, self.between(begin, self.end)
+
+    def between(self, begin: int, end: int) -> NDArray[Any]:
+        """Samples of steps that are all there, shape (steps, channels)."""
+        places = np.arange(begin, max(begin, end)) % self._rows
+        return self._samples[places]

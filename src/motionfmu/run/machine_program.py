@@ -8,7 +8,8 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file, shown
 from motionfmu.run.program_translation import MachineProgram, program_for, time_of
 from motionfmu.run.result import Result
-from motionfmu.run.runner import Scenario
+from motionfmu.run.runner import Scenario, load
+from motionfmu.scenarios import package_files
 from motionfmu.scenarios.body import PLANNED
 from motionfmu.scenarios.document import Document, made
 from motionfmu.scenarios.table_sources import machine_file
@@ -204,3 +205,20 @@ def machine(path: str | Path) -> Machine:
     if not isinstance(path, str | Path):
         raise InputError(f"{shown(path)}: the path or name of a machine wanted")
     return Machine(path)
+
+
+def machine_of(path: str | Path) -> Machine | None:
+    """The machine that a path or name means, if it means none of a scenario."""
+    place = Path(path)
+    file = place / "machine.toml" if place.is_dir() else place
+    if file.is_file() and file.name == "machine.toml":
+        return Machine(file.parent.absolute())
+    if str(path) in package_files.machines() and package_files.scenario(place) is None:
+        return Machine(str(path))
+    return None
+
+
+def machine_scenario(path: str | Path) -> Scenario:
+    """The scenario of a path or name, or a machine without a job as one."""
+    found = machine_of(path)
+    return load(path) if found is None else found.plan()

@@ -1,6 +1,6 @@
 """The server of a live machine: one machine, its page, its watchers."""
 
-from motionfmu.live.server.app import application
-from motionfmu.live.server.machine_link import MachineLink
+from motionfmu.live.server.app import MESSAGE_MAX, application
+from motionfmu.live.server.machine_link import MachineLink, MachineStart
 
-__all__ = ["MachineLink", "application"]
+__all__ = ["MESSAGE_MAX", "MachineLink", "MachineStart", "application"]
