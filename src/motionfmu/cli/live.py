@@ -33,6 +33,10 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         Path | None,
         typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
     ] = None,
+    grbl: Annotated[
+        str | None,
+        typer.Option(metavar="PORT|pty", help="Be a Grbl 1.1 for its senders, on 127.0.0.1."),
+    ] = None,
     exchange: Annotated[
         str | None,
         typer.Option(metavar="udp://HOST:PORT", help="Another program: see --send and --take."),
@@ -79,7 +83,7 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         None if save_as is None else str(save_as),
         plan,
     )
-    asyncio.run(_serve(start, port, open_))
+    asyncio.run(_serve(start, port, open_, grbl))
 
 
 def _pair(text: str) -> tuple[str, Any]:
@@ -95,7 +99,7 @@ def _number(name: str, value: Any) -> float:
     raise InputError(f"--take {name}={value}: a number, true or false wanted")
 
 
-async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
+async def _serve(start: "MachineStart", port: int, opened: bool, grbl: str | None) -> None:
     import asyncio
     import secrets
     import webbrowser
@@ -103,7 +107,7 @@ async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
 
     from motionfmu.base.page_server import PageServer
     from motionfmu.cli.card import on_end, stopped
-    from motionfmu.live.server import MESSAGE_MAX, MachineLink, application
+    from motionfmu.live.server import MESSAGE_MAX, GrblPort, MachineLink, application
 
     ended = asyncio.Event()
     came = on_end(ended.set)
@@ -111,6 +115,7 @@ async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
     link = MachineLink(start, _tell)
     # The port is taken before the machine begins: one that is in use is told at once.
     serving = PageServer(application(link, token), port, message_max=MESSAGE_MAX)
+    opening = None if grbl is None else GrblPort(link, grbl)
     async with AsyncExitStack() as stack:
         begins = asyncio.create_task(stack.enter_async_context(link))
         stops = asyncio.create_task(ended.wait())
@@ -123,6 +128,9 @@ async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
             there = await stack.enter_async_context(serving)
             address = f"http://127.0.0.1:{there}/?token={token}"
             out.print(f"page: {address}", soft_wrap=True)
+            if opening is not None:
+                await stack.enter_async_context(opening)
+                out.print(f"grbl: {opening.address}", soft_wrap=True)
             if opened:
                 webbrowser.open(address)
             ends = asyncio.create_task(link.ended.wait())

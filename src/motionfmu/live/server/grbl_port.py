@@ -2,8 +2,8 @@
 
 import asyncio
 import contextlib
-import errno
 import os
+import socket
 import sys
 from types import TracebackType
 
@@ -12,6 +12,7 @@ from motionfmu.live.server.grbl_session import GrblSession
 from motionfmu.live.server.machine_link import MachineLink
 
 HOST = "127.0.0.1"
+PORT_MAX = 65535
 TERMINAL = "pty"
 CHUNK = 4096  # [byte]
 BACKLOG = 1 << 20  # [byte] that a sender may leave unread before it is dropped
@@ -23,7 +24,7 @@ class GrblPort:
     Parameters
     ----------
     link : MachineLink
-        It is open.
+        It is open when the port is entered.
     where : str
         A TCP port, 0 any; or ``pty``.
 
@@ -35,35 +36,53 @@ class GrblPort:
     Raises
     ------
     InputError
-        The machine has no controller for it, or the port is none or taken.
+        The port is none or taken; on entering it, the machine has no controller for it.
     """
 
     def __init__(self, link: MachineLink, where: str) -> None:
-        self._session = GrblSession(link)
-        if where != TERMINAL and not (where.isdecimal() and int(where) < 1 << 16):
-            raise InputError(f"--grbl {where}: a port from 0 to 65535, or {TERMINAL}")
-        if where == TERMINAL and sys.platform == "win32":
-            raise InputError(f"--grbl {TERMINAL}: Windows has none; give a port")
-        self._where = where
-        self._busy = False
+        self._link, self._busy = link, False
         self._tasks: set[asyncio.Task[None]] = set()
-        self.address = ""
-
-    async def __aenter__(self) -> "GrblPort":
-        if self._where == TERMINAL:
+        self._socket: socket.socket | None = None
+        self._terminal: tuple[int, int] | None = None  # our end, and the sender's
+        if where == TERMINAL:
             self._open_terminal()
+        elif where.isdecimal() and int(where) <= PORT_MAX:
+            self._open_socket(int(where))
         else:
-            await self._open_socket()
-        return self
+            raise InputError(f"--grbl {where}: a port from 0 to {PORT_MAX}, or {TERMINAL}")
 
-    async def _open_socket(self) -> None:
+    def _open_socket(self, port: int) -> None:
         try:
-            self._server = await asyncio.start_server(self._serve, HOST, int(self._where))
+            self._socket = socket.create_server((HOST, port))
         except OSError as error:
             told = os.strerror(error.errno or 0)
-            raise InputError(f"--grbl {self._where}: {HOST}: {told}") from None
-        port = self._server.sockets[0].getsockname()[1]
-        self.address = f"tcp://{HOST}:{port}"
+            raise InputError(f"--grbl {port}: {HOST}: {told}") from None
+        # Answers are short: none may wait for the acknowledgement of the one before.
+        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.address = f"tcp://{HOST}:{self._socket.getsockname()[1]}"
+
+    def _open_terminal(self) -> None:
+        if sys.platform == "win32":
+            raise InputError(f"--grbl {TERMINAL}: Windows has none; give a port")
+        import tty
+
+        ours, theirs = os.openpty()
+        tty.setraw(theirs)
+        os.set_blocking(ours, False)
+        self._terminal = ours, theirs
+        self.address = os.ttyname(theirs)
+
+    async def __aenter__(self) -> "GrblPort":
+        try:
+            self._session = GrblSession(self._link)
+        except InputError:
+            self.close()
+            raise
+        if self._terminal is not None:
+            self._tasks.add(asyncio.ensure_future(self._serve_terminal(self._terminal[0])))
+        else:
+            self._server = await asyncio.start_server(self._serve, sock=self._socket)
+        return self
 
     async def __aexit__(
         self,
@@ -71,17 +90,23 @@ class GrblPort:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        if self._socket is not None:
+            self._server.close()
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
-        if self._where == TERMINAL:
-            os.close(self._master)
-            os.close(self._slave)
-        else:
-            self._server.close()
-            await self._server.wait_closed()
+        self.close()
+
+    def close(self) -> None:
+        """Free the port."""
+        if self._socket is not None:
+            self._socket.close()
+        for end in self._terminal or ():
+            os.close(end)
+        self._terminal = None
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Serve a sender until it goes; a second one is sent away."""
         if self._busy:
             writer.close()
             return
@@ -108,33 +133,20 @@ class GrblPort:
             self._busy = False
             writer.close()
 
-    def _open_terminal(self) -> None:
-        import tty
-
-        self._master, self._slave = os.openpty()
-        tty.setraw(self._slave)
-        os.set_blocking(self._master, False)
-        self.address = os.ttyname(self._slave)
-        self._tasks.add(asyncio.ensure_future(self._serve_terminal()))
-
-    async def _serve_terminal(self) -> None:
+    async def _serve_terminal(self, ours: int) -> None:
         """As a serial port is: it is there whether somebody has it open or not."""
 
         def write(data: bytes) -> None:
             with contextlib.suppress(BlockingIOError):
-                os.write(self._master, data)
-
-        loop = asyncio.get_running_loop()
+                os.write(ours, data)
 
         def read() -> None:
-            try:
-                self._session.receive(os.read(self._master, CHUNK))
-            except OSError as error:
-                if error.errno not in (errno.EIO, errno.EAGAIN):
-                    raise
+            with contextlib.suppress(BlockingIOError):
+                self._session.receive(os.read(ours, CHUNK))
 
-        loop.add_reader(self._master, read)
+        loop = asyncio.get_running_loop()
+        loop.add_reader(ours, read)
         try:
             await self._session.run(write)
         finally:
-            loop.remove_reader(self._master)
+            loop.remove_reader(ours)
