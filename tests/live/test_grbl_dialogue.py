@@ -121,6 +121,13 @@ DIALOGUES: list[list[tuple[str, list[str]]]] = [
         ("?", [f"<Idle|WPos:{ORIGIN}|Bf:255,128|FS:0,0|WCO:{ORIGIN}>"]),
     ],
     [("G0X1M0\n", []), ("G0X2\n", []), ("~", ["ok", "ok"])],
+    [
+        ("$N0=M0\n", ["ok"]),
+        ("~", []),
+        ("\x18", [*GREETING, ">M0:ok"]),
+        ("?", [f"<Hold:0|MPos:{ORIGIN}|FS:0,0|WCO:{ORIGIN}>"]),
+        ("~G0X1\n", ["ok"]),
+    ],
     [("M1\n", ["ok"]), ("N7G0X1\n", ["ok"]), ("/G0X2\n", ["ok"]), ("M7M3\n", ["ok"])],
 ]
 

@@ -187,10 +187,8 @@ class GrblController:
 
     @property
     def waits(self) -> bool:
-        """Whether the program has stopped at M0."""
-        front = self._asked[0] if self._asked else None
-        at_stop = front is not None and front.block is not None and front.block.flow == 0
-        return at_stop and self.view.status == RESTS and not self._hold
+        """Whether the library has stopped at M0."""
+        return self.view.status == RESTS and not self._hold
 
     @property
     def name(self) -> str:
@@ -268,7 +266,9 @@ class GrblController:
         if self._fence is not None:
             return
         if self.waits:
-            self._asked[0].answer = "ok"
+            front = self._asked[0] if self._asked else None
+            if front is not None and front.block is not None and front.block.flow == 0:
+                front.answer = "ok"
             self.orders.press("cycle_start")
         elif self._hold and self.rests:
             if self._stopped and self._hold == "hold":
