@@ -15,6 +15,8 @@ HOST = "127.0.0.1"
 PORT_MAX = 65535
 TERMINAL = "pty"
 CHUNK = 4096  # [byte]
+# How a request of a web page begins, which any page could send here: no sender of G-code does.
+HTTP = tuple(f"{verb} ".encode() for verb in "GET POST PUT HEAD OPTIONS DELETE PATCH".split())
 BACKLOG = 1 << 20  # [byte] that a sender may leave unread before it is dropped
 
 
@@ -121,7 +123,11 @@ class GrblPort:
         task = asyncio.ensure_future(self._session.run(write))
         self._tasks.add(task)
         try:
+            first = True
             while data := await reader.read(CHUNK):
+                if first and data.startswith(HTTP):
+                    break
+                first = False
                 self._session.receive(data)
         except ConnectionError:
             pass
