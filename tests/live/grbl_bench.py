@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from motionfmu.live import LiveMachine
-from motionfmu.live.grbl import GrblBinding
+from motionfmu.live.grbl.grbl_binding import GrblBinding
 from motionfmu.live.machine_about import about
 from motionfmu.run.machine_program import machine
 

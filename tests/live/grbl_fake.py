@@ -4,7 +4,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-from motionfmu.live.grbl import GrblController, GrblSettings, MachineView
+from motionfmu.live.grbl.grbl_controller import GrblController
+from motionfmu.live.grbl.grbl_machine import MachineView
+from motionfmu.live.grbl.grbl_settings import GrblSettings
 
 LOOK = 0.005  # [s] of simulated time between two looks
 

@@ -215,7 +215,7 @@ class LiveMachine:
         return next(map(str, texts), None)
 
     def parameters(self, component: str) -> dict[str, list[Any]]:
-        """Values of a component's parameters that are numbers, as the machine has begun with them.
+        """Numeric parameters with which a component has begun.
 
         Parameters
         ----------

@@ -57,27 +57,7 @@ _PARAMETERS = (
 
 
 class GrblBinding:
-    """A machine's controller as a Grbl.
-
-    Parameters
-    ----------
-    about : mapping
-        See `machine_about.about`.
-
-    Attributes
-    ----------
-    component : str
-        The library.
-    variables : mapping
-        Of the library, by name.
-    names : list of str
-        Signals that `view` wants.
-
-    Raises
-    ------
-    InputError
-        There is not one such controller, or it takes no lines.
-    """
+    """A machine's controller as a Grbl."""
 
     def __init__(self, about: Mapping[str, Any]) -> None:
         components = about["components"]

@@ -49,15 +49,7 @@ _POSITIVE = "FNPTS"
 
 @dataclass(frozen=True)
 class GrblModes:
-    """What is in force from line to line.
-
-    Attributes
-    ----------
-    feed : float
-        [mm/min]; 0 before the first F.
-    length : float
-        Tool length offset [mm].
-    """
+    """What is in force from line to line."""
 
     motion: str = "0"
     plane: int = 17
@@ -68,9 +60,9 @@ class GrblModes:
     spindle: int = 5
     coolant: int = 0  # bit 0 mist, bit 1 flood
     tool: int = 0
-    feed: float = 0.0
-    speed: float = 0.0
-    length: float = 0.0
+    feed: float = 0.0  # [mm/min]; 0 before the first F
+    speed: float = 0.0  # [rpm]
+    length: float = 0.0  # of the tool [mm]
 
     @property
     def unit(self) -> float:
@@ -80,25 +72,13 @@ class GrblModes:
 
 @dataclass(frozen=True)
 class GrblState:
-    """Modes, and the places that lines count from.
-
-    Attributes
-    ----------
-    position : tuple of float
-        Where the last line ends, in coordinates of the machine [mm].
-    systems : tuple
-        Origins of G54 to G59 [mm].
-    shift : tuple of float
-        Of G92 [mm].
-    homes : tuple
-        Places of G28.1 and G30.1 [mm].
-    """
+    """Modes, and the places that lines count from."""
 
     modes: GrblModes = field(default_factory=GrblModes)
-    position: Point = ORIGIN
-    systems: tuple[Point, ...] = (ORIGIN,) * SYSTEMS
-    shift: Point = ORIGIN
-    homes: tuple[Point, Point] = (ORIGIN, ORIGIN)
+    position: Point = ORIGIN  # where the last line ends, in the machine [mm]
+    systems: tuple[Point, ...] = (ORIGIN,) * SYSTEMS  # origins of G54 to G59 [mm]
+    shift: Point = ORIGIN  # of G92 [mm]
+    homes: tuple[Point, Point] = (ORIGIN, ORIGIN)  # places of G28.1 and G30.1 [mm]
 
     @property
     def offset(self) -> Point:
@@ -110,33 +90,15 @@ class GrblState:
 
 @dataclass
 class GrblBlock:
-    """A line that has been read and checked.
+    """A line that has been read and checked."""
 
-    Attributes
-    ----------
-    modes : GrblModes
-        After it.
-    words : dict
-        Value words as written.
-    groups : set of str
-        Modal groups that it has a code of.
-    action : int
-        Ten times the G code that acts in this line alone; 0 none.
-    flow : int or None
-        0, 2, 30: the M code.
-    target : tuple of float
-        Where it ends, in coordinates of the machine [mm].
-    command : str
-        "" no axis word is used; "action", "motion", "length": by what they are.
-    """
-
-    modes: GrblModes
-    words: dict[str, float] = field(default_factory=dict)
-    groups: set[str] = field(default_factory=set)
-    action: int = 0
-    flow: int | None = None
-    target: Point = ORIGIN
-    command: str = ""
+    modes: GrblModes  # after it
+    words: dict[str, float] = field(default_factory=dict)  # as written
+    groups: set[str] = field(default_factory=set)  # modal groups that it has a code of
+    action: int = 0  # ten times the G code that acts in this line alone
+    flow: int | None = None  # M code: 0, 2, 30
+    target: Point = ORIGIN  # where it ends, in the machine [mm]
+    command: str = ""  # what uses its axis words: "action", "motion", "length"
     jog: bool = False
     _used: set[str] = field(default_factory=set)
 
@@ -179,13 +141,7 @@ def number(text: str, at: int) -> tuple[float, int]:
 
 
 def read_block(text: str, state: GrblState) -> GrblBlock:
-    """Read a line without spaces; ``$J=`` begins a jog.
-
-    Raises
-    ------
-    GrblRefusal
-        Grbl does not take the line.
-    """
+    """Read a line without spaces; ``$J=`` begins a jog."""
     jog = text.startswith("$J=")
     block = GrblBlock(state.modes, jog=jog)
     if jog:

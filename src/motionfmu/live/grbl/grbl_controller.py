@@ -47,7 +47,7 @@ class _Fence:
 
 
 @dataclass
-class _Asked:
+class _SentLine:
     """A line that has not been answered.
 
     `number` is its number among the lines given to the library, 0 if the answer is known.
@@ -73,18 +73,7 @@ class _Asked:
 
 
 class GrblController:
-    """A session.
-
-    Parameters
-    ----------
-    settings : GrblSettings
-    orders : MachineOrders
-
-    Attributes
-    ----------
-    state : GrblState
-        What the lines read so far have set.
-    """
+    """A session."""
 
     def __init__(self, settings: GrblSettings, orders: MachineOrders) -> None:
         self.settings, self.orders = settings, orders
@@ -96,7 +85,7 @@ class GrblController:
         self.startup = ["", ""]
         self.info = ""
         self._out: list[str] = []
-        self._asked: deque[_Asked] = deque()
+        self._asked: deque[_SentLine] = deque()
         self._kept_line: tuple[str, int] | None = None  # it waits for those before it
         self._given = self._moves = 0  # lines given; number of the last one that moves
         self._plan: list[str] = []  # lines that are held back
@@ -486,7 +475,7 @@ class GrblController:
             self._tell(_reply(asked.answer))
             self._names.pop(asked.number - grbl_report.BLOCKS, None)
 
-    def _known(self, asked: _Asked) -> bool:
+    def _known(self, asked: _SentLine) -> bool:
         view = self.view
         if asked.answer:
             return True
@@ -501,7 +490,7 @@ class GrblController:
         asked.answer = "ok"
         return True
 
-    def _refused(self, asked: _Asked) -> None:
+    def _refused(self, asked: _SentLine) -> None:
         """The library does not take a line; those behind it were read as if it had."""
         error = error_of(self.view.fault)
         if error is None:
@@ -510,7 +499,7 @@ class GrblController:
         asked.answer = str(int(error))
         self._foreign = True
 
-    def _ended(self, asked: _Asked) -> None:
+    def _ended(self, asked: _SentLine) -> None:
         block = asked.block
         assert block is not None
         if block.probes:
@@ -557,7 +546,7 @@ class GrblController:
         return text not in ("$G", "$X") and not (self.busy or quiet)
 
     def _line(self, text: str | None, size: int) -> None:
-        asked = _Asked(size)
+        asked = _SentLine(size)
         self._asked.append(asked)
         try:
             if text is None:
@@ -572,7 +561,7 @@ class GrblController:
             asked.answer = str(int(refusal.error))
         self._answer()
 
-    def _code(self, text: str, asked: _Asked) -> None:
+    def _code(self, text: str, asked: _SentLine) -> None:
         refuse(GrblError.LOCKED, self.alarm or self._jogging)
         block = read_block(text, self.state)
         asked.block = block
@@ -645,7 +634,7 @@ class GrblController:
 
     # -- commands of Grbl's own -----------------------------------------------------------------
 
-    def _command(self, text: str, asked: _Asked) -> None:
+    def _command(self, text: str, asked: _SentLine) -> None:
         asked.answer = "ok"
         key = text[1:2]
         if key == "":
@@ -659,7 +648,7 @@ class GrblController:
             refuse(GrblError.NOT_IDLE, self.name not in ("Idle", "Alarm"))
             _AT_REST.get(key, GrblController._change_setting)(self, text)
 
-    def _jog(self, text: str, asked: _Asked) -> None:
+    def _jog(self, text: str, asked: _SentLine) -> None:
         refuse(GrblError.NOT_IDLE, self.name not in ("Idle", "Jog"))
         refuse(GrblError.STATEMENT, text[2:3] != "=")
         block = read_block(text, self.state)

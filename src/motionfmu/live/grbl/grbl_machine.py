@@ -10,47 +10,25 @@ RUNNING, STOPPED, RESTS, DELAYS, BLOCK = range(5)  # the library's `status`
 
 @dataclass(frozen=True)
 class MachineView:
-    """A look at the machine.
+    """A look at the machine."""
 
-    Attributes
-    ----------
-    time : float
-        Simulated [s].
-    orders : int
-        Orders that had been carried out by then.
-    status, error : int
-        Of the library.
-    position, offset, probed : tuple of float
-        Commanded place, the work's zero, the latest contact, in the machine [mm].
-    feed : float
-        [mm/min].
-    speed : float
-        Of the spindle [rpm].
-    lines, done : int
-        Lines that the library has read, refused or dropped; those of them that are over.
-    fault, refused : int
-        Of the latest line that the library has refused, and its number.
-    pins : str
-        Inputs that are on, as Grbl names them.
-    """
-
-    time: float = 0.0
-    orders: int = 0
+    time: float = 0.0  # simulated [s]
+    orders: int = 0  # carried out by then
     status: int = STOPPED
     error: int = 0
-    position: Point = ORIGIN
-    offset: Point = ORIGIN
-    probed: Point = ORIGIN
+    position: Point = ORIGIN  # in the machine [mm]
+    offset: Point = ORIGIN  # the work's zero [mm]
+    probed: Point = ORIGIN  # the latest contact [mm]
     found: bool = False  # the latest probing has ended at a contact
-    feed: float = 0.0
-    speed: float = 0.0
+    feed: float = 0.0  # [mm/min]
+    speed: float = 0.0  # [rpm]
     coolant: int = 0
     homed: bool = False
-    lines: int = 0
-    done: int = 0
-    fault: int = 0
-    refused: int = 0
-    pins: str = ""
+    lines: int = 0  # that the library has read, refused or dropped
+    done: int = 0  # those of them that are over
+    fault: int = 0  # of the latest line that was refused
+    refused: int = 0  # its number
+    pins: str = ""  # inputs that are on, as Grbl names them
 
 
 class MachineOrders(Protocol):

@@ -10,18 +10,12 @@ _FEED, _SPINDLE = 0x90, 0x99
 
 @dataclass
 class GrblOverrides:
-    """Feed, rapid, spindle [%].
-
-    Attributes
-    ----------
-    low : int
-        Smallest one of the spindle that the machine takes [%].
-    """
+    """Feed, rapid, spindle [%]."""
 
     feed: int = 100
     rapid: int = 100
     spindle: int = 100
-    low: int = SPINDLE_MIN
+    low: int = SPINDLE_MIN  # of the spindle, that the machine takes [%]
 
     @property
     def all(self) -> tuple[int, int, int]:

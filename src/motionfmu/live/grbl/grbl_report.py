@@ -15,38 +15,19 @@ _BUSY = ("Home", "Run", "Hold", "Jog", "Door")
 
 @dataclass(frozen=True)
 class GrblFacts:
-    """What a status report is made of.
+    """What a status report is made of."""
 
-    Attributes
-    ----------
-    state : str
-        With its number behind a colon.
-    position, offset : tuple of float
-        Of the machine, and where the work is 0 [mm].
-    feed : float
-        [mm/min].
-    speed : float
-        [rpm], negative for the other way round.
-    overrides : tuple of int
-        Feed, rapid, spindle [%].
-    blocks, room : int
-        Commands and bytes that there is room for.
-    pins : str
-    line : int
-        N of the line that moves, 0 none.
-    """
-
-    state: str
-    position: Point
-    offset: Point
-    feed: float = 0.0
-    speed: float = 0.0
-    overrides: tuple[int, int, int] = (100, 100, 100)
+    state: str  # with its number behind a colon
+    position: Point  # [mm]
+    offset: Point  # where the work is 0, in the machine [mm]
+    feed: float = 0.0  # [mm/min]
+    speed: float = 0.0  # [rpm], negative for the other way round
+    overrides: tuple[int, int, int] = (100, 100, 100)  # feed, rapid, spindle [%]
     coolant: int = 0
     blocks: int = BLOCKS
     room: int = 128
     pins: str = ""
-    line: int = 0
+    line: int = 0  # N of the line that moves; 0 none
 
 
 @dataclass

@@ -19,15 +19,9 @@ _SAME = 5e-4  # half of the last place that is printed
 
 @dataclass
 class GrblSettings:
-    """Settings of a machine.
+    """Settings of a machine."""
 
-    Parameters
-    ----------
-    machine : mapping
-        Values of the library's parameters by name, each a list.
-    """
-
-    machine: Mapping[str, list[Any]]
+    machine: Mapping[str, list[Any]]  # values of the library's parameters by name
     kept: dict[int, float] = field(default_factory=lambda: dict(KEPT))
 
     def __getitem__(self, number: int) -> float:

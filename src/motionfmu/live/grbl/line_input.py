@@ -10,13 +10,7 @@ REAL_TIME = frozenset({RESET, STATUS, START, HOLD})
 
 
 class LineInput:
-    """What has been received and not yet taken.
-
-    Attributes
-    ----------
-    lost : int
-        Bytes that found the buffer full.
-    """
+    """What has been received and not yet taken."""
 
     def __init__(self) -> None:
         self._bytes: deque[int] = deque()
@@ -24,7 +18,7 @@ class LineInput:
         self._comment = 0  # the byte that ends it
         self._overflow = False
         self._begun = 0  # bytes taken of the line under way
-        self.lost = 0
+        self.lost = 0  # bytes that found the buffer full
 
     @property
     def held(self) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from typing import Any
 
 from motionfmu.base.errors import InputError
-from motionfmu.live.grbl import GrblBinding
+from motionfmu.live.grbl.grbl_binding import GrblBinding
 from motionfmu.live.server.machine_link import MachineLink
 
 IDLE = 0.02  # [s] between two looks while nothing is asked
@@ -36,13 +36,7 @@ class _LinkOrders:
 
 
 class GrblSession:
-    """A controller with its machine.
-
-    Parameters
-    ----------
-    link : MachineLink
-        It is open.
-    """
+    """A controller with its machine."""
 
     def __init__(self, link: MachineLink) -> None:
         self._link = link
