@@ -8,14 +8,14 @@
 
 struct model {
     struct pc pc;
-    int64_t bus;        /* [ns] period of the bus grid */
-    int32_t taken;      /* number of the latest text of mdi that was taken */
-    int64_t instant;    /* [ns] next instant of the grid, at which inputs are read */
-    bool unpublished;   /* the outputs of the latest instant are shown at the next one */
-    int32_t told_error; /* run-time error that was reported last */
+    int64_t bus;           /* [ns] period of the bus grid */
+    int32_t taken;         /* number of the latest text of mdi that was taken */
+    int64_t instant;       /* [ns] next instant of the grid, at which inputs are read */
+    bool unpublished;      /* the outputs of the latest instant are shown at the next one */
+    int32_t told_error;    /* run-time error that was reported last */
     int32_t told_refusals; /* starts of the program that were refused, */
     int32_t told_refused;  /* and line by hand that was, as reported last */
-    bool told_change;   /* the tool change for which the program waits was reported */
+    bool told_change;      /* the tool change for which the program waits was reported */
 };
 
 #define MODEL_BLOB
@@ -283,8 +283,7 @@ static int write_plan(struct fmu *f)
     const struct source source = source_of_program(f);
     const struct inputs inputs = inputs_of(f);
     const struct fmu_path path = fmu_path(f, name, FMU_WRITTEN);
-    task_operate(&f->s.m.pc.mcc, false, f->s.v.override,
-                 f->s.v.override * f->s.v.rapid_override);
+    task_operate(&f->s.m.pc.mcc, false, f->s.v.override, f->s.v.override * f->s.v.rapid_override);
     char said[80];
     const struct plan_rows rows = { &f->s.m.pc.mcc, &source, said, sizeof said };
     const char *why = output_write(path.text, inputs.of, INPUTS, plan_fill, &rows);
@@ -328,8 +327,7 @@ static void take_lines(struct fmu *f)
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
 
-    if (v->mdi_seq != m->taken
-        && mdi_take(&m->pc.mcc, v->mdi, (int32_t)strlen(v->mdi))) {
+    if (v->mdi_seq != m->taken && mdi_take(&m->pc.mcc, v->mdi, (int32_t)strlen(v->mdi))) {
         m->taken = v->mdi_seq;
         tell_refusals(f);
     }

@@ -277,8 +277,7 @@ int manual_step(struct mcc *m, int axis, double distance, double percent)
         return MCC_COMMAND_NOTFINISHED;
     }
     const struct machine_axis *a = &m->machine.axis[axis];
-    const double target =
-        (on ? m->trajectory.axes.axis[axis].goal : place_of(m, axis)) + distance;
+    const double target = (on ? m->trajectory.axes.axis[axis].goal : place_of(m, axis)) + distance;
     const double over = (target - limit_of(a, distance)) * (distance > 0.0 ? 1.0 : -1.0);
     if (a->check_ot && over * machine_pulses_per_mm(a) >= 0.5) {
         return MCC_COMMAND_NOTACCEPTED;

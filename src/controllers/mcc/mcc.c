@@ -25,8 +25,7 @@ int MCC_init_motion(struct mcc *m, const struct machine *machine)
     machine_complete_asyn(&m->machine);
     m->cart_max_speed = machine->max_feed;
     m->feed = machine->feed;
-    interpreter_start(&m->program, m->end, m->feed,
-                      (const double(*)[AXES])m->offset);
+    interpreter_start(&m->program, m->end, m->feed, (const double(*)[AXES])m->offset);
     readout_start(m);
     trajectory_start(&m->trajectory);
     m->trajectory.confirm = guard_watched(&m->machine) != 0;

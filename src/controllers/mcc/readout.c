@@ -58,10 +58,10 @@ void readout_look(struct mcc *m)
 {
     struct readout *r = &m->readout;
 
-    while (r->count > 1
-           && (at(r, 1)->command <= m->written.command
-               || (m->queue.count == 0 && m->ring.count == 0
-                   && !trajectory_busy(&m->trajectory)))) {
+    while (
+        r->count > 1
+        && (at(r, 1)->command <= m->written.command
+            || (m->queue.count == 0 && m->ring.count == 0 && !trajectory_busy(&m->trajectory)))) {
         r->first = (r->first + 1) % READOUT_KEPT;
         r->count--;
     }

@@ -13,11 +13,12 @@
 
 struct mcc;
 
-enum { READOUT_KEPT = 16 }; /* changes that lie ahead of the motion; of more, the oldest come early */
+/* Changes that lie ahead of the motion; of more, the oldest come into sight early. */
+enum { READOUT_KEPT = 16 };
 
 struct readout_zero {
-    int32_t command; /* index of the first command from which on it holds */
-    int32_t system;  /* 1 is G54 */
+    int32_t command;     /* index of the first command from which on it holds */
+    int32_t system;      /* 1 is G54 */
     double offset[AXES]; /* [mm], [deg] machine coordinates of the program's zero, before scaling
                           * and rotation; the tool's offset counts */
 };

@@ -85,8 +85,8 @@ struct pc_process {
     int32_t jog[AXES], wheel_axis; /* the panel's values that were obeyed last */
     bool steps[AXES];              /* the latest jog of an axis was a step */
     bool started;                  /* the program has been started, or an abort has dropped it */
-    bool anew; /* an error has been cleared: cycle_start runs the program from its begin */
-    int32_t refusals;            /* how often cycle_start found the program not good to run, */
+    bool anew;        /* an error has been cleared: cycle_start runs the program from its begin */
+    int32_t refusals; /* how often cycle_start found the program not good to run, */
     struct fault_report refused; /* and why, the latest time */
 };
 

@@ -302,9 +302,16 @@ static enum fault find_file(struct interpreter *in, const struct program *p, con
     return FAULT_NONE;
 }
 
+/* Whether a text is searched for a subprogram: first the one that calls; lines by hand have none. */
+static bool searched(const struct interpreter *in, const struct program *p, int32_t file,
+                     bool first)
+{
+    return file > 0 || (file == 0 && (first || in->file > 0) && !p->by_hand);
+}
+
 /* Place where a subprogram begins, behind its O word. It is in the text that calls it, in the
  * program, or in the file of its name.
- * CCN 19: three places are searched in turn, and each step only goes on behind one without a
+ * CCN 16: three places are searched in turn, and each step only goes on behind one without a
  * fault. */
 static enum fault find_sub(struct interpreter *in, const struct program *p, const char *label,
                            int32_t words, struct oword_place *place)
@@ -326,9 +333,7 @@ static enum fault find_sub(struct interpreter *in, const struct program *p, cons
         if (i == 2 && words == OWORD_SUB) {
             g = find_file(in, p, label, &file[i]);
         }
-        const bool lines = file[i] == 0 && p->by_hand; /* which have no subprograms */
-        if (g == FAULT_NONE && file[i] >= 0 && !lines
-            && (i == 0 || file[i] > 0 || in->file > 0)) {
+        if (g == FAULT_NONE && searched(in, p, file[i], i == 0)) {
             *place = (struct oword_place){ .file = file[i] };
             g = oword_seek(p, flow_file(in, file[i]), label, words, 0, place, &is);
         }
@@ -475,15 +480,22 @@ static enum fault return_line(const struct flow_step *l)
     return leave(l->in, l->s->r);
 }
 
+/* Read the O word of a line; of lines by hand it may only be a call. */
+static enum fault word_of(struct flow_step *l)
+{
+    const enum fault f = oword_read(l->s, &l->o);
+
+    return f == FAULT_NONE && l->s->program->by_hand && l->in->file == 0 && l->o.is != OWORD_CALL
+               ? flow_refuse(l, FAULT_ALONE)
+               : f;
+}
+
 /* CCN 16: a case for each O word. */
 enum fault flow_line(struct interpreter *in, struct reading *s, struct oword_place here)
 {
     struct flow_step l = { .in = in, .s = s, .here = here, .at = s->at };
-    enum fault f = oword_read(s, &l.o);
+    enum fault f = word_of(&l);
 
-    if (f == FAULT_NONE && in->file == 0 && s->program->by_hand && l.o.is != OWORD_CALL) {
-        f = flow_refuse(&l, FAULT_ALONE);
-    }
     if (f != FAULT_NONE) {
         return f;
     }

@@ -64,6 +64,30 @@ static enum fault fanuc(struct interpreter *in, const struct program *p, struct 
     return f == FAULT_NONE ? set(in, p, t, s->r) : f;
 }
 
+/* A line with an O word, or with IF, GOTO, WHILE, DO or END, which a line by hand has not. */
+static enum fault flow(struct interpreter *in, const struct program *p, struct tokens *t,
+                       struct reading *s, struct oword_place here)
+{
+    t->count = 0;
+    if (!flow_fanuc_begins(*s)) {
+        return flow_line(in, s, here);
+    }
+    return p->by_hand && in->file == 0 ? tokens_at_line(s->r, FAULT_ALONE, t)
+                                       : fanuc(in, p, t, s, here);
+}
+
+/* The second % closes the program; in lines by hand it means nothing, as senders have it at both
+ * ends. */
+static enum fault percent(struct interpreter *in, const struct program *p, struct fault_report *r)
+{
+    if (p->by_hand) {
+        return FAULT_NONE;
+    }
+    in->ended = in->percent;
+    in->percent = true;
+    return in->ended ? flow_end(in, p, r) : FAULT_NONE;
+}
+
 enum fault lines_next(struct interpreter *in, const struct program *p, struct tokens *t,
                       struct fault_report *r)
 {
@@ -86,20 +110,11 @@ enum fault lines_next(struct interpreter *in, const struct program *p, struct to
         t->count = 0; /* whatever stands behind it */
         return FAULT_NONE;
     }
-    if (f == FAULT_NONE && t->percent && p->by_hand) {
-        return FAULT_NONE; /* as senders of programs have it at both ends */
-    }
     if (f == FAULT_NONE && t->percent) {
-        in->ended = in->percent; /* the second % closes the program */
-        in->percent = true;
-        return in->ended ? flow_end(in, p, r) : FAULT_NONE;
+        return percent(in, p, r);
     }
     if (f == FAULT_NONE && t->flow) {
-        t->count = 0;
-        if (flow_fanuc_begins(s) && p->by_hand && in->file == 0) {
-            return tokens_at_line(r, FAULT_ALONE, t);
-        }
-        return flow_fanuc_begins(s) ? fanuc(in, p, t, &s, here) : flow_line(in, &s, here);
+        return flow(in, p, t, &s, here);
     }
     return words(in, p, t, here, f, r);
 }

@@ -90,7 +90,8 @@ static void check(struct interpreter *in, const struct program *p, int room, str
         for (int i = 0; i < r.notes; i++) {
             note(all, &r.note[i]);
         }
-        if (got == INTERPRETER_END || got == INTERPRETER_LINES || (got == INTERPRETER_FAULT && !take(&k, all, &r, room))) {
+        if (got == INTERPRETER_END || got == INTERPRETER_LINES
+            || (got == INTERPRETER_FAULT && !take(&k, all, &r, room))) {
             return;
         }
         if (got == INTERPRETER_WAIT) {

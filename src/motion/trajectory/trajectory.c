@@ -564,17 +564,16 @@ static void sample(struct trajectory *p, const struct trajectory_beside *b, doub
 /* Way left of the command that moves, or of axes that have a place to go to. */
 static void way_left(const struct trajectory *p, const double place[AXES], double left[AXES])
 {
-    const double *end = p->motion == TRAJECTORY_MIX && p->mix.count > 0
-                            ? p->mix.move[0].command.path.end
-                            : p->end;
+    const double *end =
+        p->motion == TRAJECTORY_MIX && p->mix.count > 0 ? p->mix.move[0].command.path.end : p->end;
     const bool ordered = trajectory_ordered(p);
 
     for (int i = 0; i < AXES; i++) {
         const struct axes_axis *a = &p->axes.axis[i];
-        left[i] = !trajectory_busy(p)                ? 0.0
-                  : !ordered                         ? end[i] - place[i]
-                  : a->order == AXES_GO              ? a->goal - place[i]
-                                                     : 0.0;
+        left[i] = !trajectory_busy(p)   ? 0.0
+                  : !ordered            ? end[i] - place[i]
+                  : a->order == AXES_GO ? a->goal - place[i]
+                                        : 0.0;
     }
 }
 

@@ -63,11 +63,11 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     import math
 
     needed("live")
+    if not 0 <= port <= PORT_MAX:
+        raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
     from motionfmu.live.exchange import ExchangePlan
     from motionfmu.live.server import MachineStart
 
-    if not 0 <= port <= PORT_MAX:
-        raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
     plan = None
     if exchange is None and (send or take):
         raise InputError("--send and --take go with --exchange udp://HOST:PORT")
@@ -145,12 +145,16 @@ def _tell(message: dict[str, Any], data: bytes) -> None:
     """Say on the console what the machine's process says by itself."""
     import contextlib
 
+    word = message["told"]
+    if word == "compiling":
+        text = f"{message['name']}: its program is compiled, once; this takes some seconds"
+    elif word == "saved":
+        text = f"saved: {message['file']}"
+    elif word == "exchange":
+        text = f"exchange: {message['peer']} sends to port {message['port']}"
+    elif word == "peer":
+        text = f"exchange: {message['peer']} is {'lost' if message['lost'] else 'heard'}"
+    else:
+        return
     with contextlib.suppress(OSError):  # the terminal is gone
-        if message["told"] == "compiling":
-            print(f"{message['name']}: its program is compiled, once; this takes some seconds")
-        if message["told"] == "saved":
-            print(f"saved: {message['file']}")
-        if message["told"] == "exchange":
-            print(f"exchange: {message['peer']} sends to port {message['port']}", flush=True)
-        if message["told"] == "peer":
-            print(f"exchange: {message['peer']} is {'lost' if message['lost'] else 'heard'}")
+        print(text, flush=True)

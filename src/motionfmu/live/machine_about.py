@@ -1,15 +1,22 @@
 """What a page or a program must know of a live machine to work it."""
 
+import ctypes
+import itertools
 import math
+import re
 from pathlib import Path
 from typing import Any
 
+from motionfmu.base.binding import library
 from motionfmu.live.live_machine import LiveMachine
+from motionfmu.live.live_scene import scene
 from motionfmu.live.panel import panel_of
 from motionfmu.live.sample_ring import CHANNELS
 from motionfmu.scenarios.port import Port
 
 LINES_MAX = 200_000  # of a program, that a page is given
+# Meanings of numbers as a type's description has them: "0 running, 1 hold".
+_MEANING = re.compile(r"(-?\d+) (.*?)(?=, -?\d+ |$)")
 
 
 def about(machine: LiveMachine) -> dict[str, Any]:
@@ -29,8 +36,14 @@ def about(machine: LiveMachine) -> dict[str, Any]:
                 for name in [f"{component}.{port.name}"]
                 if name in outputs or name in settable
             },
-            "parameters": machine.parameters(component),
+            "parameters": {
+                port.name: _parameter(machine, component, port)
+                for port in ports.values()
+                if port.causality == "parameter" and port.type != "String"
+            },
         }
+        if panel and panel.mdi and panel.mdi.fault:
+            components[component]["variables"][panel.mdi.fault]["words"] = _faults()
     body = scenario.document.body
     return {
         "name": scenario.name,
@@ -41,7 +54,14 @@ def about(machine: LiveMachine) -> dict[str, Any]:
         "components": components,
         "channels": CHANNELS,
         "program": _program(machine),
+        "scene": scene(machine),
     }
+
+
+def _parameter(machine: LiveMachine, component: str, port: Port) -> list[Any]:
+    """The elements of a parameter as the machine began."""
+    values = machine.parameter(f"{component}.{port.name}")
+    return list(values * port.count if len(values) == 1 else values)
 
 
 def _variable(port: Port, settable: bool) -> dict[str, Any]:
@@ -54,17 +74,34 @@ def _variable(port: Port, settable: bool) -> dict[str, Any]:
         "high": port.high if math.isfinite(port.high) else None,
         "causality": port.causality,
         "set": settable,
+        "tunable": port.tunable,
+        "words": _words(port),
     }
+
+
+def _words(port: Port) -> dict[int, str]:
+    """What the numbers of a variable mean, if its type says it."""
+    if port.type != "Int32" or port.declared is None:
+        return {}
+    return {int(number): word for number, word in _MEANING.findall(port.declared[1])}
+
+
+def _faults() -> dict[int, str]:
+    """Why a line of a part program is refused, by number."""
+    texts = (library().fault_text(ctypes.c_int32(k)).decode() for k in itertools.count())
+    return dict(enumerate(itertools.takewhile(bool, texts)))
 
 
 def _program(machine: LiveMachine) -> dict[str, Any] | None:
     """The program's file and its text, if a controller has one."""
     name = machine.scenario.document.body.signals.program
     file = None if name is None else machine.text(name)
-    if not file:
+    if name is None or not file:
         return None
     try:
         text = Path(file).read_text(encoding="utf-8-sig", errors="replace")
     except OSError:
         return None
-    return {"file": Path(file).name, "lines": text.splitlines()[:LINES_MAX]}
+    lines = [] if "\0" in text else text.splitlines()[:LINES_MAX]  # a job file has no lines
+    tools = machine.text(f"{name.partition('.')[0]}.tool_table")
+    return {"file": Path(file).name, "path": file, "tools": tools, "lines": lines}

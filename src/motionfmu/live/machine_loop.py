@@ -18,17 +18,16 @@ from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.live_scope import LiveScope
 from motionfmu.live.manual_inputs import ManualInputs
 from motionfmu.live.pace import Pace
-from motionfmu.live.panel import panel_of
 from motionfmu.live.scope_trigger import TriggeredRecording, TriggerSetting
 
 TURN = 1e-3  # [s] on the wall between two looks at what is asked
 LONGEST_TURN = 5e-3  # [s] on the wall that steps of a turn may take
 KEPT_EVERY = 1.0  # [s] of simulated time between two states that are kept
+STEPS_MAX = 1 << 40  # more than are ever made at once
 ACTIONS = 40  # latest ones of the journal that are given
 _LATER = object()  # instead of a value: the answer comes when something has ended
 
 Tell = Callable[[dict[str, Any], bytes], None]
-_FAR = 1 << 40  # steps, more than are ever made at once
 
 
 @dataclass(frozen=True)
@@ -58,8 +57,8 @@ class MachineLoop:
     running: bool = True
     ended: bool = False
     error: str = ""
-    exchange: Exchange | None = None  # with another program
     tell: Tell = lambda message, data: None
+    exchange: Exchange | None = None  # with another program
     asked: SimpleQueue[Asked] = field(default_factory=SimpleQueue)
 
     def __post_init__(self) -> None:
@@ -148,10 +147,14 @@ class MachineLoop:
         except InputError as error:
             self.running, self.error = False, str(error)
 
+    def _triggered(self, found: TriggeredRecording) -> None:
+        about = found.about(self.machine.step_seconds)
+        self.tell({"told": "triggered", "value": about}, found.rows.tobytes())
+
     def _exchanged(self, now: int) -> int:
         """Exchange if it is time; the step at which it is next, or one far away."""
         if self.exchange is None:
-            return now + _FAR
+            return now + STEPS_MAX
         every = self.exchange.plan.every
         if now % every == 0:
             was_lost = self.exchange.lost
@@ -159,10 +162,6 @@ class MachineLoop:
             if self.exchange.lost != was_lost:
                 self.tell({"told": "peer", **self.exchange.state()}, b"")
         return now - now % every + every
-
-    def _triggered(self, found: TriggeredRecording) -> None:
-        about = found.about(self.machine.step_seconds)
-        self.tell({"told": "triggered", "value": about}, found.rows.tobytes())
 
     # What can be asked. The server's table of requests says what each is for.
 
@@ -180,6 +179,7 @@ class MachineLoop:
             "kept": [kept[0], kept[-1], len(kept)] if kept else None,
             "late": [late.woken, late.worst, late.below(0.99), late.given_up],
             "actions": len(machine.journal),
+            "lines": self._inputs.waiting,
             "scope": self._scope.state(),
             "exchange": self.exchange and self.exchange.state(),
         }
@@ -239,7 +239,7 @@ class MachineLoop:
 
     def do_command(self, component: str, name: str) -> float:
         """Give a command that the component's panel has."""
-        panel = panel_of(self.machine.scenario.document.body.component.get(component, ""))
+        panel = self._inputs.panels.get(component)
         command = panel.command if panel else None
         if command is None or name not in command.codes:
             raise InputError(f"{component}: no command {name!r}")

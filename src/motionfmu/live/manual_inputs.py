@@ -151,6 +151,11 @@ class ManualInputs:
         lines.waiting.append(line)
         return _after(lines.number, len(lines.waiting))
 
+    @property
+    def waiting(self) -> int:
+        """Lines that no controller has taken yet."""
+        return sum(len(lines.waiting) for lines in self._lines.values())
+
     def _type(self, component: str, lines: _Lines) -> None:
         """Give a controller its next line, if it has the last one and room."""
         mdi, machine = lines.mdi, self._machine

@@ -65,7 +65,8 @@ class Mdi(_Table):
     number: str
     taken: str
     room: str | None = None
-    done: str | None = None
+    lines: str | None = None  # read so far
+    done: str | None = None  # of these, with their motion ended
     fault: str | None = None
     refused: str | None = None
 
@@ -85,11 +86,11 @@ class Panel(_Table):
     state: str | None = None
     alarm: str | None = None
     line: str | None = None
-    stop: str | None = None  # the machine's emergency stop: true while it is pressed
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
     command: Command | None = None
+    stop: str | None = None  # the emergency stop: true while it acts
     key: dict[str, Key] = Field(default_factory=dict)
     dial: dict[str, Dial] = Field(default_factory=dict)
     lamp: dict[str, Lamp] = Field(default_factory=dict)

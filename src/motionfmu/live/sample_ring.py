@@ -38,13 +38,17 @@ class SampleRing:
         """Add the samples of steps, shape (steps, channels)."""
         self.end += len(rows)
         rows = rows[-self._rows :]
-        self._samples[np.arange(self.end - len(rows), self.end) % self._rows] = rows
+        first = (self.end - len(rows)) % self._rows
+        head = min(len(rows), self._rows - first)
+        self._samples[first : first + head] = rows[:head]
+        self._samples[: len(rows) - head] = rows[head:]
 
     def cut(self, step: int) -> None:
         """Forget what was at a step and later."""
-        self.end = max(min(self.end, step), self.first)
-        if self.end < step:
-            self.first = self.end = step
+        self.first = self.begin  # what was before has been written over
+        if not self.first <= step <= self.end:
+            self.first = step
+        self.end = step
 
     def since(self, step: int, most: int | None = None) -> tuple[int, NDArray[Any]]:
         """The first step that is there from one on, and samples of shape (steps, channels).

@@ -121,7 +121,8 @@ class ScopeTrigger:
         return before + int(found[0]) if len(found) else None
 
     def _end(self, at: int) -> int:
-        return at + self.setting.length - round(self.setting.pre * self.setting.length)
+        """The end of its recording, in which the event itself is."""
+        return at + max(1, self.setting.length - round(self.setting.pre * self.setting.length))
 
     def _cut(self, at: int) -> TriggeredRecording:
         end = self._end(at)

@@ -65,7 +65,7 @@ class Page:
     def text(self, frame: PageFrame, scripts: Sequence[str] = (), **data: Any) -> str:
         """The whole page as HTML, with scripts that follow page.js and the data they read."""
         here = files("motionfmu.report")
-        run = [(here / s).read_text(encoding="utf-8") for s in (*SCRIPTS, *scripts)]
+        run = [_script(s) for s in (*SCRIPTS, *scripts)]
         ways = enumerate(map(_plain, self.contents), 1)
         template = (here / "page.html").read_text(encoding="utf-8")
         parts = {
@@ -104,6 +104,13 @@ class Page:
             traces = [_trace(t, most, times, known) for t in plot["data"]]
             figures.append(plot | {"data": traces})
         return {"figures": figures, "times": times}
+
+
+def _script(name: str) -> str:
+    """The text of a script, of the report's own or of those that draw a machine."""
+    own = files("motionfmu.report") / name
+    shared = files("motionfmu.base") / "machine_picture" / name
+    return (own if own.is_file() else shared).read_text(encoding="utf-8")
 
 
 def _trace(

@@ -19,7 +19,7 @@ function machineView(data) {
   const size = onPath.radius || 1;
   const whole = machineBounds();
   const first = time[0], last = time[time.length - 1];
-  const TURN = 0.008, STEP = 0.02; // [rad per pixel], share of the run per key
+  const STEP = 0.02; // share of the run per key
   let now = last, playing = false, stamp = 0, pending = false;
   const view = { azimuth: -0.95, elevation: 0.42, target: [0, 0, 0], distance: 1 };
 
@@ -40,51 +40,8 @@ function machineView(data) {
 
   // Faces of the machine at a time, each with a colour.
   function machine() {
-    const place = sampled(time, tool, now);
-    const faces = [];
-    const put = (made, color) => made.forEach((f) => faces.push({ ...f, color }));
-    if (data.arm) {
-      const p = armPose(data.arm, sampled(time, joints, now)), s = whole.radius / 1100;
-      const hub = (at, axis, half, r) => put(
-        tube(add(at, axis, -half * s), add(at, axis, half * s), r * s), theme.joint);
-      const side = [p.turned[0][1], p.turned[1][1], p.turned[2][1]];
-      const bend = times(product(p.fore, rotZ(joint(3))), [0, 1, 0]);
-      put(tube([0, 0, 0], [0, 0, 40 * s], 190 * s, 190 * s, 18), theme.joint);
-      put(tube([0, 0, 40 * s], p.column, 130 * s, 105 * s, 16), theme.body);
-      if (Math.hypot(...add(p.shoulder, p.column, -1)) > 1) {
-        put(tube(p.column, p.shoulder, 95 * s, 85 * s), theme.body);
-      }
-      hub(p.shoulder, side, 110, 95);
-      put(tube(p.shoulder, p.elbow, 78 * s, 62 * s), theme.body);
-      hub(p.elbow, side, 88, 76);
-      if (Math.hypot(...add(p.forearm, p.elbow, -1)) > 1) {
-        put(tube(p.elbow, p.forearm, 66 * s, 58 * s), theme.body);
-      }
-      put(tube(p.forearm, p.wrist, 58 * s, 36 * s), theme.body);
-      hub(p.wrist, bend, 46, 40);
-      put(tube(p.wrist, p.flange, 30 * s, 26 * s), theme.body);
-      if (data.arm.pen > 0) put(tube(p.flange, p.tip, 9 * s, 3 * s, 8), theme.tool);
-    } else {
-      const { low, high } = onPath, r = size, t = 0.05 * r, top = high[2] + 0.45 * r;
-      const [left, right] = [low[0] - 0.3 * r, high[0] + 0.3 * r];
-      const [front, back] = [low[1] - 0.3 * r, high[1] + 0.3 * r], floor = low[2] - 0.08 * r;
-      for (const x of [left, right]) {
-        put(box([x - t, front, floor], [x + t, back, floor + t]), theme.joint);
-        put(box([x - t, place[1] - t, floor + t], [x + t, place[1] + t, top]), theme.body);
-      }
-      put(box([left - t, place[1] - t, top], [right + t, place[1] + t, top + 2 * t]), theme.body);
-      put(box([place[0] - 2 * t, place[1] - 2 * t, top - t],
-        [place[0] + 2 * t, place[1] - t, top + 2.6 * t]), theme.joint);
-      const ram = [place[0], place[1] - 1.5 * t];
-      put(box([ram[0] - t, ram[1] - 0.5 * t, place[2] + 4 * t],
-        [ram[0] + t, ram[1] + 1.5 * t, top + 6 * t + place[2] - high[2]]), theme.body);
-      put(tube(place, [place[0], place[1], place[2] + 4 * t], 0.1 * t, 0.7 * t, 8), theme.tool);
-    }
-    return faces;
-
-    function joint(i) {
-      return data.arm.signs[i] * sampled(time, [joints[i]], now)[0] - data.arm.offsets[i];
-    }
+    if (!data.arm) return gantryFaces(sampled(time, tool, now), onPath, theme);
+    return armFaces(data.arm, sampled(time, joints, now), whole.radius / 1100, theme);
   }
 
   let theme = {};
@@ -92,14 +49,8 @@ function machineView(data) {
     const style = getComputedStyle(root), colors = isDark() ? page.dark : {};
     const get = (name) => style.getPropertyValue(name).trim();
     const own = (list) => list.map((color) => other(color, colors));
-    theme = { body: [142, 160, 180], joint: isDark() ? [104, 124, 146] : [62, 80, 100], tool: [190, 40, 60],
-      ink: get("--ink"), muted: get("--muted"), line: get("--floor"), accent: get("--accent"),
+    theme = { ...machineColours(isDark()), ink: get("--ink"), muted: get("--muted"), line: get("--floor"), accent: get("--accent"),
       colours: own(data.colours), curves: own(data.curves) };
-  }
-
-  function shade(color, normal) {
-    const light = 0.62 + 0.38 * dot(normal, unit([0.35, -0.5, 0.8]));
-    return `rgb(${color.map((c) => Math.round(Math.min(255, c * (0.45 + 0.62 * light)))).join(",")})`;
   }
 
   function draw() {
@@ -118,7 +69,10 @@ function machineView(data) {
     const items = pathItems(look);
     const factor = Number(part("magnify")?.value ?? 0);
     lines.forEach((line, j) => items.push(...deviation(line, j, 10 ** factor, look)));
-    if (part("machine").checked) items.push(...machineItems(look));
+    if (part("machine").checked) {
+      const alpha = part("solid").checked ? 1 : 0.28;
+      items.push(...facesToDraw(pen, machine(), view, look, alpha));
+    }
     items.sort((a, b) => b.depth - a.depth).forEach((item) => item.draw());
     const tip = look(sampled(time, tool, now));
     if (tip[3]) {
@@ -130,7 +84,7 @@ function machineView(data) {
       pen.strokeStyle = "#fff";
       pen.stroke();
     }
-    triad(width, height);
+    triad(pen, view, height, data.axes);
     part("time").textContent = `${now.toFixed(last > 100 ? 1 : 2)} s`;
     part("scrub").value = String(1000 * (now - first) / (last - first || 1));
     for (const e of root.querySelectorAll('[data-view="factor"]')) {
@@ -140,38 +94,12 @@ function machineView(data) {
 
   const shownFactor = (f) => Number(f.toPrecision(2)).toLocaleString("en");
 
-  function stroke(points, color, width, alpha = 1) {
-    pen.beginPath();
-    let open = false;
-    for (const p of points) {
-      if (!p[3]) { open = false; continue; }
-      if (open) pen.lineTo(p[0], p[1]); else pen.moveTo(p[0], p[1]);
-      open = true;
-    }
-    pen.globalAlpha = alpha;
-    pen.strokeStyle = color;
-    pen.lineWidth = width;
-    pen.lineJoin = "round";
-    pen.lineCap = alpha < 1 ? "butt" : "round"; // else two ends show where pieces meet
-    pen.stroke();
-    pen.globalAlpha = 1;
-  }
-
   function floor(look) {
     const z = data.arm ? 0 : onPath.low[2] - 0.08 * size;
     const base = data.arm ? bounds([[whole.low[0], whole.low[1], 0], [whole.high[0], whole.high[1], 0]])
       : bounds([[onPath.low[0] - 0.5 * size, onPath.low[1] - 0.5 * size, z],
         [onPath.high[0] + 0.5 * size, onPath.high[1] + 0.5 * size, z]]);
-    const step = round125(Math.max(base.radius, 1e-9) / 4);
-    const from = base.low.map((x) => Math.floor(x / step) * step);
-    const to = base.high.map((x) => Math.ceil(x / step) * step);
-    const cut = (a, b) => Array.from({ length: 9 }, (_, k) => look(add(a, add(b, a, -1), k / 8)));
-    for (let x = from[0]; x <= to[0] + step / 2; x += step) {
-      stroke(cut([x, from[1], z], [x, to[1], z]), theme.line, 1);
-    }
-    for (let y = from[1]; y <= to[1] + step / 2; y += step) {
-      stroke(cut([from[0], y, z], [to[0], y, z]), theme.line, 1);
-    }
+    const step = floorSquares(pen, look, base, z, theme.line);
     part("grid").textContent = step >= 1000 ? `${step / 1000} m` : `${step} mm`;
     // The paper under a flat path.
     const thick = onPath.high[2] - onPath.low[2];
@@ -203,7 +131,7 @@ function machineView(data) {
       const piece = shown.slice(a, b + 1);
       const color = colour(theme.colours, level(a) / 15);
       items.push({ depth: piece[piece.length >> 1][2],
-        draw: () => stroke(piece, color, visited ? 2.6 : 1.6, visited ? faded : 0.22) });
+        draw: () => stroke(pen, piece, color, visited ? 2.6 : 1.6, visited ? faded : 0.22) });
       a = b;
     }
     return items;
@@ -215,53 +143,9 @@ function machineView(data) {
     for (let a = 0; a < shown.length - 1; a += 12) {
       const piece = shown.slice(a, a + 13);
       items.push({ depth: piece[piece.length >> 1][2] - 1e-3 * size,
-        draw: () => stroke(piece, color, 1.4, 0.95) });
+        draw: () => stroke(pen, piece, color, 1.4, 0.95) });
     }
     return items;
-  }
-
-  function machineItems(look) {
-    const items = [];
-    const alpha = part("solid").checked ? 1 : 0.28;
-    const eye = [Math.cos(view.elevation) * Math.cos(view.azimuth),
-      Math.cos(view.elevation) * Math.sin(view.azimuth), Math.sin(view.elevation)];
-    const from = add(view.target, eye, view.distance);
-    for (const face of machine()) {
-      const middle = face.corners.reduce((s, p) => add(s, p, 1 / face.corners.length), [0, 0, 0]);
-      if (dot(face.normal, add(from, middle, -1)) <= 0) continue;
-      const shown = face.corners.map(look);
-      if (!shown.every((p) => p[3])) continue;
-      const color = shade(face.color, face.normal);
-      items.push({ depth: look(middle)[2], draw: () => {
-        pen.beginPath();
-        shown.forEach((p, k) => (k ? pen.lineTo(p[0], p[1]) : pen.moveTo(p[0], p[1])));
-        pen.closePath();
-        pen.globalAlpha = alpha;
-        pen.fillStyle = pen.strokeStyle = color;
-        pen.lineWidth = 0.7;
-        pen.fill();
-        if (alpha === 1) pen.stroke();
-        pen.globalAlpha = 1;
-      } });
-    }
-    return items;
-  }
-
-  function triad(width, height) {
-    const look = camera({ ...view, target: [0, 0, 0], distance: 9 }, 120, 120);
-    const move = (p) => [p[0] - 10, height - 110 + p[1], p[2], true];
-    const origin = move(look([0, 0, 0]));
-    ["X", "Y", "Z"].forEach((name, i) => {
-      const end = [0, 0, 0];
-      end[i] = 1;
-      const tip = move(look(end)), text = move(look(end.map((x) => 1.35 * x)));
-      stroke([origin, tip], data.axes[i], 2);
-      pen.fillStyle = data.axes[i];
-      pen.font = "600 12px sans-serif";
-      pen.textAlign = "center";
-      pen.textBaseline = "middle";
-      pen.fillText(name, text[0], text[1]);
-    });
   }
 
   function later() {
@@ -304,54 +188,8 @@ function machineView(data) {
     later();
   }
 
-  function zoom(factor) {
-    view.distance = Math.min(Math.max(view.distance * factor, 0.02 * size), 40 * whole.radius);
-    later();
-  }
-
-  function turn(dx, dy) {
-    view.azimuth -= TURN * dx;
-    view.elevation = Math.min(Math.max(view.elevation + TURN * dy, -1.55), 1.57);
-    later();
-  }
-
-  function shift(dx, dy) {
-    const [ca, sa] = [Math.cos(view.azimuth), Math.sin(view.azimuth)];
-    const [ce, se] = [Math.cos(view.elevation), Math.sin(view.elevation)];
-    const scale = view.distance / (1.9 * Math.min(canvas.clientWidth, canvas.clientHeight));
-    view.target = add(view.target, [sa, -ca, 0], scale * dx);
-    view.target = add(view.target, [-se * ca, -se * sa, ce], scale * dy);
-    later();
-  }
-
-  // One pointer turns, with shift or the right button moves; two pinch.
-  const down = new Map();
-  const apart = () => { const [a, b] = [...down.values()]; return Math.hypot(a.x - b.x, a.y - b.y); };
-  canvas.addEventListener("pointerdown", (e) => {
-    canvas.setPointerCapture(e.pointerId);
-    canvas.focus({ preventScroll: true });
-    down.set(e.pointerId, { x: e.clientX, y: e.clientY });
-  });
-  canvas.addEventListener("pointermove", (e) => {
-    const at = down.get(e.pointerId);
-    if (!at) return;
-    const wide = down.size === 2 ? apart() : 0;
-    const [dx, dy] = [e.clientX - at.x, e.clientY - at.y];
-    Object.assign(at, { x: e.clientX, y: e.clientY });
-    if (wide) { zoom(wide / Math.max(apart(), 1)); shift(dx / 2, dy / 2); }
-    else if (e.shiftKey || e.buttons & 6) shift(dx, dy);
-    else turn(dx, dy);
-  });
-  for (const gone of ["pointerup", "pointercancel"]) {
-    canvas.addEventListener(gone, (e) => down.delete(e.pointerId));
-  }
-  canvas.addEventListener("contextmenu", (e) => e.preventDefault());
-  // The wheel scrolls the page until the picture has been clicked.
-  canvas.addEventListener("wheel", (e) => {
-    if (document.activeElement !== canvas) return;
-    e.preventDefault();
-    zoom(Math.exp(0.0015 * e.deltaY));
-  }, { passive: false });
+  const limits = () => [0.02 * size, 40 * whole.radius];
+  const { zoom, turn } = cameraControls(canvas, view, limits, later);
   canvas.addEventListener("dblclick", () => lookFrom("whole"));
   const keys = {
     " ": () => play(!playing),

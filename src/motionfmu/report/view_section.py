@@ -12,7 +12,8 @@ from motionfmu.report.numbers import figure
 from motionfmu.report.style import AXES
 from motionfmu.report.view.scene import Scene
 
-SCRIPTS = ("view_math.js", "view.js")
+PICTURE = ("view_math.js", "machine_faces.js", "camera_controls.js")  # of a machine, shared
+SCRIPTS = (*PICTURE, "view.js")
 LEVELS = 65535
 # From slow to fast: lightness rises, so it reads in grey as well.
 SPEED = ("#20307a", "#2a6fb0", "#2b9c95", "#7ab648", "#e8b020")

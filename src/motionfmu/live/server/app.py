@@ -12,14 +12,17 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route, WebSocketRoute
 
+import motionfmu.base
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import Guard, same
 from motionfmu.live.file_record import RecordHead, csv_head, csv_rows
 from motionfmu.live.server.machine_link import MachineLink
+from motionfmu.live.server.planned_path import planned_path
 from motionfmu.live.server.request_table import checked, openapi, parsed
 from motionfmu.live.server.watchers import Watchers, text_of
 
 FILES = Path(__file__).parent / "page"
+SHARED = Path(motionfmu.base.__file__).parent / "machine_picture"
 KINDS = {
     ".html": "text/html",
     ".css": "text/css",
@@ -66,9 +69,17 @@ def application(link: MachineLink, token: str) -> Starlette:
     async def documented(request: Request) -> Response:
         return JSONResponse(openapi(version("motionfmu")))
 
+    async def planned(request: Request) -> Response:
+        if not same(request.headers.get("authorization", ""), f"Bearer {token}"):
+            return JSONResponse({"error": "the token is missing or wrong"}, 403)
+        path = await asyncio.to_thread(planned_path, link.about["program"])
+        return JSONResponse({"strokes": path})
+
+    files = sorted(f for place in (FILES, SHARED) for f in place.iterdir() if f.suffix in KINDS)
     routes = [
-        Route("/", _file("page.html")),
-        *(Route(f"/{f.name}", _file(f.name)) for f in sorted(FILES.iterdir()) if f.suffix in KINDS),
+        Route("/", _file(FILES / "page.html")),
+        *(Route(f"/{f.name}", _file(f)) for f in files),
+        Route("/planned", planned),
         Route("/do/{name:str}", do, methods=["POST"]),
         Route("/samples.csv", samples),
         Route("/openapi.json", documented),
@@ -114,8 +125,8 @@ async def _wrong(request: Request, error: Exception) -> Response:
     return JSONResponse({"error": str(error)}, 422)
 
 
-def _file(name: str) -> Answer:
-    file, kind = FILES / name, KINDS[Path(name).suffix]
+def _file(file: Path) -> Answer:
+    kind = KINDS[file.suffix]
 
     async def answer(request: Request) -> Response:
         return Response(file.read_bytes(), media_type=kind)

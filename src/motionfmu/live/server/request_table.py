@@ -57,7 +57,7 @@ Path = Annotated[str, Field(min_length=1, max_length=1024)]
 class Request(BaseModel):
     """A request: its docstring is what the documentation says, its fields are the arguments."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config = ConfigDict(extra="forbid", strict=True, defer_build=True)
     hand: ClassVar[bool] = True  # whether one must have the machine in hand
     server: ClassVar[bool] = False  # whether the server itself answers
     socket: ClassVar[bool] = False  # whether it is for a WebSocket only
@@ -121,6 +121,14 @@ class AskMdi(Request):
     gives: ClassVar[str] = '{"number": of the line, which the controller tells as taken}'
     line: Text
     component: Name | None = Field(None, description="none: the only one that takes lines")
+
+
+class AskCommand(Request):
+    """Give a command that the component's panel has."""
+
+    gives: ClassVar[str] = "time from which it acts [s]"
+    component: Name
+    name: Name = Field(description="its name in the panel")
 
 
 class AskStop(Request):
@@ -211,14 +219,6 @@ class AskChannels(Request):
     """Choose the channels of the scope."""
 
     names: Annotated[list[Name], Field(max_length=_NAMES)]
-
-
-class AskCommand(Request):
-    """Give a command that a component's panel has, such as Start of a network card."""
-
-    gives: ClassVar[str] = "time from which it acts [s]"
-    component: Name
-    name: Name
 
 
 class AskTrigger(Request):

@@ -20,7 +20,7 @@ from motionfmu.live.server.request_table import Checked, checked, parsed
 PERIOD = 1 / 50  # [s] between two frames
 PATIENCE = 5.0  # [s] for the token, and for a page that takes nothing
 PAGES = 100  # open at once
-STRANGERS = 32  # connections that have not said the token yet
+STRANGERS = 100  # connections that have not said the token yet
 SAMPLES = 1 << 14  # of a channel, that a page is sent at a time
 ANSWERS = 64  # that wait for a page to take them; it is not listened to until then
 PROGRAMS = 16  # keys of the hand that programs have by HTTP
@@ -106,6 +106,8 @@ class Watchers:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.hand.drop(watcher)
+            with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+                await socket.close(1011, "the page takes nothing")
 
     async def _knows(self, socket: WebSocket) -> bool:
         """Whether a page knows the token."""

@@ -1,22 +1,11 @@
 """An arm with a spherical wrist: where its joints are."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.scenarios.arm_lengths import Arm
+
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Arm:
-    """An arm with parallel axes 2 and 3 and a spherical wrist."""
-
-    # a1, a2, b, c1, c2, c3, c4 of Brandstoetter, Angerer and Hofbaur 2014 [mm]
-    lengths: tuple[float, ...]
-    offsets: tuple[float, ...] = (0.0,) * 6  # th = sign q - offset [rad]
-    signs: tuple[float, ...] = (1.0,) * 6
-    pen: float = 0.0  # length of the tool along z of the flange [mm]
 
 
 def chain(arm: Arm, joints: Array) -> dict[str, Array]:

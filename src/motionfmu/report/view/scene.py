@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.base import units
-from motionfmu.report.view.arm import Arm
 from motionfmu.run.decimate import Read, at, ends, reader
 from motionfmu.run.run_record import RunRecord
+from motionfmu.scenarios.arm_lengths import Arm, arm_of
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.view_signals import JOINTS
 
@@ -23,8 +23,6 @@ COARSE = 3e-4
 STANDS = 1e-6
 # Names that tell a tool and an arm by themselves.
 TOOLS = ("tool_position", "table_position")
-LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
-OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
 
 
 @dataclass(frozen=True)
@@ -57,7 +55,7 @@ def scene_of(run: RunRecord, lines: Sequence[DeviationLine] = ()) -> Scene | Non
         return None
     count, tool = len(run.time), position(run, name)
     joints = joint_signal(run, name)
-    arm = None if joints is None else arm_of(run, joints)
+    arm = None if joints is None else arm_of(run.resolver, run.parameter, joints)
     low, high = ends(count, tool)
     moved = high - low > STANDS
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
@@ -106,28 +104,6 @@ def joint_signal(run: RunRecord, tool: str) -> str | None:
     name = named or f"{tool.partition('.')[0]}.{JOINTS}"
     there = name in run.signals and run.signals[name].ndim == 2 and run.signals[name].shape[1] == 6
     return name if there else None
-
-
-def arm_of(run: RunRecord, joints: str) -> Arm | None:
-    """The arm's lengths: of [view], or parameters of the component that shows the joint angles."""
-    view = run.resolver.document.body.view
-    if view.lengths is not None:
-        lengths = tuple(1e3 * x for x in view.lengths)
-        return Arm(lengths, tuple(view.offsets), tuple(view.signs), 1e3 * view.pen)
-    component = joints.partition(".")[0]
-    ports = run.resolver.ports[component]
-    if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
-        return None
-
-    def told(name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
-        if name not in ports or ports[name].count != len(usual):
-            return usual
-        to_si = units.parse(ports[name].unit or "1").factor
-        return tuple(to_si * float(x) for x in run.parameter(f"{component}.{name}"))
-
-    lengths = tuple(1e3 * float(run.parameter(f"{component}.{n}")[0]) for n in LENGTHS)
-    offsets, signs = told(OFFSETS, (0.0,) * 6), told(SIGNS, (1.0,) * 6)
-    return Arm(lengths, offsets, signs, 1e3 * told(PEN, (0.0,))[0])
 
 
 def millimetres(resolver: Resolver, name: str, values: Array) -> Array:

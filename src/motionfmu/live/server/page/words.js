@@ -1,0 +1,55 @@
+// Numbers and states of a machine in words.
+
+const MINUS = "\u2212";
+
+// A number with so many places, its sign a minus that is as wide as a plus.
+export function fixed(value, places = 3) {
+  if (!Number.isFinite(value)) return "\u2013";
+  return (Math.abs(value) < 0.5 * 10 ** -places ? 0 : value).toFixed(places).replace("-", MINUS);
+}
+
+// A number with so many figures, for lists where sizes differ.
+export function figures(value, count = 4) {
+  if (typeof value === "boolean") return value ? "on" : "off";
+  if (typeof value === "string") return value;
+  if (!Number.isFinite(value)) return "\u2013";
+  if (Number.isInteger(value) && Math.abs(value) < 1e9) return String(value).replace("-", MINUS);
+  const size = Math.abs(value), text = size >= 1e6 || size < 1e-4
+    ? Number(value.toPrecision(count)).toExponential() : String(Number(value.toPrecision(count)));
+  return text.replace(/-/g, MINUS);
+}
+
+// Seconds as a clock reads them.
+export function clock(seconds) {
+  const whole = Math.floor(seconds), pad = (n) => String(n).padStart(2, "0");
+  const hours = Math.floor(whole / 3600), rest = `${pad(Math.floor(whole / 60) % 60)}:${pad(whole % 60)}`;
+  const parts = String(Math.floor((seconds - whole) * 1000)).padStart(3, "0");
+  return `${hours ? `${hours}:` : ""}${rest}.${parts}`;
+}
+
+// What the number of a variable means.
+export function meaning(variable, value) {
+  if (variable?.type === "Boolean") return value ? "on" : "off";
+  return variable?.words?.[value] ?? String(value);
+}
+
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+
+// An alarm: what happened decides what to do.
+const ADVICE = [
+  [/emergency/i, "Release the emergency stop, then reset."],
+  [/limit/i, "Reset, then jog away from the switch."],
+  [/following error|not in position/i,
+    "The axis did not follow: look for a load, a brake, a drive or an encoder that fails; then reset."],
+  [/encoder|scale|unplugged/i, "Plug the encoder in again, reset, and home."],
+  [/probe/i, "Take the probe off what it touches, then reset."],
+  [/dda|max_dda_acc|too many pulses/i, "The command changes too fast for the axis: a lower feed or override; then reset."],
+  [/invalid|refused|syntax/i, "Mend the line, then reset."],
+  [/home|switch/i, "Look at the home switches, reset, and home again."],
+  [/drive|servo|overload|current/i, "Find out what loads the drive; reset it, then the controller."],
+  [/link|connection|timeout|late/i, "Look at the link, then reset."],
+];
+
+export function advice(words) {
+  return (ADVICE.find(([about]) => about.test(words)) ?? [, "Find the cause, then reset."])[1];
+}

@@ -1,0 +1,45 @@
+"""The lengths of an arm that a moving picture draws: named, or its component's parameters."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from motionfmu.base import units
+from motionfmu.scenarios.system import Resolver
+
+LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
+
+
+@dataclass(frozen=True)
+class Arm:
+    """An arm with parallel axes 2 and 3 and a spherical wrist."""
+
+    # a1, a2, b, c1, c2, c3, c4 of Brandstoetter, Angerer and Hofbaur 2014 [mm]
+    lengths: tuple[float, ...]
+    offsets: tuple[float, ...] = (0.0,) * 6  # th = sign q - offset [rad]
+    signs: tuple[float, ...] = (1.0,) * 6
+    pen: float = 0.0  # length of the tool along z of the flange [mm]
+
+
+def arm_of(
+    resolver: Resolver, parameter: Callable[[str], Sequence[float]], joints: str
+) -> Arm | None:
+    """The arm's lengths: of [view], or parameters of the component that shows the joint angles."""
+    view = resolver.document.body.view
+    if view.lengths is not None:
+        lengths = tuple(1e3 * x for x in view.lengths)
+        return Arm(lengths, tuple(view.offsets), tuple(view.signs), 1e3 * view.pen)
+    component = joints.partition(".")[0]
+    ports = resolver.ports[component]
+    if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
+        return None
+
+    def told(name: str, usual: tuple[float, ...]) -> tuple[float, ...]:
+        if name not in ports or ports[name].count != len(usual):
+            return usual
+        to_si = units.parse(ports[name].unit or "1").factor
+        return tuple(to_si * float(x) for x in parameter(f"{component}.{name}"))
+
+    lengths = tuple(1e3 * float(parameter(f"{component}.{n}")[0]) for n in LENGTHS)
+    offsets, signs = told(OFFSETS, (0.0,) * 6), told(SIGNS, (1.0,) * 6)
+    return Arm(lengths, offsets, signs, 1e3 * told(PEN, (0.0,))[0])

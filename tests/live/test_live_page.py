@@ -1,0 +1,390 @@
+"""The page of a live machine in a browser: what an operator does, and what it shows."""
+
+import io
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from browser import PHONE
+from browser import tab as browser_tab
+from conftest import ROOT
+from live_pages import serving
+from page_words import WORDS
+
+import motionfmu
+
+DESK = {"width": 1400, "height": 900}
+# The program waits for cycle start, so that the axes can be moved by hand.
+WAITS = {"mcc.auto_start": False}
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with serving(ROOT / "scenarios/circle", set=WAITS) as found:
+        yield found
+
+
+@pytest.fixture
+def tab(browser: Any, address: str) -> Iterator[Any]:
+    with browser_tab(browser, address, DESK) as page:
+        ready(page)
+        yield page
+
+
+def ready(page: Any) -> None:
+    """Wait until the page has the machine, and take it in hand."""
+    from playwright.sync_api import expect
+
+    expect(page.locator("#name")).to_have_text("circle")
+    expect(page.locator("#hand")).not_to_have_text("")
+    if (
+        page.locator("#take").is_visible()
+        and "in your hand" not in page.locator("#hand").inner_text()
+    ):
+        page.locator("#take").click()
+    expect(page.locator("#hand")).to_contain_text("in your hand")
+
+
+def position(page: Any, axis: int) -> float:
+    """A number of the readout [mm]."""
+    text = page.locator("#readout tbody tr").nth(axis - 1).locator("td").first.inner_text()
+    return float(text.replace("\N{MINUS SIGN}", "-"))
+
+
+def until(page: Any, script: str, argument: Any = None) -> Any:
+    """Wait for as long as it takes until a script gives something true."""
+    return page.wait_for_function(script, arg=argument, timeout=60_000).json_value()
+
+
+MOVED = """([axis, from, way]) => {
+  const cell = document.querySelector(`#readout tbody tr:nth-child(${axis}) td`);
+  return way * (Number(cell.textContent.replace("\\u2212", "-")) - from) > 0.05;
+}"""
+RESTS = """([axis, times]) => {
+  const cell = document.querySelector(`#readout tbody tr:nth-child(${axis}) td`);
+  const now = [cell.textContent, document.querySelector("#time").textContent];
+  window.rest = window.rest?.[0] === now[0] ? [now[0], window.rest[1],
+    window.rest[2] + (now[1] !== window.rest[1])] : [...now, 0];
+  if (window.rest[2]) window.rest[1] = now[1];
+  return window.rest[2] > times;
+}"""
+
+
+def rests(page: Any, axis: int) -> None:
+    """Wait until an axis has the same position in 15 readouts of a running machine."""
+    page.evaluate("() => { window.rest = null; }")
+    until(page, RESTS, [axis, 15])
+
+
+def test_a_key_of_the_keyboard_jogs_while_it_is_down(tab: Any) -> None:
+    before = position(tab, 1)
+    tab.keyboard.down("ArrowRight")  # the pad has not the focus: nothing may move
+    tab.keyboard.up("ArrowRight")
+    tab.locator(".jog-pad").focus()
+    tab.keyboard.down("ArrowRight")
+    until(tab, MOVED, [1, before, 1])
+    tab.keyboard.up("ArrowRight")
+    rests(tab, 1)
+    there = position(tab, 1)
+    assert there > before + 0.05
+    tab.keyboard.down("ArrowLeft")
+    until(tab, MOVED, [1, there, -1])
+    tab.keyboard.up("ArrowLeft")
+    rests(tab, 1)
+    assert position(tab, 1) < there - 0.05
+
+
+def test_the_keys_jog_everywhere_only_if_that_is_switched_on(tab: Any) -> None:
+    tab.locator("#tab-operate").focus()
+    before = position(tab, 2)
+    tab.locator("#h-readout").click()
+    tab.keyboard.down("ArrowUp")
+    tab.keyboard.up("ArrowUp")
+    rests(tab, 2)
+    assert position(tab, 2) == before
+    tab.get_by_role("button", name="Keys jog").click()
+    tab.keyboard.down("ArrowUp")
+    until(tab, MOVED, [2, before, 1])
+    tab.keyboard.up("ArrowUp")
+    rests(tab, 2)
+
+
+def test_a_finger_jogs_and_a_page_that_loses_the_focus_lets_go(browser: Any, address: str) -> None:
+    with browser_tab(browser, address, PHONE) as tab:
+        ready(tab)
+        for gone in ("pointerup", "pointercancel", "blur"):
+            before = position(tab, 1)
+            button = tab.get_by_role("button", name="Jog X minus")
+            touch = {"pointerId": 7, "pointerType": "touch", "isPrimary": True, "button": 0}
+            button.evaluate("b => { b.setPointerCapture = () => {}; }")
+            button.dispatch_event("pointerdown", touch)
+            until(tab, MOVED, [1, before, -1])
+            if gone == "blur":
+                tab.evaluate("() => dispatchEvent(new Event('blur'))")
+            else:
+                button.dispatch_event(gone, touch)
+            rests(tab, 1)
+            assert "down" not in (button.get_attribute("class") or "")
+
+
+def test_lines_by_hand_run_and_wrong_ones_are_refused_in_words(tab: Any) -> None:
+    from playwright.sync_api import expect
+
+    line = tab.get_by_label("Line to run")
+    line.fill("G90 G1 X3.5 F3000")
+    line.press("Enter")
+    expect(tab.locator("#readout tbody td").first).to_have_text("3.500")
+    line.fill("G1 X4 Q")
+    line.press("Enter")
+    said = tab.locator("#mdi [role=status]")
+    expect(said).to_contain_text("Refused: Number expected after")
+    assert position(tab, 1) == 3.5
+    line.press("ArrowUp")
+    assert line.input_value() == "G1 X4 Q"
+    line.press("ArrowUp")
+    assert line.input_value() == "G90 G1 X3.5 F3000"
+    line.press("ArrowDown")
+    line.press("ArrowDown")
+    assert line.input_value() == ""
+
+
+def test_the_program_is_started_held_and_overridden(tab: Any) -> None:
+    from playwright.sync_api import expect
+
+    dial = tab.get_by_label("Feed", exact=True)
+    dial.fill("0.5")
+    tab.get_by_role("button", name="Cycle start").click()
+    current = tab.locator("#program-lines [aria-current=step]")
+    expect(current).to_contain_text("N40 G3")
+    expect(tab.locator("#readout")).to_contain_text("3000 mm/min")
+    hold = tab.get_by_role("button", name="Hold")
+    hold.click()
+    expect(hold).to_have_attribute("aria-pressed", "true")
+    expect(tab.locator("#state")).to_have_text("Hold")
+    expect(tab.locator("#readout")).to_contain_text("Feed0 mm/min")
+    hold.click()
+    tab.get_by_role("button", name="Feed back to where it began").click()
+    expect(tab.locator("#readout")).to_contain_text("6000 mm/min")
+    expect(tab.locator(".facts")).to_contain_text("Feed")
+    tab.get_by_role("button", name="Abort").click()
+    expect(tab.locator("#readout")).to_contain_text("Feed0 mm/min")
+
+
+def test_an_alarm_says_what_to_do_and_the_emergency_stop_is_released(tab: Any) -> None:
+    from playwright.sync_api import expect
+
+    tab.locator("#stop").click()
+    alarm = tab.get_by_role("alert")
+    expect(alarm).to_contain_text("Emergency stop")
+    expect(alarm).to_contain_text("Release the emergency stop, then reset.")
+    expect(tab.locator("#state")).to_have_attribute("data-kind", "alarm")
+    tab.get_by_role("button", name="Release the stop").click()
+    expect(tab.locator("#stop")).to_have_text("Emergency stop")
+    tab.get_by_role("button", name="Reset", exact=True).click()
+    expect(alarm).to_be_hidden()
+
+
+def test_a_fault_is_set_shown_as_changed_and_undone(tab: Any) -> None:
+    from playwright.sync_api import expect
+
+    tab.locator("#tab-values").click()
+    first = tab.locator("#values section").first
+    expect(first.locator("h2")).to_have_text("Faults")
+    tab.locator("#values-search").fill("unplugged")
+    box = tab.locator(".value", has_text="Encoder unplugged")
+    plug = box.get_by_role("switch").first
+    plug.check()
+    expect(box).to_have_class(re.compile("changed"))
+    expect(box.locator(".was")).to_have_text("began as off")
+    box.get_by_role("button", name="Undo").click()
+    expect(box).not_to_have_class(re.compile("changed"))
+    expect(plug).not_to_be_checked()
+    tab.locator("#values-search").fill("force")
+    force = tab.locator(".value", has_text="Force on the tables").get_by_role("spinbutton").first
+    force.fill("12.5")
+    force.press("Enter")
+    undo = tab.get_by_role("button", name="Undo Force on the tables")
+    undo.click()
+    expect(undo).to_be_hidden()
+    expect(force).to_have_value("0")
+
+
+def test_a_trigger_catches_the_edge_and_its_record_is_a_file(tab: Any) -> None:
+    from playwright.sync_api import expect
+
+    tab.locator("#tab-scope").click()
+    expect(tab.locator("#scope-channels li")).to_have_count(4)
+    search = tab.get_by_role("combobox", name="Add a signal")
+    search.fill("mcc path_feed")
+    search.press("Enter")
+    expect(tab.locator("#scope-channels li")).to_have_count(5)
+    tab.locator("#trigger summary").click()
+    tab.locator("#trigger-channel").select_option("mcc.path_feed")
+    tab.locator("#trigger-level").fill("1")
+    tab.locator("#trigger-length").select_option("0.2")
+    tab.get_by_role("button", name="Arm").click()
+    expect(tab.locator("#trigger-state")).to_contain_text(
+        "waits until mcc.path_feed rises through 1"
+    )
+    tab.locator("#tab-operate").click()
+    line = tab.get_by_label("Line to run")
+    line.fill("G91 G1 X1 F3000")
+    line.press("Enter")
+    tab.locator("#tab-scope").click()
+    expect(tab.locator("#trigger-state")).to_contain_text("triggered at")
+    expect(tab.locator("#scope-run")).to_have_text("Run")
+    with tab.expect_download() as got:
+        tab.get_by_role("button", name="NumPy").click()
+    record = np.load(io.BytesIO(Path(got.value.path()).read_bytes()))
+    feed = record["mcc.path_feed"]
+    assert len(feed) == len(record["time"]) == 2000
+    assert feed[499] < 1 <= feed[500]  # a quarter is before it
+    assert np.allclose(np.diff(record["time"]), 1e-4)
+    with tab.expect_download() as got:
+        tab.get_by_role("button", name="CSV").click()
+    head, *rows = Path(got.value.path()).read_text().splitlines()
+    assert head.split(",") == list(record.files)
+    assert [float(r.split(",")[5]) for r in rows] == feed.tolist()
+    tab.get_by_role("button", name="Run", exact=True).click()
+    tab.get_by_role("button", name="Remove mcc.path_feed").click()
+    expect(tab.locator("#scope-channels li")).to_have_count(4)
+
+
+@pytest.mark.parametrize("show", ["field", "fft", "xy"])
+def test_every_picture_of_the_oscilloscope_has_ink_of_its_channels(tab: Any, show: str) -> None:
+    tab.locator("#tab-scope").click()
+    tab.locator("#scope-show").select_option(show)
+    ink = """() => {
+      const c = document.querySelector("#scope");
+      const { data } = c.getContext("2d").getImageData(0, 0, c.width, c.height);
+      const colours = [...document.querySelectorAll(".swatch")]
+        .map((b) => b.style.getPropertyValue("--c").match(/\\w\\w/g).map((h) => parseInt(h, 16)));
+      return colours.filter(([r, g, b]) => { for (let k = 0; k < data.length; k += 4) {
+        if (Math.abs(data[k] - r) + Math.abs(data[k + 1] - g) + Math.abs(data[k + 2] - b) < 12
+          && data[k + 3] > 120) return true; } return false; }).length >= 2;
+    }"""
+    line_of(tab, "G91 G1 X2 Y1 F600")
+    until(tab, ink)
+
+
+def line_of(tab: Any, line: str) -> None:
+    """Type a line, whatever view is open."""
+    view = tab.locator("[role=tab][aria-selected=true]")
+    own = view.get_attribute("id")
+    tab.locator("#tab-operate").click()
+    field = tab.get_by_label("Line to run")
+    field.fill(line)
+    field.press("Enter")
+    tab.locator(f"#{own}").click()
+
+
+def test_what_was_done_is_saved_and_its_run_has_the_same_end(browser: Any, tmp_path: Path) -> None:
+    from playwright.sync_api import expect
+
+    with (
+        serving(ROOT / "scenarios/circle", set=WAITS) as place,
+        browser_tab(browser, place, DESK) as tab,
+    ):
+        ready(tab)
+        line_of(tab, "G1 X2 F3000")
+        expect(tab.locator("#readout tbody td").first).to_have_text("2.000")
+        tab.locator("#tab-journal").click()
+        expect(tab.locator("#journal")).to_contain_text("mcc.mdi_seq")
+        tab.get_by_role("button", name="Pause").click()
+        expect(tab.locator("#run")).to_have_text("Run")
+        tab.locator("#checks-search").fill("table_position[1]")
+        row = tab.locator("#checks .check", has_text="machine.table_position[1]")
+        row.get_by_role("checkbox").check()
+        row.get_by_role("spinbutton").fill("5e-6")
+        tab.get_by_label("Folder").fill(str(tmp_path / "by_hand"))
+        tab.get_by_role("button", name="Save", exact=True).click()
+        expect(tab.locator("#told")).to_contain_text("Saved")
+        tab.get_by_label("Folder").press("Enter")  # once more: it is there
+        expect(tab.locator("#told")).to_have_class("told bad")
+    result = motionfmu.load(tmp_path / "by_hand").run()
+    assert result.ok
+    names = {v.name for v in result.checks}
+    assert any("machine.table_position[1]" in n for n in names) and len(result.checks) >= 3
+
+
+def test_one_goes_back_to_a_state_and_on_from_there(browser: Any) -> None:
+    from playwright.sync_api import expect
+
+    with (
+        serving(ROOT / "scenarios/circle", set=WAITS, pace=None) as place,
+        browser_tab(browser, place, DESK) as tab,
+    ):
+        ready(tab)
+        until(tab, '() => document.querySelector("#time").textContent > "00:03"')
+        tab.locator("#tab-journal").click()
+        back = tab.get_by_label("Time to go back to")
+        back.evaluate("b => { b.value = 1.5; b.dispatchEvent(new Event('input')); }")
+        tab.get_by_role("button", name="Go back").click()
+        expect(tab.locator("#time")).to_have_text(re.compile(r"00:01\.0"))
+        expect(tab.locator("#run")).to_have_text("Run")
+        tab.get_by_role("button", name="Step", exact=True).click()
+        tab.locator("#run").click()
+        until(tab, '() => document.querySelector("#time").textContent > "00:02"')
+
+
+def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
+    browser: Any, tab: Any, address: str
+) -> None:
+    from playwright.sync_api import expect
+
+    with browser_tab(browser, address, DESK) as other:
+        expect(other.locator("#hand")).to_contain_text("in hand")
+        expect(other.locator("body")).to_have_class("watching")
+        expect(tab.locator("#hand")).to_contain_text("1 more page watches")
+        before = position(other, 2)
+        other.locator(".jog-pad").focus()
+        other.keyboard.down("ArrowUp")
+        expect(other.locator("#told")).to_contain_text("take it first")
+        other.keyboard.up("ArrowUp")
+        rests(other, 2)
+        assert position(other, 2) == before
+        other.get_by_role("button", name="Take it").click()
+        expect(other.locator("#hand")).to_contain_text("in your hand")
+        expect(tab.locator("body")).to_have_class("watching")
+        other.locator(".jog-pad").focus()
+        other.keyboard.down("ArrowUp")
+        until(other, MOVED, [2, before, 1])
+        other.keyboard.up("ArrowUp")
+        rests(other, 2)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+def test_no_text_lies_over_text_and_nothing_is_too_wide(
+    browser: Any, address: str, size: dict[str, int], theme: Any
+) -> None:
+    with browser_tab(browser, address, size) as tab:
+        tab.emulate_media(color_scheme=theme)
+        ready(tab)
+        for view in ("operate", "scope", "values", "journal"):
+            tab.locator(f"#tab-{view}").click()
+            assert tab.locator("html").evaluate("e => e.scrollWidth") == size["width"], view
+            wrong = [w for w in tab.evaluate(WORDS) if "Emergency stop" not in w]
+            assert wrong == [], view
+        stop = tab.locator("#stop").bounding_box()
+        assert 0 <= stop["y"] and stop["y"] + stop["height"] <= size["height"]
+
+
+ROWS = {"robot6": 6, "hydraulic_slide": 1, "engraver": 2}
+
+
+@pytest.mark.parametrize("name", ["robot6", "hydraulic_slide", "engraver"])
+def test_other_machines_have_their_page(browser: Any, name: str) -> None:
+    from playwright.sync_api import expect
+
+    with (
+        serving(name) as place,
+        browser_tab(browser, place, DESK) as tab,
+    ):
+        expect(tab.locator("#name")).to_have_text(name)
+        expect(tab.locator("#readout tbody tr")).to_have_count(ROWS[name])
+        expect(tab.locator("#keys button").first).to_be_visible()
+        assert tab.evaluate(WORDS) == []
