@@ -146,8 +146,9 @@ static void publish(struct fmu *f)
     memcpy(v->modes, mcc->readout.codes, sizeof v->modes);
     memcpy(v->compensation, mcc->written.added, sizeof v->compensation);
     const bool fixed = (mcc->trajectory.overrides & OUTPUTS_SPEED_FIXED) != 0;
-    v->spindle_speed = mcc->written.outputs.spindle * (fixed ? 1.0 : v->spindle_override);
-    v->coolant = mcc->written.outputs.coolant;
+    const double speed = mcc->written.outputs.spindle * (fixed ? 1.0 : v->spindle_override);
+    v->spindle_speed = v->spindle_stop ? 0.0 : speed;
+    v->coolant = mcc->written.outputs.coolant ^ v->coolant_flip;
     v->digital_out = (int32_t)mcc->written.outputs.digital;
     v->tool = mcc->written.outputs.tool;
     v->tool_asked = mcc->written.outputs.asks ? mcc->written.outputs.asked : -1;
@@ -158,6 +159,8 @@ static void publish(struct fmu *f)
     v->mdi_done = mcc->mdi.ended;
     v->mdi_fault = (int32_t)mcc->mdi.fault.fault;
     v->mdi_refused = mcc->mdi.refused;
+    v->probe_found = mcc->inquiry.touched;
+    memcpy(v->probed, mcc->inquiry.contact, sizeof v->probed);
     v->queue = mcc->queue.count;
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;

@@ -34,6 +34,10 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         Path | None,
         typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
     ] = None,
+    grbl: Annotated[
+        str | None,
+        typer.Option(metavar="PORT|pty", help="Be a Grbl 1.1 for its senders, on 127.0.0.1."),
+    ] = None,
     opcua: Annotated[
         int | None,
         typer.Option(metavar="PORT", help="OPC UA for Machine Tools on this port; 0: any."),
@@ -92,7 +96,7 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         None if save_as is None else str(save_as),
         plan,
     )
-    asyncio.run(_serve(start, _Ports(port, opcua, opcua_nodesets), open_))
+    asyncio.run(_serve(start, _Ports(port, opcua, opcua_nodesets, grbl), open_))
 
 
 @dataclass(frozen=True)
@@ -102,6 +106,7 @@ class _Ports:
     page: int
     opcua: int | None
     nodesets: Path | None
+    grbl: str | None
 
 
 def _pair(text: str) -> tuple[str, Any]:
@@ -125,7 +130,7 @@ async def _serve(start: "MachineStart", ports: _Ports, opened: bool) -> None:
 
     from motionfmu.base.page_server import PageServer
     from motionfmu.cli.card import on_end, stopped
-    from motionfmu.live.server import MESSAGE_MAX, MachineLink, application
+    from motionfmu.live.server import MESSAGE_MAX, GrblPort, MachineLink, application
 
     ended = asyncio.Event()
     came = on_end(ended.set)
@@ -133,6 +138,7 @@ async def _serve(start: "MachineStart", ports: _Ports, opened: bool) -> None:
     link = MachineLink(replace(start, running=False), _tell)
     # The port is taken before the machine begins: one that is in use is told at once.
     serving = PageServer(application(link, token), ports.page, message_max=MESSAGE_MAX)
+    opening = None if ports.grbl is None else GrblPort(link, ports.grbl)
     async with AsyncExitStack() as stack:
         begins = asyncio.create_task(stack.enter_async_context(link))
         stops = asyncio.create_task(ended.wait())
@@ -151,6 +157,9 @@ async def _serve(start: "MachineStart", ports: _Ports, opened: bool) -> None:
             there = await stack.enter_async_context(serving)
             address = f"http://127.0.0.1:{there}/?token={token}"
             out.print(f"page: {address}", soft_wrap=True)
+            if opening is not None:
+                await stack.enter_async_context(opening)
+                out.print(f"grbl: {opening.address}", soft_wrap=True)
             if start.running:  # who looks at it is there now
                 await link.ask("go")
             if opened:

@@ -36,6 +36,11 @@ def about(machine: LiveMachine) -> dict[str, Any]:
                 for name in [f"{component}.{port.name}"]
                 if name in outputs or name in settable
             },
+            "parameters": {
+                port.name: _parameter(machine, component, port)
+                for port in ports.values()
+                if port.causality == "parameter" and port.type != "String"
+            },
         }
         if panel and panel.mdi and panel.mdi.fault:
             components[component]["variables"][panel.mdi.fault]["words"] = _faults()
@@ -51,6 +56,12 @@ def about(machine: LiveMachine) -> dict[str, Any]:
         "program": _program(machine),
         "scene": scene(machine),
     }
+
+
+def _parameter(machine: LiveMachine, component: str, port: Port) -> list[Any]:
+    """The elements of a parameter as the machine began."""
+    values = machine.parameter(f"{component}.{port.name}")
+    return list(values * port.count if len(values) == 1 else values)
 
 
 def _variable(port: Port, settable: bool) -> dict[str, Any]:
