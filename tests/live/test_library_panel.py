@@ -169,6 +169,7 @@ def test_a_program_waits_for_cycle_start(tmp_path: Path) -> None:
                 machine.set("mcc.cycle_start", True)
                 machine.step(5000)
                 machine.set("mcc.cycle_start", False)
+                machine.step(20)
                 assert machine["mcc.position"][0] == 7.0
             else:
                 assert there == 7.0

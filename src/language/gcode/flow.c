@@ -302,7 +302,8 @@ static enum fault find_file(struct interpreter *in, const struct program *p, con
     return FAULT_NONE;
 }
 
-/* Whether a text is searched for a subprogram: first the one that calls; lines by hand have none. */
+/* Whether a text is searched for a subprogram: first the one that calls; lines by hand have
+ * none. */
 static bool searched(const struct interpreter *in, const struct program *p, int32_t file,
                      bool first)
 {
