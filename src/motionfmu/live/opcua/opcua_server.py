@@ -47,6 +47,8 @@ class _Guests(UserManager):
 class _BoundedConnection(OPCUAProtocol):
     """A connection that keeps no more than a message of it may have; asyncua keeps any length."""
 
+    _buffer: bytes
+
     def data_received(self, data: bytes) -> None:
         if len(self._buffer) + len(data) > MESSAGE_MAX:
             self._buffer = b""
