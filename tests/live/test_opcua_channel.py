@@ -57,6 +57,7 @@ MILL: dict[str, list[Row]] = {
         (0.7, RUN, 0, [("jog", [1, 0, 0])], M.Automatic, S.Active, P.Running),
         (0.8, REST, 0, [], M.Automatic, S.Reset, P.Ended),
         (0.9, 5, 0, [("mpg_axis", [1])], M.JogManual, S.Active, P.Ended),
+        (1.0, RUN, 0, [("mpg_axis", [0])], M.JogManual, S.Active, P.Ended),
     ],
     "an alarm ends a program, which is there again when it has gone": [
         (0.1, RUN, 0, [], M.Automatic, S.Active, P.Running),
@@ -115,11 +116,10 @@ def test_other_controllers_tell_theirs() -> None:
         (M.Automatic, S.Reset, P.Aborted),
         (M.Automatic, S.Reset, P.Initializing),
     ]
-    # unhomed, search, ready, accelerate, decelerate, ready, fault
-    assert list(seen("msp430_positioner", [0, 2, 4, 5, 7, 4, 8])) == [
+    # unhomed, search, accelerate before it was seen to rest, decelerate, ready, fault
+    assert list(seen("msp430_positioner", [0, 2, 5, 7, 4, 8])) == [
         (M.Automatic, S.Reset, P.Initializing),
         (M.Reference, S.Active, P.Initializing),
-        (M.Reference, S.Reset, P.Initializing),
         (M.Automatic, S.Active, P.Running),
         (M.Automatic, S.Active, P.Running),
         (M.Automatic, S.Reset, P.Ended),

@@ -8,7 +8,9 @@ import pytest
 from opcua_bench import STATE, bench
 
 from motionfmu.base.errors import InputError
-from motionfmu.live.opcua.node_table import type_nodes
+from motionfmu.live.opcua import machine_nodes
+from motionfmu.live.opcua.channel_watch import ChannelMode, ChannelState
+from motionfmu.live.opcua.node_table import TypeNode, type_nodes
 from motionfmu.live.opcua.node_tree import NodeTree
 from motionfmu.live.opcua.nodesets import MACHINE_TOOL, found, order
 
@@ -27,6 +29,38 @@ def nodeset(
         "</Models></UANodeSet>"
     )
     return file
+
+
+def test_states_and_transitions_are_those_of_their_types() -> None:
+    nodes = {(n.specification.prefix, n.number): n for n in type_nodes()}
+    numbers = {
+        (n.specification.prefix, n.parent): n.value for n in nodes.values() if n.value is not None
+    }
+
+    def is_part(prefix: str, number: int, kind: int, name: str) -> bool:
+        node = nodes[prefix, number]
+        return (node.parent, node.name.rpartition(":")[2]) == (kind, name)
+
+    for state, number in machine_nodes._PROGRAM_STATES.items():
+        assert is_part("MachineTool", number, 15, state.name)
+        assert numbers["MachineTool", number] == state
+    for (begin, end), (number, value) in machine_nodes._TRANSITIONS.items():
+        assert is_part("MachineTool", number, 15, f"{begin.name}To{end.name}")
+        assert numbers["MachineTool", number] == value
+    for name, number in machine_nodes._ITEM_STATES.items():
+        assert is_part("Machinery", number, 1002, name)
+    for name, number in machine_nodes._OPERATION_MODES.items():
+        assert is_part("MachineTool", number, 1003, name)
+    for mode in (ChannelMode, ChannelState):
+        (names,) = (
+            n.names for n in nodes.values() if n.names and _above(nodes, n) == mode.__name__
+        )
+        assert names == tuple(m.name for m in mode)
+
+
+def _above(nodes: dict[tuple[str, int], TypeNode], node: TypeNode) -> str:
+    assert node.parent is not None
+    return nodes[node.specification.prefix, node.parent].name.rpartition(":")[2]
 
 
 def test_each_nodeset_comes_behind_those_that_it_needs(tmp_path: Path) -> None:

@@ -127,7 +127,7 @@ class ChannelWatch:
     def _set_mode(self, sample: ChannelSample, hand: list[ChannelMode], busy: bool) -> None:
         """The mode is that of what has begun, until everything rests again."""
         if busy and self._rests:
-            self._cause = hand[0] if hand else self._begins
+            self._cause = self._begins
         if busy:
             self.mode = hand[0] if hand else self._cause
         if busy and self.mode is ChannelMode.JogManual and sample.increment:
