@@ -41,16 +41,7 @@ class LoopRequest:
 
 @dataclass
 class MachineLoop:
-    """Steps a machine at a pace.
-
-    Attributes
-    ----------
-    machine : LiveMachine
-    pace : Pace
-    running : bool
-    tell : callable
-        Gets what nobody asked for: a triggered recording, and its samples.
-    """
+    """Steps a machine at a pace."""
 
     machine: LiveMachine
     pace: Pace = field(default_factory=Pace)

@@ -37,14 +37,7 @@ class _WaitingLines:
 
 
 class ManualInputs:
-    """Keys that are held, and lines that are typed.
-
-    Parameters
-    ----------
-    machine : LiveMachine
-    clock : callable
-        The wall's [s].
-    """
+    """Keys that are held, and lines that are typed."""
 
     def __init__(
         self, machine: LiveMachine, clock: Callable[[], float] = time.perf_counter
