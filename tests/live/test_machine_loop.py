@@ -12,7 +12,7 @@ import pytest
 import motionfmu
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveMachine, Pace
-from motionfmu.live.machine_loop import Asked, MachineLoop
+from motionfmu.live.machine_loop import LoopRequest, MachineLoop
 from motionfmu.live.server.request_table import REQUESTS, checked, openapi, parsed
 
 
@@ -39,7 +39,9 @@ class Bench:
         answers: list[Any] = []
         asked = checked(request, arguments)
         self.loop.asked.put(
-            Asked(asked.name, asked.arguments, lambda value, error: answers.append((value, error)))
+            LoopRequest(
+                asked.name, asked.arguments, lambda value, error: answers.append((value, error))
+            )
         )
         self.loop._answer(wait=False)
         while not answers and self.loop._goal is not None:
@@ -136,7 +138,7 @@ def test_single_steps_are_answered_when_they_are_made_and_a_pause_ends_them(benc
     bench.ask("pause")
     assert bench.ask("step", count=5000) == pytest.approx(0.5)
     answers: list[Any] = []
-    many = Asked("step", {"count": 10**12}, lambda *answer: answers.append(answer))
+    many = LoopRequest("step", {"count": 10**12}, lambda *answer: answers.append(answer))
     bench.loop.asked.put(many)
     bench.loop._answer(wait=False)
     bench.loop._turn()
@@ -289,6 +291,6 @@ def test_the_loop_ends_from_another_thread() -> None:
         loop = MachineLoop(machine, Pace(math.inf))
         thread = threading.Thread(target=loop.run)
         thread.start()
-        loop.asked.put(Asked("end", {}, lambda value, error: None))
+        loop.asked.put(LoopRequest("end", {}, lambda value, error: None))
         thread.join(20)
         assert not thread.is_alive()

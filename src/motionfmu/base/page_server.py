@@ -22,7 +22,7 @@ ASKING = 10.0  # [s] for a connection's first request
 SENDING = 1 << 18  # [byte] that the system keeps for a page that does not read them
 
 
-class _Connection(AutoHTTPProtocol):  # type: ignore[misc,valid-type]  # chosen as it is loaded
+class _PageConnection(AutoHTTPProtocol):  # type: ignore[misc,valid-type]  # chosen as it is loaded
     """A connection, which is cut off if they are too many or it asks for nothing."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:
@@ -37,7 +37,7 @@ class _Connection(AutoHTTPProtocol):  # type: ignore[misc,valid-type]  # chosen 
             transport.abort()
 
 
-class _Socket(WebSocketsSansIOProtocol):
+class _PageSocket(WebSocketsSansIOProtocol):
     """A WebSocket that is cut off when it is to be closed, but its page reads nothing."""
 
     def handle_connect(self, event: Any) -> None:
@@ -91,8 +91,8 @@ class PageServer:
         self._server = uvicorn.Server(
             uvicorn.Config(
                 app,
-                http=_Connection,
-                ws=_Socket,
+                http=_PageConnection,
+                ws=_PageSocket,
                 # On a loopback it costs more than it saves.
                 ws_per_message_deflate=False,
                 log_level="error",  # what strangers send is no news

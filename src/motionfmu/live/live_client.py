@@ -19,7 +19,7 @@ _PATIENCE = 60.0  # [s] for an answer
 
 
 class LiveClient:
-    """A live machine that another process runs, as ``motionfmu live`` does.
+    """A live machine that another process runs.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ class LiveClient:
         return float(self.ask("jog", direction=0, **given))
 
     def mdi(self, line: str, component: str | None = None) -> int:
-        """Give a controller a line of a program to run, behind those given before.
+        """Give a controller a line to run, behind those before.
 
         Parameters
         ----------

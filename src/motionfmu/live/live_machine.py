@@ -207,7 +207,18 @@ class LiveMachine:
         return self._system.step_ns
 
     def unit(self, channel: str) -> str:
-        """The unit of a signal or of an element of it."""
+        """The unit of a signal or of an element of it.
+
+        Parameters
+        ----------
+        channel : str
+            As of `ring`.
+
+        Returns
+        -------
+        str
+            Empty without one.
+        """
         whole, _ = self._element(channel)
         known = self._outputs.get(whole) or self._inputs[whole]
         return known.port.unit or ""
@@ -218,7 +229,18 @@ class LiveMachine:
         return tuple(self._outputs), tuple(self._inputs)
 
     def text(self, name: str) -> str | None:
-        """What the scenario sets a text variable to; None if nothing."""
+        """What the scenario sets a text variable to.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+
+        Returns
+        -------
+        str or None
+            None if it sets nothing.
+        """
         texts = (s.values[0] for s in self._system.settings if s.end.name == name)
         return next(map(str, texts), None)
 
@@ -254,12 +276,21 @@ class LiveMachine:
         return action
 
     def checked(self, name: str, value: Any) -> tuple[str, tuple[Any, ...]]:
-        """The variable that a name means, and the values of all its elements with this one.
+        """What `set` would set, without setting it.
 
         Parameters
         ----------
-        name, value :
+        name : str
+            As of `set`.
+        value : number, bool, str or list
             As of `set`, which raises the same errors.
+
+        Returns
+        -------
+        name : str
+            The whole variable.
+        values : tuple
+            Of all its elements.
         """
         whole, element = self._split(name)
         end = self._inputs[whole]
@@ -277,12 +308,12 @@ class LiveMachine:
 
     @property
     def changed_values(self) -> dict[str, tuple[tuple[Any, ...], tuple[Any, ...]]]:
-        """What has another value than at the beginning, by name: that value, and the present."""
+        """By name, values at the beginning and now that differ."""
         pairs = {n: (_all(self._first[n], v), v) for n, v in self._values.items()}
         return {n: (first, now) for n, (first, now) in pairs.items() if first != _all(now, first)}
 
     def first(self, name: str) -> tuple[str, Any]:
-        """What `set` takes to give a variable the value that it had when the machine began.
+        """The value that a variable had when the machine began.
 
         Parameters
         ----------
@@ -493,7 +524,7 @@ class LiveMachine:
         return whole, element or 0
 
     def fill(self, rings: Sequence[SampleRing], count: int) -> None:
-        """Make communication steps; write the channels of rings before each.
+        """Make communication steps, with a sample before each.
 
         Parameters
         ----------

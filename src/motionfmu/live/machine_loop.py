@@ -31,7 +31,7 @@ Tell = Callable[[dict[str, Any], bytes], None]
 
 
 @dataclass(frozen=True)
-class Asked:
+class LoopRequest:
     """A request, and where its answer goes: a value, or the text of an error."""
 
     name: str
@@ -41,16 +41,7 @@ class Asked:
 
 @dataclass
 class MachineLoop:
-    """Steps a machine at a pace.
-
-    Attributes
-    ----------
-    machine : LiveMachine
-    pace : Pace
-    running : bool
-    tell : callable
-        Gets what nobody asked for: a triggered recording, and its samples.
-    """
+    """Steps a machine at a pace."""
 
     machine: LiveMachine
     pace: Pace = field(default_factory=Pace)
@@ -59,7 +50,7 @@ class MachineLoop:
     error: str = ""
     tell: Tell = lambda message, data: None
     exchange: Exchange | None = None  # with another program
-    asked: SimpleQueue[Asked] = field(default_factory=SimpleQueue)
+    asked: SimpleQueue[LoopRequest] = field(default_factory=SimpleQueue)
 
     def __post_init__(self) -> None:
         self._scope = LiveScope(self.machine, self._triggered)
@@ -70,8 +61,8 @@ class MachineLoop:
             self._turn_steps = min(self._turn_steps, self.exchange.plan.every)
         self._quick = 1  # steps of a turn as fast as it goes
         self._goal: int | None = None  # step up to which single steps are to be made
-        self._now: Asked | None = None  # what is being done
-        self._stepping: Asked | None = None  # what gets an answer when the goal is reached
+        self._now: LoopRequest | None = None  # what is being done
+        self._stepping: LoopRequest | None = None  # what gets an answer when the goal is reached
 
     def run(self) -> None:
         """Run until it is told to end."""
@@ -91,7 +82,7 @@ class MachineLoop:
                 self._do(asked)
                 asked = self.asked.get_nowait()
 
-    def _do(self, asked: Asked) -> None:
+    def _do(self, asked: LoopRequest) -> None:
         act = getattr(self, f"do_{asked.name}", None)
         self._now = asked
         try:

@@ -71,7 +71,7 @@ class Mdi(_Table):
     refused: str | None = None
 
 
-class Command(_Table):
+class PanelCommand(_Table):
     """Commands by number: the code is set, then a new number takes it once."""
 
     code: str
@@ -120,7 +120,7 @@ class Panel(_Table):
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
-    command: Command | None = None
+    command: PanelCommand | None = None
     monitor: Monitor | None = None
     stop: str | None = None  # the emergency stop: true while it acts
     key: dict[str, Key] = Field(default_factory=dict)

@@ -11,17 +11,7 @@ ROWS = 1 << 18  # 26 s at 0.1 ms, 34 MB with all channels
 
 
 class SampleRing:
-    """Samples of channels, each of before its communication step.
-
-    Parameters
-    ----------
-    channels : sequence of str
-        ``component.variable`` or an element of one.
-    first : int
-        Number of the first communication step.
-    rows : int
-        Steps that are kept.
-    """
+    """Samples of channels, each of before its communication step."""
 
     def __init__(self, channels: Sequence[str], first: int = 0, rows: int = ROWS) -> None:
         self.channels = tuple(channels)

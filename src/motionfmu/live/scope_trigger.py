@@ -57,18 +57,7 @@ class TriggeredRecording:
 
 
 class ScopeTrigger:
-    """Waits for an event in a ring from now on.
-
-    Parameters
-    ----------
-    setting : TriggerSetting
-    ring : SampleRing
-
-    Raises
-    ------
-    InputError
-        The channel is none of the ring's, or the window is none.
-    """
+    """Waits for an event in a ring from now on."""
 
     def __init__(self, setting: TriggerSetting, ring: SampleRing) -> None:
         if setting.channel not in ring.channels:

@@ -312,7 +312,7 @@ REQUESTS = {kind.word(): kind for kind in Request.__subclasses__()}
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedRequest:
     """A request that is known, with arguments that are right in themselves."""
 
     name: str
@@ -320,7 +320,7 @@ class Checked:
     arguments: dict[str, Any]
 
 
-def checked(name: Any, arguments: Any) -> Checked:
+def checked(name: Any, arguments: Any) -> CheckedRequest:
     """What is asked; an InputError says what is wrong with it."""
     if not isinstance(name, str) or name not in REQUESTS:
         raise InputError(f"{shown(name)[:80]}: no such request{suggestion(str(name), REQUESTS)}")
@@ -331,7 +331,7 @@ def checked(name: Any, arguments: Any) -> Checked:
         given = kind.model_validate(arguments)
     except ValidationError as error:
         raise InputError(f"{name}: {_told(error, kind)}") from None
-    return Checked(name, kind, given.model_dump(exclude_unset=True))
+    return CheckedRequest(name, kind, given.model_dump(exclude_unset=True))
 
 
 def parsed(text: str | bytes) -> Any:

@@ -15,7 +15,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import same
 from motionfmu.live.server.hand import Hand, Holder
 from motionfmu.live.server.machine_link import MachineLink
-from motionfmu.live.server.request_table import Checked, checked, parsed
+from motionfmu.live.server.request_table import CheckedRequest, checked, parsed
 
 PERIOD = 1 / 50  # [s] between two frames
 PATIENCE = 5.0  # [s] for the token, and for a page that takes nothing
@@ -154,7 +154,7 @@ class Watchers:
         watcher.asked.discard(asyncio.current_task())
         watcher.put(text_of(answer))
 
-    async def do(self, who: Holder, asked: Checked) -> Any:
+    async def do(self, who: Holder, asked: CheckedRequest) -> Any:
         """Do what somebody asks."""
         if asked.kind.hand:
             self.hand.needed(who)
@@ -184,7 +184,7 @@ class Watchers:
         about, data = await self._link.ask_with_data("recording", number=number)
         who.put(text_of({"triggered": about}), data)
 
-    async def do_by_http(self, key: str, asked: Checked) -> Any:
+    async def do_by_http(self, key: str, asked: CheckedRequest) -> Any:
         """Do what a program asks, which has the hand by a key."""
         if asked.kind.socket:
             raise InputError(f"{asked.name}: by WebSocket only")
