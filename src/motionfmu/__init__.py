@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from motionfmu.base.errors import InputError
+    from motionfmu.live import connect
     from motionfmu.records import Record, record
     from motionfmu.run import Machine, Result, Scenario, load, machine, scenario
 
@@ -27,6 +28,7 @@ __all__ = [
     "Record",
     "Result",
     "Scenario",
+    "connect",
     "load",
     "machine",
     "record",
@@ -44,6 +46,10 @@ def __getattr__(name: str) -> "Any":
         from motionfmu import records
 
         return getattr(records, name)
+    if name == "connect":
+        from motionfmu.live.live_client import connect
+
+        return connect
     if name in __all__:
         from motionfmu import run
 

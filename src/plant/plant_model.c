@@ -62,8 +62,9 @@ struct plant_block {
 struct model {
     struct plant_block block[PLANT_INSTANCES];
     int blocks;
-    int64_t step_ns; /* [ns] micro step */
-    bool watched;    /* the first communication step was compared with the micro step */
+    int64_t step_ns;          /* [ns] micro step */
+    struct plant_tuned tuned; /* tunable parameters that are in force */
+    bool watched;             /* the first communication step was compared with the micro step */
 };
 
 #include "fmi_model.h"
@@ -412,6 +413,7 @@ static int model_start(struct fmu *f)
                         FMU_TICK_NS);
     }
     f->s.m.step_ns = llround(step);
+    plant_tuned(&f->s.v, &f->s.m.tuned);
     for (int i = 0; i < PLANT_INSTANCES; i++) {
         plant_show(&f->s.v, i, 1, y);
         if (plant_active(&f->s.v, i) && plant_start_axis(f, i, &axes[i]) != 0) {
@@ -427,8 +429,49 @@ static int model_start(struct fmu *f)
     return plant_publish(f, 0);
 }
 
+/* Take the tunable parameters as they are now: constants, and more sub-steps if a block needs them.
+ * What was reached stays. */
+static int plant_tune(struct fmu *f)
+{
+    const double h = 1e-9 * (double)f->s.m.step_ns;
+    for (int n = 0; n < f->s.m.blocks; n++) {
+        struct plant_block *b = &f->s.m.block[n];
+        for (int lane = 0; lane < b->lanes; lane++) {
+            double p[PLANT_PARAMETER_SIZE], x[PLANT_STATES], u[PLANT_INPUT_SIZE];
+            double c[PLANT_CONSTANT_SIZE];
+            plant_parameters(&f->s.v, b->instance[lane], p);
+            const char *wrong = plant_check(p);
+            if (wrong) {
+                return fmu_fail(f, "axis %d: %s", b->instance[lane] + 1, wrong);
+            }
+            plant_constants(p, c);
+            for (int k = 0; k < PLANT_CONSTANTS; k++) {
+                b->c[k * b->lanes + lane] = c[k];
+            }
+            if (PLANT_CONTROLLED) {
+                plant_sizes(p, b->size);
+                continue;
+            }
+            plant_start(p, x);
+            plant_inputs(&f->s.v, b->instance[lane], 1, u);
+            const double fastest = PLANT_STIFFNESS(x, u, p),
+                         steps = ceil(h * fastest / plant_h_lambda);
+            if (!(steps <= PLANT_SUB_STEPS_MAX)) {
+                return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
+                                b->instance[lane] + 1, h, steps, PLANT_SUB_STEPS_MAX);
+            }
+            b->fastest = el_max(b->fastest, fastest);
+            b->sub_steps = steps > b->sub_steps ? (int)steps : b->sub_steps;
+        }
+    }
+    return 0;
+}
+
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
+    if (PLANT_TUNABLES > 0 && plant_tuned(&f->s.v, &f->s.m.tuned) && plant_tune(f) != 0) {
+        return -1;
+    }
     const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
     if (!f->s.m.watched) {
         f->s.m.watched = true;

@@ -24,6 +24,7 @@ import long_run
 import network
 import numpy as np
 import plans
+import scope_cost
 import scurve_moves
 import segments
 import states
@@ -223,6 +224,7 @@ def main(kept: figures.Kept) -> None:
     robot = Timed(ROBOT, stop=20.0)
     asked, session = commands.all_commands(), commands.Session()
     library = states.States("mcc")
+    scope = scope_cost.ScopeCost()
     records = identifying.all_records()
     rounds(
         [
@@ -240,6 +242,7 @@ def main(kept: figures.Kept) -> None:
             session,
             *records,
             library,
+            scope,
             *curves,
             *segments.ALL,
             segments.LONG,
@@ -322,6 +325,8 @@ def main(kept: figures.Kept) -> None:
         Figure("state of mcc at rest, kB", library.size / 1e3, most=40.0, counted=True),
         Figure("state of mcc at rest, us to save", 1e6 * library.save, most=5.0),
         Figure("state of mcc at rest, us to restore", 1e6 * library.restore, most=5.0),
+        Figure("live machine, step with 16 channels / plain", scope.traced / scope.plain, most=12),
+        Figure("the same, times real time", 1e-4 / scope.traced, least=4.0),
         *study.figures(counts),
     ]
     figures.show(found, counting.method(), kept)

@@ -349,5 +349,39 @@ def test_a_nominal_of_states_is_refused(small):
         codegen.write(small, small.parent)
 
 
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ('["tua"]', "tunable: Small.Axis has no Real parameter 'tua'"),
+        ('["x"]', "tunable: Small.Axis has no Real parameter 'x'"),
+        ('["tau", "tau"]', "is not a list of names, each once"),
+        ("true", "is not a list of names, each once"),
+        ("[1]", "is not a list of names, each once"),
+    ],
+)
+def test_wrong_tunables_are_refused(small, given, said):
+    text = TOML.replace("micro_step", f"tunable = {given}\nmicro_step")
+    assert text != TOML
+    small.write_text(text)
+    with pytest.raises(ValueError, match=said):
+        codegen.write(small, small.parent)
+
+
+def test_a_tunable_parameter_is_described_and_looked_for(small, tmp_path):
+    small.write_text(TOML.replace("micro_step", 'tunable = ["tau"]\nmicro_step'))
+    library = Library(small, tmp_path)
+    tau = next(v for v in library.description.variables if v.name == "tau")
+    assert tau.tunable and tau.variability == "tunable"
+    slow, quick = Run(library, tau=[1.0, 1.0]), Run(library, tau=[1.0, 1.0])
+    for run in (slow, quick):
+        assert run.start() == 0
+        run.set(u=1.0)
+    quick.set(tau=[1.0, 0.5])
+    for run in (slow, quick):
+        assert run.step(1e-3) == 0
+    assert slow.get("x")[0] == quick.get("x")[0]
+    assert slow.get("x")[1] != quick.get("x")[1]
+
+
 def test_packing_finds_the_package():
     assert class_description.read(BALL_SCREW).package == PACKAGE

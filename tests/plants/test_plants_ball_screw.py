@@ -81,6 +81,59 @@ def test_trajectory_against_radau(library, exact):
     assert np.ptp(exact[:, 2]) > 30.0, "the motor must have reversed"
 
 
+FRICTION = ("table_coulomb", "table_static", "table_viscous", "motor_coulomb", "motor_static")
+
+
+def test_friction_that_changes_in_a_run_against_radau(library, ode):
+    """Doubled on one axis while it moves: from there on the trajectory of the other parameters."""
+    before = ode.values(backlash=1e-5)
+    twice = {d.name: 2.0 * v for d, v in zip(ode.parameters, before, strict=True)}
+    after = ode.values(backlash=1e-5, **{n: twice[n] for n in FRICTION})
+    x, t0 = ode.initial(before), 0.0
+    f = ode.function()
+    for t1, p in ((0.04, before), (0.08, after)):
+        s = solve_ivp(
+            lambda t, x, p=p: np.array(f(x, [2.0, 30.0], p)[0]).ravel(),
+            (t0, t1),
+            x,
+            method="Radau",
+            rtol=1e-9,
+            atol=1e-12,
+        )
+        x, t0 = s.y[:, -1], t1
+    run = Run(library, backlash=1e-5)
+    assert run.start() == 0, run.said
+    run.set(torque_command=2.0, force=30.0)
+    for k in range(80):
+        if k == 40:
+            for name in FRICTION:
+                run.set(**{name: [twice[name]] + [twice[name] / 2.0] * 5})
+        assert run.step(1e-3) == 0, run.said
+    bound = np.array([1e-12, 5e-6, 3e-4, 1e-8, 3e-6])
+    assert np.all(np.abs(shown(run) - x) < bound), np.abs(shown(run) - x)
+    same = drive(Run(library, backlash=1e-5), ((0.08, 2.0, 30.0),))[0]
+    assert np.all(shown(run, 1) == same), "the other axes go on as before"
+    assert shown(run)[4] < same[4] - 1e-3, "more friction, less speed"
+
+
+def test_what_is_tuned_is_checked_and_may_need_shorter_steps(library):
+    run = Run(library)
+    assert run.start() == 0
+    run.set(torque_command=2.0)
+    assert run.step(1e-3) == 0
+    run.set(table_static=[70.0, 70.0, 40.0, 70.0, 70.0, 70.0])
+    assert run.step(1e-3) == -1
+    assert run.said == "axis 3: table_static must not be below table_coulomb"
+    run.set(table_static=[70.0, 70.0, 7e7, 70.0, 70.0, 70.0])
+    assert run.step(1e-3) == -1
+    assert "axis 3: too stiff" in run.said and "more than 1000" in run.said
+    # A hundred times the friction, smoothed over the same speed, is a hundred times as steep.
+    run.set(table_static=7000.0, table_coulomb=5000.0)
+    for _ in range(400):
+        assert run.step(1e-3) == 0, run.said
+    assert np.all(np.abs(run.get("table_speed")) < 2e-5), "at rest but for creep"
+
+
 def test_trajectory_converges_to_radau(library, exact):
     errors = []
     for micro_step in (25e-6, 1e-6):

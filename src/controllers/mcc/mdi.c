@@ -153,6 +153,8 @@ bool mdi_next(struct mcc *m, const struct program *p)
     const char *text = d->text + (d->until - d->base);
     d->until += (const char *)memchr(text, '\n', (size_t)(end_of(d) - d->until)) + 1 - text;
     d->line++;
+    in->offset = d->from;
+    in->line = d->line - 1;
     in->flow.again = in->flow.idle = 0; /* each line has its own count of lines read again */
     interpreter_check(in, p, &r);
     if (r.fault == FAULT_NONE) {

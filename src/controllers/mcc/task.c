@@ -54,11 +54,12 @@ static void begin_program(const struct mcc *m, struct interpreter *in)
 void task_resume(struct mcc *m, bool by_hand)
 {
     struct interpreter *in = &m->program;
-    const bool rests = control_rests(m);
+    const bool rests = m->ring.count == 0 && !trajectory_busy(&m->trajectory);
 
+    control_settle(m);
     if (!by_hand) {
         begin_program(m, in);
-    } else if (!m->begun || !m->mdi.on) {
+    } else if (!m->begun || !m->mdi.on || m->dropped) {
         begin(m, in);
         resuming_text(in, m->mdi.until, m->mdi.line);
     }

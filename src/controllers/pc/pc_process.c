@@ -1,5 +1,6 @@
 /* The process control: what the panel asks for. */
 #include "pc_parts.h"
+#include "reaction.h"
 
 void pc_look_at_panel(struct pc *pc, const struct pc_panel *panel)
 {
@@ -76,6 +77,9 @@ static void run_anew(struct pc *pc, const struct source *program, int32_t from)
     }
     pc->process.refused = r;
     pc->process.refusals++;
+    if (r.fault != FAULT_FROM_LINE && r.fault != FAULT_FROM_HELD) {
+        reaction_stop(m, reaction_error_of(&r));
+    }
 }
 
 /* Whether cycle_start runs the program anew: with wait_start always, else once a cleared error has

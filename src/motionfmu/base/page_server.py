@@ -5,15 +5,53 @@ import os
 import socket
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import uvicorn
 from starlette.applications import Starlette
+from uvicorn.protocols.http.auto import AutoHTTPProtocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from motionfmu.base.errors import InputError
 
 HOST = "127.0.0.1"
 MESSAGE_MAX = 4096  # [byte] of a page to the server: it says its token
 CLOSING = 1.0  # [s] for pages that are open when it ends
+CONNECTIONS = 256  # at once; what comes then is cut off
+ASKING = 10.0  # [s] for a connection's first request
+SENDING = 1 << 18  # [byte] that the system keeps for a page that does not read them
+
+
+class _PageConnection(AutoHTTPProtocol):  # type: ignore[misc,valid-type]  # chosen as it is loaded
+    """A connection, which is cut off if they are too many or it asks for nothing."""
+
+    def connection_made(self, transport: asyncio.Transport) -> None:
+        super().connection_made(transport)
+        if len(self.connections) > CONNECTIONS:
+            transport.abort()
+        else:
+            asyncio.get_running_loop().call_later(ASKING, self._asked, transport)
+
+    def _asked(self, transport: asyncio.Transport) -> None:
+        if self.scope is None and transport.get_protocol() is self:
+            transport.abort()
+
+
+class _PageSocket(WebSocketsSansIOProtocol):
+    """A WebSocket that is cut off when it is to be closed, but its page reads nothing."""
+
+    def handle_connect(self, event: Any) -> None:
+        super().handle_connect(event)
+        self.close_timeout = CLOSING
+
+    async def send(self, message: Any) -> None:
+        if message["type"] == "websocket.close" and not self.writable.is_set():
+            self.transport.abort()
+        await super().send(message)
+
+    def keepalive_timeout(self) -> None:
+        super().keepalive_timeout()
+        self.transport.abort()
 
 
 class PageServer:
@@ -49,10 +87,15 @@ class PageServer:
             raise InputError(f"page {HOST}:{port}: {told}") from None
         # Else head and body of an answer are 40 ms apart: the body waits for an acknowledgement.
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENDING)
         self._server = uvicorn.Server(
             uvicorn.Config(
                 app,
-                log_level="warning",
+                http=_PageConnection,
+                ws=_PageSocket,
+                # On a loopback it costs more than it saves.
+                ws_per_message_deflate=False,
+                log_level="error",  # what strangers send is no news
                 timeout_graceful_shutdown=int(CLOSING),
                 ws_max_size=message_max,
                 ssl_certfile=tls and tls[0],

@@ -8,7 +8,7 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
-from motionfmu.cli.common import FAILED, Set, app, out, settings
+from motionfmu.cli.common import FAILED, Set, app, out, setting, settings
 
 if TYPE_CHECKING:
     from motionfmu.live.server import MachineStart
@@ -33,6 +33,24 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         Path | None,
         typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
     ] = None,
+    exchange: Annotated[
+        str | None,
+        typer.Option(metavar="udp://HOST:PORT", help="Another program: see --send and --take."),
+    ] = None,
+    send: Annotated[
+        list[str], typer.Option(metavar="SIGNAL", help="Goes to it: COMP.VAR or COMP.VAR[I].")
+    ] = [],  # noqa: B006
+    take: Annotated[
+        list[str],
+        typer.Option(metavar="INPUT=SAFE", help="Comes from it; SAFE while it is not heard."),
+    ] = [],  # noqa: B006
+    every: Annotated[int, typer.Option(help="Of so many communication steps one exchanges.")] = 1,
+    watchdog: Annotated[
+        float, typer.Option(help="Simulated time after which it counts as lost [s].")
+    ] = 0.1,
+    bind: Annotated[
+        str, typer.Option(metavar="HOST:PORT", help="Where it sends to; port 0: any.")
+    ] = "127.0.0.1:0",
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
     set_: Set = [],  # noqa: B006
 ) -> None:
@@ -41,10 +59,17 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     import math
 
     needed("live")
-    from motionfmu.live.server import MachineStart
-
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
+    from motionfmu.live.exchange import ExchangePlan
+    from motionfmu.live.server import MachineStart
+
+    plan = None
+    if exchange is None and (send or take):
+        raise InputError("--send and --take go with --exchange udp://HOST:PORT")
+    if exchange is not None:
+        taken = {name: _number(name, value) for name, value in map(_pair, take)}
+        plan = ExchangePlan(exchange, tuple(send), taken, every, watchdog, bind)
     start = MachineStart(
         str(path),
         None if program is None else str(program),
@@ -52,8 +77,22 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         None if pace == math.inf else pace,
         not paused,
         None if save_as is None else str(save_as),
+        plan,
     )
     asyncio.run(_serve(start, port, open_))
+
+
+def _pair(text: str) -> tuple[str, Any]:
+    if "=" not in text:
+        raise InputError(f"--take {text}: INPUT=SAFE wanted, its value while nobody is heard")
+    return setting(text)
+
+
+def _number(name: str, value: Any) -> float:
+    """The safe value of an input."""
+    if isinstance(value, bool | int | float):
+        return float(value)
+    raise InputError(f"--take {name}={value}: a number, true or false wanted")
 
 
 async def _serve(start: "MachineStart", port: int, opened: bool) -> None:
@@ -98,8 +137,16 @@ def _tell(message: dict[str, Any], data: bytes) -> None:
     """Say on the console what the machine's process says by itself."""
     import contextlib
 
+    word = message["told"]
+    if word == "compiling":
+        text = f"{message['name']}: its program is compiled, once; this takes some seconds"
+    elif word == "saved":
+        text = f"saved: {message['file']}"
+    elif word == "exchange":
+        text = f"exchange: {message['peer']} sends to port {message['port']}"
+    elif word == "peer":
+        text = f"exchange: {message['peer']} is {'lost' if message['lost'] else 'heard'}"
+    else:
+        return
     with contextlib.suppress(OSError):  # the terminal is gone
-        if message["told"] == "compiling":
-            print(f"{message['name']}: its program is compiled, once; this takes some seconds")
-        if message["told"] == "saved":
-            print(f"saved: {message['file']}")
+        print(text, flush=True)

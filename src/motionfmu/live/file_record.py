@@ -40,23 +40,7 @@ class RecordHead:
 
 
 class FileRecord:
-    """Samples that go into a file.
-
-    Parameters
-    ----------
-    file : Path
-        Its ending says what it is: ``.csv``, or ``.npz`` with an array for each channel.
-    head : RecordHead
-    begin : int
-        First step.
-    end : int, optional
-        The step before which it ends by itself.
-
-    Raises
-    ------
-    InputError
-        The file is there already, or cannot be written.
-    """
+    """Samples that go into a file."""
 
     def __init__(self, file: Path, head: RecordHead, begin: int, end: int | None) -> None:
         self.name = str(file)

@@ -5,7 +5,7 @@ import math
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from ctypes import byref, c_size_t, c_void_p, sizeof
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -51,16 +51,24 @@ class _Sampler:
     """Reads channels into a batch: the calls of each of its steps, and where the samples are."""
 
     calls: list[list[Callable[[], None]]]  # by step of the batch
-    # of each type: the batch, shape (steps, elements); the elements; their channels
-    parts: list[tuple[NDArray[Any], NDArray[Any], NDArray[Any]]]
-    channels: int
+    # of each type: the batch, shape (steps, elements), the elements wanted, where they go
+    parts: list[tuple[NDArray[Any], NDArray[Any], slice]]
+    columns: dict[str, int]  # of the rows, by channel
+    orders: dict[tuple[str, ...], NDArray[Any]] = field(default_factory=dict)  # columns of rings
 
     def rows(self, count: int) -> NDArray[Any]:
-        """Samples of the first steps of the batch, shape (count, channels)."""
-        rows = np.empty((count, self.channels))
+        """Samples of the first steps of the batch, shape (count, channels), sorted by type."""
+        rows = np.empty((count, len(self.columns)))
         for batch, elements, columns in self.parts:
-            rows[:, columns] = batch[:count, elements]
+            rows[:, columns] = batch[:count].take(elements, axis=1)
         return rows
+
+    def of(self, rows: NDArray[Any], channels: tuple[str, ...]) -> NDArray[Any]:
+        """Such rows with some of the channels."""
+        order = self.orders.get(channels)
+        if order is None:
+            self.orders[channels] = order = np.array([self.columns[c] for c in channels], int)
+        return rows.take(order, axis=1)
 
 
 @dataclass
@@ -390,8 +398,12 @@ class LiveMachine:
         def read() -> list[list[Any]]:
             for call in calls:
                 call()
-            return [list(where[n][0][where[n][1]]) for n in names]
+            found = [list(where[n][0][where[n][1]]) for n in names]
+            for place in texts:
+                found[place] = [value.decode(errors="replace") for value in found[place]]
+            return found
 
+        texts = [k for k, n in enumerate(names) if self._places[n].type == "String"]
         return read
 
     def step(self, count: int = 1) -> None:
@@ -488,6 +500,8 @@ class LiveMachine:
         whole, element = self.scenario.resolver.split(name)
         self._known([whole])
         count = self._places[whole].count
+        if self._places[whole].type == "String":
+            raise InputError(f"{name} is a text")
         if element is None and count > 1:
             raise InputError(f"{name}: it has the elements {whole}[1] to [{count}]")
         if element is not None and not 0 <= element < count:
@@ -520,6 +534,34 @@ class LiveMachine:
                 if not ring.channels:
                     ring.cut(self.steps)
 
+    def reading(self, channels: Sequence[str]) -> Callable[[], NDArray[np.float64]]:
+        """A quick function that reads elements of signals.
+
+        Parameters
+        ----------
+        channels : sequence of str
+            As of `ring`, as many as wanted.
+
+        Returns
+        -------
+        callable
+            Without arguments; their present values, of shape (channels,), in an array of its own.
+
+        Raises
+        ------
+        InputError
+            There is no such signal, or one is an array.
+        """
+        order = tuple(channels)
+        sampler = self._sampler(order)
+
+        def read() -> NDArray[np.float64]:
+            for call in sampler.calls[0]:
+                call()
+            return sampler.of(sampler.rows(1), order)[0]
+
+        return read
+
     def _sample(self, rings: Sequence[SampleRing], channels: tuple[str, ...], count: int) -> None:
         """Make the steps of a batch, and sort its samples into the rings."""
         self._open()
@@ -530,7 +572,7 @@ class LiveMachine:
         finally:
             rows = sampler.rows(self.steps - began)
             for ring in rings:
-                ring.write(rows[:, [channels.index(c) for c in ring.channels]])
+                ring.write(sampler.of(rows, ring.channels))
 
     def _step_and_read(self, calls: Iterable[Iterable[Callable[[], None]]]) -> None:
         step, advance, due = self._system.step_ns * 1e-9, self._advance_one, self._due
@@ -545,12 +587,13 @@ class LiveMachine:
     def _sampler(self, channels: tuple[str, ...]) -> _Sampler:
         if channels in self._samplers:
             return self._samplers[channels]
-        by_type: dict[str, list[tuple[int, str, int]]] = {}
-        for column, name in enumerate(channels):
+        by_type: dict[str, list[tuple[str, str, int]]] = {}
+        for name in dict.fromkeys(channels):
             whole, element = self._element(name)
-            by_type.setdefault(self._places[whole].type, []).append((column, whole, element))
+            by_type.setdefault(self._places[whole].type, []).append((name, whole, element))
         calls: list[list[Callable[[], None]]] = [[] for _ in range(_BATCH)]
-        parts = []
+        parts: list[tuple[NDArray[Any], NDArray[Any], slice]] = []
+        columns: dict[str, int] = {}
         for kind, several in by_type.items():
             names = list(dict.fromkeys(whole for _, whole, _ in several))
             places = [self._places[n] for n in names]
@@ -563,10 +606,12 @@ class LiveMachine:
                 reads.append(self._library.access("Get", places, row))
             view = np.frombuffer(batch, np.dtype(batch._type_)).reshape(_BATCH, count)
             where = np.array([firsts[whole] + element for _, whole, element in several])
-            parts.append((view, where, np.array([column for column, _, _ in several])))
+            first = len(columns)
+            columns |= {name: first + k for k, (name, _, _) in enumerate(several)}
+            parts.append((view, where, slice(first, len(columns))))
         if len(self._samplers) >= _SAMPLERS:
             self._samplers.clear()
-        self._samplers[channels] = _Sampler(calls, parts, len(channels))
+        self._samplers[channels] = _Sampler(calls, parts, columns)
         return self._samplers[channels]
 
     def keep(self) -> None:

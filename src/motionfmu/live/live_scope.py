@@ -18,14 +18,7 @@ FILES = 4  # records that are written at a time
 
 
 class LiveScope:
-    """Makes a machine's steps and looks at its channels.
-
-    Parameters
-    ----------
-    machine : LiveMachine
-    triggered : callable
-        Gets each recording when it is complete.
-    """
+    """Makes a machine's steps and looks at its channels."""
 
     def __init__(
         self, machine: LiveMachine, triggered: Callable[[TriggeredRecording], None]

@@ -13,6 +13,7 @@ from queue import Empty, SimpleQueue
 from typing import Any
 
 from motionfmu.base.errors import InputError
+from motionfmu.live.exchange import Exchange
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.live_scope import LiveScope
 from motionfmu.live.manual_inputs import ManualInputs
@@ -22,6 +23,7 @@ from motionfmu.live.scope_trigger import TriggeredRecording, TriggerSetting
 TURN = 1e-3  # [s] on the wall between two looks at what is asked
 LONGEST_TURN = 5e-3  # [s] on the wall that steps of a turn may take
 KEPT_EVERY = 1.0  # [s] of simulated time between two states that are kept
+STEPS_MAX = 1 << 40  # more than are ever made at once
 ACTIONS = 40  # latest ones of the journal that are given
 _LATER = object()  # instead of a value: the answer comes when something has ended
 
@@ -29,7 +31,7 @@ Tell = Callable[[dict[str, Any], bytes], None]
 
 
 @dataclass(frozen=True)
-class Asked:
+class LoopRequest:
     """A request, and where its answer goes: a value, or the text of an error."""
 
     name: str
@@ -39,16 +41,7 @@ class Asked:
 
 @dataclass
 class MachineLoop:
-    """Steps a machine at a pace.
-
-    Attributes
-    ----------
-    machine : LiveMachine
-    pace : Pace
-    running : bool
-    tell : callable
-        Gets what nobody asked for: a triggered recording, and its samples.
-    """
+    """Steps a machine at a pace."""
 
     machine: LiveMachine
     pace: Pace = field(default_factory=Pace)
@@ -56,16 +49,20 @@ class MachineLoop:
     ended: bool = False
     error: str = ""
     tell: Tell = lambda message, data: None
-    asked: SimpleQueue[Asked] = field(default_factory=SimpleQueue)
+    exchange: Exchange | None = None  # with another program
+    asked: SimpleQueue[LoopRequest] = field(default_factory=SimpleQueue)
 
     def __post_init__(self) -> None:
         self._scope = LiveScope(self.machine, self._triggered)
         self._inputs = ManualInputs(self.machine, self.pace.clock)
         self._keep_at = 0
+        self._turn_steps = max(1, round(TURN / self.machine.step_seconds))
+        if self.exchange is not None:
+            self._turn_steps = min(self._turn_steps, self.exchange.plan.every)
         self._quick = 1  # steps of a turn as fast as it goes
         self._goal: int | None = None  # step up to which single steps are to be made
-        self._now: Asked | None = None  # what is being done
-        self._stepping: Asked | None = None  # what gets an answer when the goal is reached
+        self._now: LoopRequest | None = None  # what is being done
+        self._stepping: LoopRequest | None = None  # what gets an answer when the goal is reached
 
     def run(self) -> None:
         """Run until it is told to end."""
@@ -85,7 +82,7 @@ class MachineLoop:
                 self._do(asked)
                 asked = self.asked.get_nowait()
 
-    def _do(self, asked: Asked) -> None:
+    def _do(self, asked: LoopRequest) -> None:
         act = getattr(self, f"do_{asked.name}", None)
         self._now = asked
         try:
@@ -111,7 +108,7 @@ class MachineLoop:
             self._quick_turn(None)
         else:
             self.pace.wait(self.machine.time)
-            self.advance(max(1, round(TURN * self.pace.factor / self.machine.step_seconds)))
+            self.advance(max(1, round(self._turn_steps * self.pace.factor)))
 
     def _quick_turn(self, goal: int | None) -> None:
         """Make as many steps as a turn has time for."""
@@ -136,7 +133,7 @@ class MachineLoop:
                 if now >= self._keep_at:
                     self.machine.keep()
                     self._keep_at = now + round(KEPT_EVERY / self.machine.step_seconds)
-                dues = (self._keep_at, end, *self._inputs.dues())
+                dues = (self._keep_at, end, self._exchanged(now), *self._inputs.dues())
                 self._scope.fill(max(1, int(min(dues)) - now))
         except InputError as error:
             self.running, self.error = False, str(error)
@@ -144,6 +141,18 @@ class MachineLoop:
     def _triggered(self, found: TriggeredRecording) -> None:
         about = found.about(self.machine.step_seconds)
         self.tell({"told": "triggered", "value": about}, found.rows.tobytes())
+
+    def _exchanged(self, now: int) -> int:
+        """Exchange if it is time; the step at which it is next, or one far away."""
+        if self.exchange is None:
+            return now + STEPS_MAX
+        every = self.exchange.plan.every
+        if now % every == 0:
+            was_lost = self.exchange.lost
+            self.exchange.step()
+            if self.exchange.lost != was_lost:
+                self.tell({"told": "peer", **self.exchange.state()}, b"")
+        return now - now % every + every
 
     # What can be asked. The server's table of requests says what each is for.
 
@@ -161,7 +170,9 @@ class MachineLoop:
             "kept": [kept[0], kept[-1], len(kept)] if kept else None,
             "late": [late.woken, late.worst, late.below(0.99), late.given_up],
             "actions": len(machine.journal),
+            "lines": self._inputs.waiting,
             "scope": self._scope.state(),
+            "exchange": self.exchange and self.exchange.state(),
         }
 
     def do_values(self, names: list[str]) -> dict[str, Any]:
@@ -216,6 +227,17 @@ class MachineLoop:
     def do_stop(self) -> list[str]:
         """Stop the machine; what was set for that."""
         return self._inputs.stop()
+
+    def do_command(self, component: str, name: str) -> float:
+        """Give a command that the component's panel has."""
+        panel = self._inputs.panels.get(component)
+        command = panel.command if panel else None
+        if command is None or name not in command.codes:
+            raise InputError(f"{component}: no command {name!r}")
+        self.machine.set(f"{component}.{command.code}", command.codes[name])
+        number = f"{component}.{command.number}"
+        self.machine.set(number, int(self.machine[number]) + 1)
+        return self.machine.time
 
     def do_pace(self, factor: float | None) -> None:
         """Go at another pace; none: as fast as it goes."""

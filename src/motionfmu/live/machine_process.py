@@ -17,9 +17,10 @@ from typing import Any, BinaryIO
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.toml_lines import is_file
+from motionfmu.live.exchange import Exchange, ExchangePlan
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.machine_about import about
-from motionfmu.live.machine_loop import Asked, MachineLoop
+from motionfmu.live.machine_loop import LoopRequest, MachineLoop
 from motionfmu.live.pace import Pace
 from motionfmu.run.machine_program import machine_of, machine_scenario
 from motionfmu.run.runner import Scenario
@@ -108,7 +109,11 @@ def _serve(start: dict[str, Any], requests: BinaryIO, answers: _Answers) -> None
     finally:
         late.cancel()
     with machine:
-        loop = MachineLoop(machine, pace, running=start["running"], tell=answers.put)
+        plan, exchange = start["exchange"], None
+        if plan is not None:
+            exchange = Exchange(machine, ExchangePlan(**plan))
+            answers.put({"told": "exchange", "port": exchange.port, "peer": plan["peer"]})
+        loop = MachineLoop(machine, pace, start["running"], exchange=exchange, tell=answers.put)
         answers.put({"about": about(machine)})
         threading.Thread(target=_listen, args=(requests, loop, answers), daemon=True).start()
         loop.run()
@@ -145,14 +150,14 @@ def _listen(requests: BinaryIO, loop: MachineLoop, answers: _Answers) -> None:
     while (got := _received(requests)) is not None:
         asked, _ = got
         loop.asked.put(_request(asked, answers))
-    loop.asked.put(Asked("end", {}, lambda value, error: None))
+    loop.asked.put(LoopRequest("end", {}, lambda value, error: None))
 
 
-def _request(asked: dict[str, Any], answers: _Answers) -> Asked:
+def _request(asked: dict[str, Any], answers: _Answers) -> LoopRequest:
     def answer(value: Any, error: str | None) -> None:
         data = b""
         if isinstance(value, tuple):
             value, data = value
         answers.put({"id": asked["id"], "value": value, "error": error}, data)
 
-    return Asked(asked["name"], asked["arguments"], answer)
+    return LoopRequest(asked["name"], asked["arguments"], answer)

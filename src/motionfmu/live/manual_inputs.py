@@ -28,7 +28,7 @@ class _Held:
 
 
 @dataclass
-class _Lines:
+class _WaitingLines:
     """Lines of MDI that a controller has not got yet."""
 
     mdi: Mdi
@@ -37,21 +37,14 @@ class _Lines:
 
 
 class ManualInputs:
-    """Keys that are held, and lines that are typed.
-
-    Parameters
-    ----------
-    machine : LiveMachine
-    clock : callable
-        The wall's [s].
-    """
+    """Keys that are held, and lines that are typed."""
 
     def __init__(
         self, machine: LiveMachine, clock: Callable[[], float] = time.perf_counter
     ) -> None:
         self._machine, self._clock = machine, clock
         self._held: dict[str, _Held] = {}
-        self._lines: dict[str, _Lines] = {}
+        self._lines: dict[str, _WaitingLines] = {}
         components = machine.scenario.document.body.component
         panels = {component: panel_of(fmu) for component, fmu in components.items()}
         self.panels: dict[str, Panel] = {c: p for c, p in panels.items() if p is not None}
@@ -145,13 +138,18 @@ class ManualInputs:
         lines = self._lines.get(component)
         if lines is None:
             number = int(self._machine[f"{component}.{mdi.number}"])
-            lines = self._lines[component] = _Lines(mdi, number)
+            lines = self._lines[component] = _WaitingLines(mdi, number)
         if len(lines.waiting) >= LINES_MAX:
             raise InputError(f"mdi: {LINES_MAX} lines wait to be taken")
         lines.waiting.append(line)
         return _after(lines.number, len(lines.waiting))
 
-    def _type(self, component: str, lines: _Lines) -> None:
+    @property
+    def waiting(self) -> int:
+        """Lines that no controller has taken yet."""
+        return sum(len(lines.waiting) for lines in self._lines.values())
+
+    def _type(self, component: str, lines: _WaitingLines) -> None:
         """Give a controller its next line, if it has the last one and room."""
         mdi, machine = lines.mdi, self._machine
         if int(machine[f"{component}.{mdi.taken}"]) != lines.number:

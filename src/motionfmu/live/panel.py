@@ -65,12 +65,13 @@ class Mdi(_Table):
     number: str
     taken: str
     room: str | None = None
-    done: str | None = None
+    lines: str | None = None  # read so far
+    done: str | None = None  # of these, with their motion ended
     fault: str | None = None
     refused: str | None = None
 
 
-class Command(_Table):
+class PanelCommand(_Table):
     """Commands by number: the code is set, then a new number takes it once."""
 
     code: str
@@ -88,7 +89,7 @@ class Panel(_Table):
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
-    command: Command | None = None
+    command: PanelCommand | None = None
     stop: str | None = None  # the emergency stop: true while it acts
     key: dict[str, Key] = Field(default_factory=dict)
     dial: dict[str, Dial] = Field(default_factory=dict)

@@ -11,17 +11,7 @@ ROWS = 1 << 18  # 26 s at 0.1 ms, 34 MB with all channels
 
 
 class SampleRing:
-    """Samples of channels, each of before its communication step.
-
-    Parameters
-    ----------
-    channels : sequence of str
-        ``component.variable`` or an element of one.
-    first : int
-        Number of the first communication step.
-    rows : int
-        Steps that are kept.
-    """
+    """Samples of channels, each of before its communication step."""
 
     def __init__(self, channels: Sequence[str], first: int = 0, rows: int = ROWS) -> None:
         self.channels = tuple(channels)
@@ -38,13 +28,17 @@ class SampleRing:
         """Add the samples of steps, shape (steps, channels)."""
         self.end += len(rows)
         rows = rows[-self._rows :]
-        self._samples[np.arange(self.end - len(rows), self.end) % self._rows] = rows
+        first = (self.end - len(rows)) % self._rows
+        head = min(len(rows), self._rows - first)
+        self._samples[first : first + head] = rows[:head]
+        self._samples[: len(rows) - head] = rows[head:]
 
     def cut(self, step: int) -> None:
         """Forget what was at a step and later."""
-        self.end = max(min(self.end, step), self.first)
-        if self.end < step:
-            self.first = self.end = step
+        self.first = self.begin  # what was before has been written over
+        if not self.first <= step <= self.end:
+            self.first = step
+        self.end = step
 
     def since(self, step: int, most: int | None = None) -> tuple[int, NDArray[Any]]:
         """The first step that is there from one on, and samples of shape (steps, channels).

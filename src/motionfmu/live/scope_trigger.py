@@ -57,18 +57,7 @@ class TriggeredRecording:
 
 
 class ScopeTrigger:
-    """Waits for an event in a ring from now on.
-
-    Parameters
-    ----------
-    setting : TriggerSetting
-    ring : SampleRing
-
-    Raises
-    ------
-    InputError
-        The channel is none of the ring's, or the window is none.
-    """
+    """Waits for an event in a ring from now on."""
 
     def __init__(self, setting: TriggerSetting, ring: SampleRing) -> None:
         if setting.channel not in ring.channels:
@@ -121,7 +110,8 @@ class ScopeTrigger:
         return before + int(found[0]) if len(found) else None
 
     def _end(self, at: int) -> int:
-        return at + self.setting.length - round(self.setting.pre * self.setting.length)
+        """The end of its recording, in which the event itself is."""
+        return at + max(1, self.setting.length - round(self.setting.pre * self.setting.length))
 
     def _cut(self, at: int) -> TriggeredRecording:
         end = self._end(at)

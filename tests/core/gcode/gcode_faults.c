@@ -302,7 +302,8 @@ static void faults(void)
     };
     /* Three have tests of their own below; gcode_stream.c has those of a source, gcode_machine.c
      * one of a machine with a probe, tests/gcode/test_files.py one of files,
-     * tests/gcode/test_fanuc*.py those of Fanuc's controls, gcode_angles.c one of U V W. */
+     * tests/gcode/test_fanuc*.py those of Fanuc's controls, gcode_angles.c one of U V W,
+     * tests/core/mcc/mcc_mdi.c those of lines by hand and of run from line. */
     bool seen[FAULT_COUNT] = {
         [FAULT_NONE] = true,        [FAULT_LINE_LENGTH] = true, [FAULT_WORD_COUNT] = true,
         [FAULT_READ] = true,        [FAULT_ZERO] = true,        [FAULT_PLAIN] = true,
@@ -310,7 +311,9 @@ static void faults(void)
         [FAULT_O_DEEP] = true,      [FAULT_FILES] = true,       [FAULT_SEQUENCE] = true,
         [FAULT_LOOP_END] = true,    [FAULT_THEN] = true,        [FAULT_SIDE] = true,
         [FAULT_ALARM] = true,       [FAULT_MODAL] = true,       [FAULT_ROUND_NEXT] = true,
-        [FAULT_ROUND_SHORT] = true
+        [FAULT_ROUND_SHORT] = true, [FAULT_ALONE] = true,       [FAULT_WHILE_PROGRAM] = true,
+        [FAULT_WHILE_HAND] = true,  [FAULT_WHILE_ERROR] = true, [FAULT_FROM_LINE] = true,
+        [FAULT_FROM_HELD] = true
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         fault_is(bad[i].text, bad[i].line, bad[i].at, bad[i].fault);

@@ -238,7 +238,7 @@ static void program_stop(void)
     struct pc_config config = usual(3, 4, 8000.0);
     struct pc_panel p = calm;
     struct card c;
-    config.block_delete = true;
+    p.block_delete = config.block_delete = true;
     card_start(&c, &m, &config, true);
     int turned = 0;
     for (int k = 0; k < 8000; k++) {

@@ -16,7 +16,7 @@ from motionfmu.fmu.modelica.ode import Ode
 
 _TYPES = {"Real": "f64", "Integer": "i32", "Boolean": "bool"}
 _KEYS = ("name", "description", "tick_ns", "experiment", "modelica", "instances", "micro_step")
-_OPTIONAL = ("tolerance", "terminal", "agree")
+_OPTIONAL = ("tolerance", "tunable", "terminal", "agree")
 INSTANCES_MAX = 64
 
 
@@ -35,6 +35,7 @@ class Packing:
     # error of one integrator step, as a share of what is large for a state: the steps follow it.
     # None: equal steps
     tolerance: float | None = None
+    tunable: list[str] = field(default_factory=list)  # Real parameters that may change in a run
     terminal: dict[str, Any] = field(default_factory=dict)  # as in every fmu.toml
     agree: dict[str, Any] = field(default_factory=dict)  # likewise
 
@@ -56,6 +57,7 @@ def read(toml: Path) -> Packing:
     look("instances", lambda x: type(x) is int and 1 <= x <= INSTANCES_MAX, whole)
     look("micro_step", _step, "is not a positive number")
     look("tolerance", _tolerance, "is not a number from 1e-12 to 0.01")
+    look("tunable", _names, "is not a list of names, each once")
     if look("modelica", lambda x: matches(r"\w+(\.\w+)+", x), "is not a class name"):
         top = doc["modelica"].split(".")[0]
         places = [p / "modelica" / top for p in toml.resolve().parents]
@@ -71,6 +73,11 @@ def read(toml: Path) -> Packing:
 
 def _step(x: Any) -> bool:
     return type(x) in (float, int) and math.isfinite(x) and x > 0
+
+
+def _names(x: Any) -> bool:
+    good = isinstance(x, list) and all(isinstance(n, str) for n in x)
+    return good and len(set(x)) == len(x)
 
 
 def _tolerance(x: Any) -> bool:
@@ -99,8 +106,14 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
             elements = [
                 (d, value) for d, value in zip(group, values, strict=True) if d.port == name
             ]
-            own.append((name, elements[0][0].kind, _row(ode, elements, packing.instances)))
+            row = _row(ode, elements, packing.instances)
+            tuned = {"tunable": True} if name in packing.tunable else {}
+            own.append((name, elements[0][0].kind, row | tuned))
     names = [name for name, _, _ in own]
+    real = {d.port for d in ode.parameters if d.type == "Real"}
+    if unknown := [n for n in packing.tunable if n not in real]:
+        what = f"tunable: {packing.modelica} has no Real parameter {unknown[0]!r}"
+        raise ValueError(f"{toml}: {what}")
     try:
         for name, most in (("active", 1), ("micro_step", 1), (describe.STRICT, 0)):
             if names.count(name) > most:

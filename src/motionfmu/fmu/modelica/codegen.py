@@ -47,7 +47,8 @@ def write(toml: Path, out: Path) -> Description:
     ode = causal.load(packing.package, packing.modelica)
     described = class_description.describe_class(toml, packing, ode)
     out.mkdir(parents=True, exist_ok=True)
-    code, header = generate(ode, packing.instances, packing.tolerance)
+    how = packing.tolerance, tuple(packing.tunable)
+    code, header = generate(ode, packing.instances, *how)
     texts = {"plant.c": code, "plant.h": header, equation_text.FILE: equation_text.to_json(ode)}
     for name, text in texts.items():
         file = out / name
@@ -56,8 +57,12 @@ def write(toml: Path, out: Path) -> Description:
     return described
 
 
-def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[str, str]:
+def generate(
+    ode: Ode, instances: int, tolerance: float | None = None, tunable: tuple[str, ...] = ()
+) -> tuple[str, str]:
     """Text of plant.c and plant.h; one instance has scalars, more have arrays.
+
+    Parameters of `tunable` may change in a run.
 
     With a tolerance, the error of one step, the steps follow the error, and each axis has steps of
     its own. A ValueError tells of too many branches, or an operation without a form in C.
@@ -85,21 +90,26 @@ def generate(ode: Ode, instances: int, tolerance: float | None = None) -> tuple[
         "CONSTANTS": len(equations.constants),
         "BRANCHES": bits,
         "CONTROLLED": int(tolerance is not None),
+        "TUNABLES": len(tunable),
     }
     note = _NOTE.format(ode.name)
     return (
         note
-        + "#include <math.h>\n#include <stddef.h>\n\n"
+        + "#include <math.h>\n#include <stddef.h>\n#include <string.h>\n\n"
         + '#include "elementary.h"\n#include "plant.h"\n\n'
         + "\n".join(
             [
                 _ports(ode, "[instance]" if instances > 1 else ""),
+                _tuned(tunable),
                 _of_parameters(ode, equations),
                 *_loops(ode, equations, used),
             ]
         )
         + _jacobian(ode, jacobian, branches),
-        note + _header(sizes, used, tolerance),
+        note
+        + _header(sizes, used, tolerance).replace(
+            _MEMBERS, _tuned_members(ode, tunable, instances)
+        ),
     )
 
 
@@ -186,6 +196,31 @@ def _ports(ode: Ode, element: str) -> str:
             ),
         ]
     )
+
+
+_MEMBERS = "    /* members */"
+
+
+def _tuned_members(ode: Ode, tunable: tuple[str, ...], instances: int) -> str:
+    """Members of struct plant_tuned; C wants one at least."""
+    ports = [d.port for d in ode.parameters]
+    sizes = {name: ports.count(name) * instances for name in tunable}
+    return "\n".join(f"    double {n}[{size}];" for n, size in sizes.items()) or "    char none;"
+
+
+def _tuned(tunable: tuple[str, ...]) -> str:
+    """C function that looks for changed parameters."""
+    lines = []
+    for name in tunable:
+        both = f"was->{name}, &v->{name}, sizeof was->{name}"
+        lines += [
+            f"if (memcmp({both}) != 0) {{",
+            f"    memcpy({both});",
+            "    changed = true;",
+            "}",
+        ]
+    head = "bool plant_tuned(const struct vars *v, struct plant_tuned *was)"
+    return _function(head, ["bool changed = false;", *lines, "return changed;"])
 
 
 def _single(_: int, node: Node) -> str | None:
@@ -313,6 +348,8 @@ def _header(sizes: dict[str, int], used: tuple[int, ...], tolerance: float | Non
     return f"""#ifndef PLANT_H
 #define PLANT_H
 
+#include <stdbool.h>
+
 #include "plant_machine.h"
 #include "vars.h"
 
@@ -342,6 +379,13 @@ extern const char *const plant_output_names[PLANT_OUTPUTS];
 
 /* Between struct vars and plain numbers. u and y step by `lanes`. */
 int plant_active(const struct vars *v, int instance);
+
+/* Parameters that may change in a run, as they were looked at last. True if one has changed since;
+ * *was has the new ones. */
+struct plant_tuned {{
+{_MEMBERS}
+}};
+bool plant_tuned(const struct vars *v, struct plant_tuned *was);
 void plant_parameters(const struct vars *v, int instance, double *p);
 void plant_inputs(const struct vars *v, int instance, int lanes, double *u);
 void plant_show(struct vars *v, int instance, int lanes, const double *y);

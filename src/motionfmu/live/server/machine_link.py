@@ -13,6 +13,7 @@ from typing import Any
 from motionfmu.base.children import child
 from motionfmu.base.errors import InputError
 from motionfmu.live import machine_process
+from motionfmu.live.exchange import ExchangePlan
 from motionfmu.live.machine_process import HEAD, packed
 
 # Of a machine that does not end by itself [s]: what was done may have to be saved.
@@ -38,6 +39,8 @@ class MachineStart:
         Whether it goes at once.
     save_as : str, optional
         Folder of the scenario that is written when it ends, however that comes about.
+    exchange : ExchangePlan, optional
+        Signals that go to another program, and come from it.
     """
 
     path: str
@@ -46,6 +49,7 @@ class MachineStart:
     pace: float | None = 1.0
     running: bool = True
     save_as: str | None = None
+    exchange: ExchangePlan | None = None
 
 
 class MachineLink:

@@ -57,7 +57,7 @@ Path = Annotated[str, Field(min_length=1, max_length=1024)]
 class Request(BaseModel):
     """A request: its docstring is what the documentation says, its fields are the arguments."""
 
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config = ConfigDict(extra="forbid", strict=True, defer_build=True)
     hand: ClassVar[bool] = True  # whether one must have the machine in hand
     server: ClassVar[bool] = False  # whether the server itself answers
     socket: ClassVar[bool] = False  # whether it is for a WebSocket only
@@ -121,6 +121,14 @@ class AskMdi(Request):
     gives: ClassVar[str] = '{"number": of the line, which the controller tells as taken}'
     line: Text
     component: Name | None = Field(None, description="none: the only one that takes lines")
+
+
+class AskCommand(Request):
+    """Give a command that the component's panel has."""
+
+    gives: ClassVar[str] = "time from which it acts [s]"
+    component: Name
+    name: Name = Field(description="its name in the panel")
 
 
 class AskStop(Request):
@@ -304,7 +312,7 @@ REQUESTS = {kind.word(): kind for kind in Request.__subclasses__()}
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedRequest:
     """A request that is known, with arguments that are right in themselves."""
 
     name: str
@@ -312,7 +320,7 @@ class Checked:
     arguments: dict[str, Any]
 
 
-def checked(name: Any, arguments: Any) -> Checked:
+def checked(name: Any, arguments: Any) -> CheckedRequest:
     """What is asked; an InputError says what is wrong with it."""
     if not isinstance(name, str) or name not in REQUESTS:
         raise InputError(f"{shown(name)[:80]}: no such request{suggestion(str(name), REQUESTS)}")
@@ -323,7 +331,7 @@ def checked(name: Any, arguments: Any) -> Checked:
         given = kind.model_validate(arguments)
     except ValidationError as error:
         raise InputError(f"{name}: {_told(error, kind)}") from None
-    return Checked(name, kind, given.model_dump(exclude_unset=True))
+    return CheckedRequest(name, kind, given.model_dump(exclude_unset=True))
 
 
 def parsed(text: str | bytes) -> Any:

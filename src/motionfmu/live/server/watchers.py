@@ -15,12 +15,12 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import same
 from motionfmu.live.server.hand import Hand, Holder
 from motionfmu.live.server.machine_link import MachineLink
-from motionfmu.live.server.request_table import Checked, checked, parsed
+from motionfmu.live.server.request_table import CheckedRequest, checked, parsed
 
 PERIOD = 1 / 50  # [s] between two frames
 PATIENCE = 5.0  # [s] for the token, and for a page that takes nothing
 PAGES = 100  # open at once
-STRANGERS = 32  # connections that have not said the token yet
+STRANGERS = 100  # connections that have not said the token yet
 SAMPLES = 1 << 14  # of a channel, that a page is sent at a time
 ANSWERS = 64  # that wait for a page to take them; it is not listened to until then
 PROGRAMS = 16  # keys of the hand that programs have by HTTP
@@ -106,6 +106,8 @@ class Watchers:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
             await self.hand.drop(watcher)
+            with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+                await socket.close(1011, "the page takes nothing")
 
     async def _knows(self, socket: WebSocket) -> bool:
         """Whether a page knows the token."""
@@ -152,7 +154,7 @@ class Watchers:
         watcher.asked.discard(asyncio.current_task())
         watcher.put(text_of(answer))
 
-    async def do(self, who: Holder, asked: Checked) -> Any:
+    async def do(self, who: Holder, asked: CheckedRequest) -> Any:
         """Do what somebody asks."""
         if asked.kind.hand:
             self.hand.needed(who)
@@ -182,7 +184,7 @@ class Watchers:
         about, data = await self._link.ask_with_data("recording", number=number)
         who.put(text_of({"triggered": about}), data)
 
-    async def do_by_http(self, key: str, asked: Checked) -> Any:
+    async def do_by_http(self, key: str, asked: CheckedRequest) -> Any:
         """Do what a program asks, which has the hand by a key."""
         if asked.kind.socket:
             raise InputError(f"{asked.name}: by WebSocket only")
