@@ -12,6 +12,7 @@ from browser import PHONE
 from browser import tab as browser_tab
 from conftest import ROOT
 from live_pages import serving
+from page_rules import RULES
 from page_words import WORDS
 
 import motionfmu
@@ -358,7 +359,7 @@ def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
-def test_no_text_lies_over_text_and_nothing_is_too_wide(
+def test_everyone_can_read_and_reach_every_view(
     browser: Any, address: str, size: dict[str, int], theme: Any
 ) -> None:
     with browser_tab(browser, address, size) as tab:
@@ -369,6 +370,9 @@ def test_no_text_lies_over_text_and_nothing_is_too_wide(
             assert tab.locator("html").evaluate("e => e.scrollWidth") == size["width"], view
             wrong = [w for w in tab.evaluate(WORDS) if "Emergency stop" not in w]
             assert wrong == [], view
+            found = tab.evaluate(RULES)
+            assert found["words"] > 30
+            assert {rule: bad for rule, bad in found["wrong"].items() if bad} == {}, view
         stop = tab.locator("#stop").bounding_box()
         assert 0 <= stop["y"] and stop["y"] + stop["height"] <= size["height"]
 

@@ -245,7 +245,23 @@ class LiveMachine:
         return next(map(str, texts), None)
 
     def parameter(self, name: str) -> tuple[Any, ...]:
-        """The elements of a parameter as the machine began: set, or of its description."""
+        """A parameter as the machine began.
+
+        Parameters
+        ----------
+        name : str
+            ``component.variable``.
+
+        Returns
+        -------
+        tuple
+            Its elements, set or of the FMU's description.
+
+        Raises
+        ------
+        InputError
+            There is no such variable.
+        """
         found = (s.values for s in self._system.settings if s.end.name == name)
         return next(found, tuple(start_values(self.scenario.resolver.end(name, "", "").port)))
 
