@@ -9,6 +9,7 @@
  * times between two datagrams. */
 #define _POSIX_C_SOURCE 200809L
 #include <arpa/inet.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,6 +46,36 @@ static int class_of(double seconds)
     return k;
 }
 
+/* A socket that hears on a port of this machine for 0.1 s at a time; -1. */
+static int open_link(const char *port)
+{
+    struct sockaddr_in own = { .sin_family = AF_INET, .sin_port = htons((uint16_t)atoi(port)) };
+    const struct timeval wait = { .tv_usec = 100000 };
+    const int s = socket(AF_INET, SOCK_DGRAM, 0);
+    own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (s < 0 || bind(s, (struct sockaddr *)&own, sizeof own) != 0) {
+        return -1;
+    }
+    setsockopt(s, SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
+    return s;
+}
+
+/* Hear one datagram with two values; false if none came. */
+static bool hear(int s, struct datagram *in)
+{
+    const ssize_t size = recv(s, in, sizeof *in, 0);
+    return size == HEAD + 16 && memcmp(in->magic, "MFX1", 4) == 0 && in->count == 2;
+}
+
+static void print_times(const unsigned long late[CLASSES])
+{
+    for (int k = 0; k < CLASSES; k++) {
+        if (late[k]) {
+            printf("  up to %8.0f: %lu\n", (double)(1u << k), late[k]);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     if (argc != 5 && argc != 7) {
@@ -53,25 +84,19 @@ int main(int argc, char **argv)
     }
     const double stiffness = argc == 7 ? atof(argv[5]) : 1e5;
     const double damping = argc == 7 ? atof(argv[6]) : 1e3;
-    struct sockaddr_in own = { .sin_family = AF_INET, .sin_port = htons((uint16_t)atoi(argv[1])) };
     struct sockaddr_in host = { .sin_family = AF_INET, .sin_port = htons((uint16_t)atoi(argv[3])) };
-    own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const int s = socket(AF_INET, SOCK_DGRAM, 0);
-    if (s < 0 || inet_pton(AF_INET, argv[2], &host.sin_addr) != 1
-        || bind(s, (struct sockaddr *)&own, sizeof own) != 0) {
+    const int s = open_link(argv[1]);
+    if (s < 0 || inet_pton(AF_INET, argv[2], &host.sin_addr) != 1) {
         perror("peer");
         return 1;
     }
-    const struct timeval wait = { .tv_usec = 100000 };
-    setsockopt(s, SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
     const double end = now() + atof(argv[4]);
     uint32_t number = 0, last = 0;
     unsigned long taken = 0, missing = 0, late[CLASSES] = { 0 };
     double before = 0.0;
     while (now() < end) {
         struct datagram in, out = { .magic = { 'M', 'F', 'X', '1' }, .count = 1 };
-        const ssize_t size = recv(s, &in, sizeof in, 0);
-        if (size != HEAD + 16 || memcmp(in.magic, "MFX1", 4) != 0 || in.count != 2) {
+        if (!hear(s, &in)) {
             continue;
         }
         const double at = now();
@@ -87,11 +112,7 @@ int main(int argc, char **argv)
         sendto(s, &out, HEAD + 8, 0, (struct sockaddr *)&host, sizeof host);
     }
     printf("taken %lu, missing %lu; times between two [us]:\n", taken, missing);
-    for (int k = 0; k < CLASSES; k++) {
-        if (late[k]) {
-            printf("  up to %8.0f: %lu\n", (double)(1u << k), late[k]);
-        }
-    }
+    print_times(late);
     close(s);
     return taken ? 0 : 1;
 }

@@ -20,7 +20,7 @@ from opcua_bench import client_of
 
 from motionfmu.live.opcua import OpcUaServer, nodesets
 from motionfmu.live.opcua.node_table import RULES, TypeNode, type_nodes
-from motionfmu.live.server import MachineLink
+from motionfmu.live.serving import MachineLink
 
 _TAG = "{http://opcfoundation.org/UA/2011/03/UANodeSet.xsd}"
 _VALUE = "{http://opcfoundation.org/UA/2008/02/Types.xsd}"

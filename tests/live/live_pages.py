@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.base.page_server import PageServer
-from motionfmu.live.server import MachineLink, application
-from motionfmu.live.server.app import MESSAGE_MAX
-from motionfmu.live.server.machine_link import MachineStart
+from motionfmu.live.serving import MachineLink, application
+from motionfmu.live.serving.machine_app import MESSAGE_MAX
+from motionfmu.live.serving.machine_link import MachineStart
 
 TOKEN = "a-token"
 

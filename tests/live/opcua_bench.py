@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from motionfmu.live.opcua import OpcUaServer
-from motionfmu.live.server import MachineLink
+from motionfmu.live.serving import MachineLink
 
 READER = Path(__file__).with_name("ua_reader.py")
 # Straight lines at 50 mm/s, with a stop (M0) before the last one.

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from motionfmu.base.errors import InputError
-from motionfmu.live.server import GrblPort, MachineLink, MachineStart
+from motionfmu.live.serving import GrblPort, MachineLink, MachineStart
 
 PATIENCE = 60.0  # [s] on the wall for an answer
 LOCKED = b"[MSG:'$H'|'$X' to unlock]\r\n"

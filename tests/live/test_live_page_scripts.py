@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from py_mini_racer import MiniRacer
 
-PAGE = ROOT / "src/motionfmu/live/server/page"
+PAGE = ROOT / "src/motionfmu/live/serving/page"
 MODULES = ("words", "contour", "trace_ring", "spectrum", "trace_files", "scope_scale")
 
 

@@ -13,7 +13,7 @@ import motionfmu
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveMachine, Pace
 from motionfmu.live.machine_loop import LoopRequest, MachineLoop
-from motionfmu.live.server.request_table import REQUESTS, checked, openapi, parsed
+from motionfmu.live.serving.request_table import REQUESTS, checked, openapi, parsed
 
 
 class Wall:

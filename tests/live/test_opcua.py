@@ -17,7 +17,7 @@ from motionfmu.base import extras
 from motionfmu.base.errors import InputError
 from motionfmu.live.opcua import OpcUaServer
 from motionfmu.live.opcua.opcua_server import MESSAGE_MAX
-from motionfmu.live.server import MachineLink
+from motionfmu.live.serving import MachineLink
 
 
 def test_a_program_with_hold_override_alarm_and_reset(tmp_path: Path) -> None:

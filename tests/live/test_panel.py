@@ -8,7 +8,7 @@ import pytest
 from motionfmu import run
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveMachine, panel
-from motionfmu.live.panel import Panel, panel_of
+from motionfmu.live.panel import OperatorPanel, panel_of
 
 ROOT = Path(__file__).resolve().parents[2]
 CARRIED = sorted(p.parent.name for p in ROOT.glob("fmus/*/panel.toml"))
@@ -19,7 +19,7 @@ def test_names_of_a_panel_are_variables_that_fit_their_use(fmu: str) -> None:
     from motionfmu.scenarios import fmus
 
     found, ports = panel_of(fmu), fmus.ports(fmu)
-    assert isinstance(found, Panel)
+    assert isinstance(found, OperatorPanel)
     settable = [*found.key, *found.dial, *found.fault]
     settable += [found.stop] if found.stop else []
     for name in settable:

@@ -352,8 +352,8 @@ def test_a_nominal_of_states_is_refused(small):
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ('["tua"]', "tunable: Small.Axis has no Real parameter 'tua'"),
-        ('["x"]', "tunable: Small.Axis has no Real parameter 'x'"),
+        ('["tua"]', "Small.Axis: tunable: it has no Real parameter 'tua'"),
+        ('["x"]', "Small.Axis: tunable: it has no Real parameter 'x'"),
         ('["tau", "tau"]', "is not a list of names, each once"),
         ("true", "is not a list of names, each once"),
         ("[1]", "is not a list of names, each once"),

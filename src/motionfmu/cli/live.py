@@ -12,7 +12,7 @@ from motionfmu.base.extras import needed
 from motionfmu.cli.common import FAILED, Set, app, out, setting, settings
 
 if TYPE_CHECKING:
-    from motionfmu.live.server import MachineStart
+    from motionfmu.live.serving import MachineStart
 
 PORT_MAX = 65535
 
@@ -79,7 +79,7 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
     from motionfmu.live.exchange import ExchangePlan
-    from motionfmu.live.server import MachineStart
+    from motionfmu.live.serving import MachineStart
 
     plan = None
     if exchange is None and (send or take):
@@ -130,7 +130,7 @@ async def _serve(start: "MachineStart", ports: _Ports, opened: bool) -> None:
 
     from motionfmu.base.page_server import PageServer
     from motionfmu.cli.card import on_end, stopped
-    from motionfmu.live.server import MESSAGE_MAX, GrblPort, MachineLink, application
+    from motionfmu.live.serving import MESSAGE_MAX, GrblPort, MachineLink, application
 
     ended = asyncio.Event()
     came = on_end(ended.set)

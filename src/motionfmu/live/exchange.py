@@ -121,7 +121,7 @@ class Exchange:
         return int(self._socket.getsockname()[1])
 
     def step(self) -> None:
-        """Send what is, take what has come; call it before a communication step."""
+        """Take what has come, send what is, before a communication step."""
         self._receive()
         if not self.lost and self._machine.steps - self._heard_at > self._patience:
             self._lose()

@@ -9,7 +9,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.live.live_machine import LiveMachine
-from motionfmu.live.panel import Mdi, Panel, panel_of
+from motionfmu.live.panel import Mdi, OperatorPanel, panel_of
 
 PRESS = 0.01  # [s] of simulated time that a key is down
 DEAD_MAN = 0.1  # [s] on the wall without a sign of who holds a key, and it is let go
@@ -47,7 +47,7 @@ class ManualInputs:
         self._lines: dict[str, _WaitingLines] = {}
         components = machine.scenario.document.body.component
         panels = {component: panel_of(fmu) for component, fmu in components.items()}
-        self.panels: dict[str, Panel] = {c: p for c, p in panels.items() if p is not None}
+        self.panels: dict[str, OperatorPanel] = {c: p for c, p in panels.items() if p is not None}
 
     def act(self) -> None:
         """Do what is due before the next step."""
@@ -188,7 +188,7 @@ class ManualInputs:
         if panel is not None and variable in (panel.stop, ABORT) and value:
             self._lines.pop(component, None)
 
-    def _panel(self, component: str) -> Panel:
+    def _panel(self, component: str) -> OperatorPanel:
         if component in self.panels:
             return self.panels[component]
         known = self._machine.scenario.document.body.component

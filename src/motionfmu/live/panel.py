@@ -12,18 +12,18 @@ from motionfmu.scenarios import fmus
 FILE = "panel.toml"
 
 
-class _Table(BaseModel):
+class _PanelTable(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True)
 
 
-class Key(_Table):
+class Key(_PanelTable):
     """A key: pressed for a moment, or a switch that stays."""
 
     label: str
     kind: Literal["press", "switch"]
 
 
-class Dial(_Table):
+class Dial(_PanelTable):
     """A number that an operator turns, between the variable's limits or its own."""
 
     label: str
@@ -31,13 +31,13 @@ class Dial(_Table):
     high: float | None = None
 
 
-class Lamp(_Table):
+class Lamp(_PanelTable):
     """A truth that is shown."""
 
     label: str
 
 
-class Jog(_Table):
+class Jog(_PanelTable):
     """Motion by hand: an array of directions, its speed, an increment."""
 
     direction: str
@@ -46,7 +46,7 @@ class Jog(_Table):
     frame: str | None = None
 
 
-class Readout(_Table):
+class Readout(_PanelTable):
     """Outputs that are numbers of the machine."""
 
     machine: str | None = None
@@ -58,7 +58,7 @@ class Readout(_Table):
     modes: str | None = None
 
 
-class Mdi(_Table):
+class Mdi(_PanelTable):
     """Lines that are typed: the line, its number, the last number taken, refusals."""
 
     line: str
@@ -71,7 +71,7 @@ class Mdi(_Table):
     refused: str | None = None
 
 
-class PanelCommand(_Table):
+class PanelCommand(_PanelTable):
     """Commands by number: the code is set, then a new number takes it once."""
 
     code: str
@@ -85,7 +85,7 @@ ByHand = Literal[
 ]
 
 
-class Monitor(_Table):
+class Monitor(_PanelTable):
     """What the values of `state` are to who looks at a controller from outside.
 
     The program moves, waits, is being ended, has failed, an axis moves by hand; any other value
@@ -110,7 +110,7 @@ class Monitor(_Table):
         return [*self.begins, *(n for n in single if n is not None)]
 
 
-class Panel(_Table):
+class OperatorPanel(_PanelTable):
     """The tables of a panel.toml; all names are of variables of its FMU."""
 
     title: str
@@ -141,14 +141,14 @@ class Panel(_Table):
 
 
 @functools.cache
-def panel_of(fmu: str) -> Panel | None:
+def panel_of(fmu: str) -> OperatorPanel | None:
     """The panel that an FMU carries; None if it has none."""
     text = fmus.extra(fmu, FILE)
     if text is None:
         return None
     where = f"fmus/{fmu}/{FILE}"
     try:
-        panel = Panel.model_validate(tomllib.loads(text))
+        panel = OperatorPanel.model_validate(tomllib.loads(text))
     except (tomllib.TOMLDecodeError, ValidationError) as error:
         raise InputError(f"{where}: {' '.join(str(error).split())}") from None
     ports = fmus.ports(fmu)

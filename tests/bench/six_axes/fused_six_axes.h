@@ -15,7 +15,8 @@ enum { USED = 6 };
     X(mcc, position, double, AXES) X(mcc, compensation, int32_t, AXES)                            \
     X(mcc, spindle_speed, double, 1) X(mcc, coolant, int32_t, 1) X(mcc, digital_out, int32_t, 1)  \
     X(mcc, work_offset, double, AXES) X(mcc, distance_to_go, double, AXES)                        \
-    X(mcc, system, int32_t, 1) X(mcc, mdi_taken, int32_t, 1)           \
+    X(mcc, probed, double, AXES) X(mcc, probe_found, bool, 1)                                     \
+    X(mcc, system, int32_t, 1) X(mcc, mdi_taken, int32_t, 1)                                      \
     X(mcc, mdi_room, int32_t, 1) X(mcc, mdi_lines, int32_t, 1) X(mcc, mdi_done, int32_t, 1)       \
     X(mcc, mdi_fault, int32_t, 1) X(mcc, mdi_refused, int32_t, 1)                                 \
     X(mcc, queue, int32_t, 1) X(mcc, starved, int32_t, 1) X(mcc, services, int32_t, 1)            \

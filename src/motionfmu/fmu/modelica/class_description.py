@@ -110,11 +110,8 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
             tuned = {"tunable": True} if name in packing.tunable else {}
             own.append((name, elements[0][0].kind, row | tuned))
     names = [name for name, _, _ in own]
-    real = {d.port for d in ode.parameters if d.type == "Real"}
-    if unknown := [n for n in packing.tunable if n not in real]:
-        what = f"tunable: {packing.modelica} has no Real parameter {unknown[0]!r}"
-        raise ValueError(f"{toml}: {what}")
     try:
+        _check_tunable(packing, ode)
         for name, most in (("active", 1), ("micro_step", 1), (describe.STRICT, 0)):
             if names.count(name) > most:
                 raise ValueError(f"the name {name} is taken: every plant has it")
@@ -133,6 +130,12 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
         terminals=tuple(joined),
         agree=tuple(shared),
     )
+
+
+def _check_tunable(packing: Packing, ode: Ode) -> None:
+    real = {d.port for d in ode.parameters if d.type == "Real"}
+    if unknown := [n for n in packing.tunable if n not in real]:
+        raise ValueError(f"tunable: it has no Real parameter {unknown[0]!r}")
 
 
 def _dims(instances: int) -> list[int]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.live.opcua.channel_watch import ChannelSample, ChannelWatch, ProgramState
-from motionfmu.live.panel import Monitor, Panel, panel_of
+from motionfmu.live.panel import Monitor, OperatorPanel, panel_of
 from motionfmu.scenarios import fmus
 
 # [journal actions] A frame's worth of what many hands do between two looks.
@@ -36,7 +36,7 @@ class ControllerChannel:
 
     component: str
     fmu: str
-    panel: Panel
+    panel: OperatorPanel
     variables: Mapping[str, Any]  # those that can be read, as the machine tells of them
     values: dict[str, Any] = field(default_factory=dict)
     alarm: Alarm | None = None

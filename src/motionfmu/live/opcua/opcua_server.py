@@ -21,7 +21,7 @@ from motionfmu.live.opcua.controller_channel import ActionReader, Alarm, channel
 from motionfmu.live.opcua.machine_nodes import MachineNodes
 from motionfmu.live.opcua.node_table import TypeNode
 from motionfmu.live.opcua.node_tree import NodeTree
-from motionfmu.live.server.machine_link import MachineLink
+from motionfmu.live.serving.machine_link import MachineLink
 
 HOST = "127.0.0.1"
 PATH = "motionfmu"

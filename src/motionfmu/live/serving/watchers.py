@@ -13,9 +13,9 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import same
-from motionfmu.live.server.hand import Hand, Holder
-from motionfmu.live.server.machine_link import MachineLink
-from motionfmu.live.server.request_table import CheckedRequest, checked, parsed
+from motionfmu.live.serving.hand import Hand, Holder
+from motionfmu.live.serving.machine_link import MachineLink
+from motionfmu.live.serving.request_table import CheckedRequest, checked, parsed
 
 PERIOD = 1 / 50  # [s] between two frames
 PATIENCE = 5.0  # [s] for the token, and for a page that takes nothing

@@ -16,10 +16,10 @@ import motionfmu.base
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import Guard, same
 from motionfmu.live.file_record import RecordHead, csv_head, csv_rows
-from motionfmu.live.server.machine_link import MachineLink
-from motionfmu.live.server.planned_path import planned_path
-from motionfmu.live.server.request_table import checked, openapi, parsed
-from motionfmu.live.server.watchers import Watchers, text_of
+from motionfmu.live.serving.machine_link import MachineLink
+from motionfmu.live.serving.planned_path import planned_path
+from motionfmu.live.serving.request_table import checked, openapi, parsed
+from motionfmu.live.serving.watchers import Watchers, text_of
 
 FILES = Path(__file__).parent / "page"
 SHARED = Path(motionfmu.base.__file__).parent / "machine_picture"

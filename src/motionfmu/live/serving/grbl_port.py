@@ -8,8 +8,8 @@ import sys
 from types import TracebackType
 
 from motionfmu.base.errors import InputError
-from motionfmu.live.server.grbl_session import GrblSession
-from motionfmu.live.server.machine_link import MachineLink
+from motionfmu.live.serving.grbl_session import GrblSession
+from motionfmu.live.serving.machine_link import MachineLink
 
 HOST = "127.0.0.1"
 PORT_MAX = 65535

@@ -7,7 +7,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.live.grbl.grbl_binding import GrblBinding
-from motionfmu.live.server.machine_link import MachineLink
+from motionfmu.live.serving.machine_link import MachineLink
 
 IDLE = 0.02  # [s] between two looks while nothing is asked
 
