@@ -20,7 +20,7 @@ from opcua_bench import client_of
 
 from motionfmu.live.opcua import OpcUaServer, nodesets
 from motionfmu.live.opcua.node_table import RULES, TypeNode, type_nodes
-from motionfmu.live.serving import MachineLink
+from motionfmu.live.serving import MachineLink, MachineStart
 
 _TAG = "{http://opcfoundation.org/UA/2011/03/UANodeSet.xsd}"
 _VALUE = "{http://opcfoundation.org/UA/2008/02/Types.xsd}"
@@ -159,7 +159,7 @@ class Comparison:
 async def _loaded(folder: Path, name: str) -> list[str]:
     """What the published types want of a machine that is not there."""
     async with (
-        MachineLink(name, running=False) as link,
+        MachineLink(MachineStart(name, running=False)) as link,
         OpcUaServer(link, 0, folder) as port,
         client_of(port) as client,
     ):

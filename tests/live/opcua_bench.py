@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from motionfmu.live.opcua import OpcUaServer
-from motionfmu.live.serving import MachineLink
+from motionfmu.live.serving import MachineLink, MachineStart
 
 READER = Path(__file__).with_name("ua_reader.py")
 # Straight lines at 50 mm/s, with a stop (M0) before the last one.
@@ -104,7 +104,7 @@ async def server_of(
     (place / "scenario.toml").write_text(SCENARIO)
     (place / "part.ngc").write_text(PROGRAM)
     async with (
-        MachineLink(str(place), running=False) as link,
+        MachineLink(MachineStart(str(place), running=False)) as link,
         OpcUaServer(link, 0, nodesets) as port,
     ):
         yield link, port

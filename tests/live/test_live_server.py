@@ -50,7 +50,8 @@ class Served:
         return int(child)
 
     def page(self, **more: Any) -> "Page":
-        return Page(open_socket(f"ws://127.0.0.1:{self.port}/live", max_size=None, **more), self)
+        opening = open_socket(f"ws://127.0.0.1:{self.port}/live", max_size=None, **more)
+        return Page(opening.__enter__(), self)
 
     def http(
         self, path: str, body: Any = None, headers: dict[str, str] | None = None

@@ -17,7 +17,7 @@ from motionfmu.base import extras
 from motionfmu.base.errors import InputError
 from motionfmu.live.opcua import OpcUaServer
 from motionfmu.live.opcua.opcua_server import MESSAGE_MAX
-from motionfmu.live.serving import MachineLink
+from motionfmu.live.serving import MachineLink, MachineStart
 
 
 def test_a_program_with_hold_override_alarm_and_reset(tmp_path: Path) -> None:
@@ -220,7 +220,7 @@ OTHERS = [
 def test_other_machines(name: str, time: float, component: str, state: int, program: str) -> None:
     async def work() -> None:
         async with (
-            MachineLink(name, running=False) as link,
+            MachineLink(MachineStart(name, running=False)) as link,
             OpcUaServer(link, 0) as port,
             client_of(port) as client,
         ):
@@ -251,7 +251,7 @@ def test_a_port_that_is_taken(tmp_path: Path) -> None:
     async def work() -> None:
         with socket.create_server(("127.0.0.1", 0)) as taken:
             port = taken.getsockname()[1]
-            async with MachineLink("circle", running=False) as link:
+            async with MachineLink(MachineStart("circle", running=False)) as link:
                 with pytest.raises(InputError, match=rf"^OPC UA 127\.0\.0\.1:{port}: Address alr"):
                     async with OpcUaServer(link, port):
                         pass

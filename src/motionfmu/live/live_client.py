@@ -50,9 +50,10 @@ class LiveClient:
             raise InputError(f"{url}: the address that motionfmu live prints is wanted")
         self._number, self._failed = 0, WebSocketException
         try:
-            self._socket = connect(
+            opening = connect(
                 f"ws://{parts.netloc}/live", max_size=None, compression=None, proxy=None
             )
+            self._socket = opening.__enter__()  # before websockets 17 it was open already
             self._socket.send(token)
             self.about: dict[str, Any] = json.loads(self._socket.recv(_PATIENCE))["about"]
         except (OSError, WebSocketException) as error:
