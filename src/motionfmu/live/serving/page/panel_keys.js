@@ -36,7 +36,9 @@ function groupOf(panel, titled) {
 function keyOf(name, { label, kind }) {
   const own = variable(name), number = own.type !== "Boolean";
   const [, colour] = KINDS.find(([words]) => words.test(label)) ?? [, "plain"];
-  const button = made("button", label, { type: "button", className: `pad ${colour}`, title: own.doc });
+  // A switch only says that something is on: it starts and stops nothing by itself.
+  const look = kind === "switch" && colour !== "hold" ? "plain" : colour;
+  const button = made("button", label, { type: "button", className: `pad ${look}`, title: own.doc });
   if (kind === "switch") mark(button, "aria-pressed", false);
   button.addEventListener("click", () => {
     if (kind === "press") act("press", number ? { name, value: 1, rest: 0 } : { name });

@@ -48,7 +48,8 @@ async function choose(names) {
   if (names.length > about.channels) return;
   try { localStorage.setItem(key(), JSON.stringify(names)); } catch { /* no store */ }
   asking = true;
-  const done = frame && !frame.hand ? undefined : await act("channels", { names });
+  const done = frame ? frame.hand ? await act("channels", { names }) : undefined
+    : await ask("channels", { names }).then(() => true, () => undefined); // nobody has asked for them yet
   asking = false;
   if (done !== undefined) adopt(names);
 }
