@@ -132,7 +132,7 @@ class Instance:
         v = self.variables[name]
         values = list(value) if isinstance(value, list | tuple | np.ndarray) else [value] * v.count
         if v.type == "String":
-            values = [x.encode() for x in values]
+            values = [x if isinstance(x, bytes) else x.encode() for x in values]
         array = (_CALL[v.type][self.fmi] * v.count)(*values)
         return self._access("Set", name, array)
 
