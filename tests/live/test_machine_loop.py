@@ -294,3 +294,23 @@ def test_the_loop_ends_from_another_thread() -> None:
         loop.asked.put(LoopRequest("end", {}, lambda value, error: None))
         thread.join(20)
         assert not thread.is_alive()
+
+
+@pytest.mark.parametrize("name", ["pause", "back"])
+def test_nothing_moves_once_a_pause_is_answered(bench: Bench, name: str) -> None:
+    """As fast as it goes, where a turn more would be a thousand steps."""
+    loop, machine = bench.loop, bench.machine
+    loop.pace.set(math.inf)
+    bench.turns(0.0)
+    loop.advance(25_000)
+    stood = []
+
+    def answered(value: object, error: str | None) -> None:
+        stood.append(machine.steps)
+        end = LoopRequest("end", {}, lambda value, error: None)
+        threading.Timer(0.2, loop.asked.put, (end,)).start()
+
+    arguments = {"time": 1.5} if name == "back" else {}
+    loop.asked.put(LoopRequest(name, arguments, answered))
+    loop.run()
+    assert [machine.steps] == stood == [10_000 if name == "back" else 25_000]

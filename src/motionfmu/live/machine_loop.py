@@ -67,12 +67,15 @@ class MachineLoop:
     def run(self) -> None:
         """Run until it is told to end."""
         while not self.ended:
-            busy = self.running or self._goal is not None
-            self._answer(wait=not busy)
-            if busy and not self.ended:
+            self._answer(wait=not self._busy)
+            if self._busy and not self.ended:  # not if a pause has just been asked for
                 self._turn()
         for record in self._scope.end_records():
             record.passed(10.0)
+
+    @property
+    def _busy(self) -> bool:
+        return self.running or self._goal is not None
 
     def _answer(self, wait: bool) -> None:
         """Do what is asked; if the machine stands, wait for it."""
