@@ -320,12 +320,21 @@ struct plant_axis {
     int sub_steps;                  /* 0: not active, or already placed */
 };
 
+/* Put the constants of parameters into a lane of a block. */
+static void plant_put_constants(struct plant_block *b, int lane, const double *p)
+{
+    double c[PLANT_CONSTANT_SIZE];
+    plant_constants(p, c);
+    for (int k = 0; k < PLANT_CONSTANTS; k++) {
+        b->c[k * b->lanes + lane] = c[k];
+    }
+}
+
 /* Put an axis into the lanes of a block from `lane` on. */
 static void plant_fill(struct plant_block *b, int lane, int instance, const struct plant_axis *axis)
 {
-    double x[PLANT_STATES], c[PLANT_CONSTANT_SIZE];
+    double x[PLANT_STATES];
     plant_start(axis->p, x);
-    plant_constants(axis->p, c);
     plant_sizes(axis->p, b->size);
     b->fastest = el_max(b->fastest, axis->fastest);
     for (; lane < b->lanes; lane++) {
@@ -333,9 +342,7 @@ static void plant_fill(struct plant_block *b, int lane, int instance, const stru
         for (int k = 0; k < PLANT_STATES; k++) {
             b->x[k * b->lanes + lane] = x[k];
         }
-        for (int k = 0; k < PLANT_CONSTANTS; k++) {
-            b->c[k * b->lanes + lane] = c[k];
-        }
+        plant_put_constants(b, lane, axis->p);
     }
 }
 
@@ -370,8 +377,8 @@ static void plant_place(struct model *m, int first, struct plant_axis axes[PLANT
     }
 }
 
-/* Check an axis and find the sub-steps it needs. */
-static int plant_start_axis(struct fmu *f, int instance, struct plant_axis *axis)
+/* Check an axis' parameters and find the sub-steps they need. */
+static int plant_look(struct fmu *f, int instance, struct plant_axis *axis)
 {
     double x[PLANT_STATES], u[PLANT_INPUT_SIZE];
     const double h = 1e-9 * (double)f->s.m.step_ns;
@@ -392,9 +399,19 @@ static int plant_start_axis(struct fmu *f, int instance, struct plant_axis *axis
         return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
                         instance + 1, h, steps, PLANT_SUB_STEPS_MAX);
     }
-    if (steps > 1.0) {
-        fmu_event(f, "axis %d: stiff, %g sub-steps per micro step of %g s", instance + 1, steps, h);
-        axis->sub_steps = (int)steps;
+    axis->sub_steps = steps > 1.0 ? (int)steps : 1;
+    return 0;
+}
+
+/* The same at the start, where sub-steps are told. */
+static int plant_start_axis(struct fmu *f, int instance, struct plant_axis *axis)
+{
+    if (plant_look(f, instance, axis) != 0) {
+        return -1;
+    }
+    if (axis->sub_steps > 1) {
+        fmu_event(f, "axis %d: stiff, %d sub-steps per micro step of %g s", instance + 1,
+                  axis->sub_steps, 1e-9 * (double)f->s.m.step_ns);
     }
     return 0;
 }
@@ -433,35 +450,17 @@ static int model_start(struct fmu *f)
  * What was reached stays. */
 static int plant_tune(struct fmu *f)
 {
-    const double h = 1e-9 * (double)f->s.m.step_ns;
     for (int n = 0; n < f->s.m.blocks; n++) {
         struct plant_block *b = &f->s.m.block[n];
         for (int lane = 0; lane < b->lanes; lane++) {
-            double p[PLANT_PARAMETER_SIZE], x[PLANT_STATES], u[PLANT_INPUT_SIZE];
-            double c[PLANT_CONSTANT_SIZE];
-            plant_parameters(&f->s.v, b->instance[lane], p);
-            const char *wrong = plant_check(p);
-            if (wrong) {
-                return fmu_fail(f, "axis %d: %s", b->instance[lane] + 1, wrong);
+            struct plant_axis axis = { .fastest = 0.0 };
+            if (plant_look(f, b->instance[lane], &axis) != 0) {
+                return -1;
             }
-            plant_constants(p, c);
-            for (int k = 0; k < PLANT_CONSTANTS; k++) {
-                b->c[k * b->lanes + lane] = c[k];
-            }
-            if (PLANT_CONTROLLED) {
-                plant_sizes(p, b->size);
-                continue;
-            }
-            plant_start(p, x);
-            plant_inputs(&f->s.v, b->instance[lane], 1, u);
-            const double fastest = PLANT_STIFFNESS(x, u, p),
-                         steps = ceil(h * fastest / plant_h_lambda);
-            if (!(steps <= PLANT_SUB_STEPS_MAX)) {
-                return fmu_fail(f, "axis %d: too stiff, %g s would need %g sub-steps, more than %d",
-                                b->instance[lane] + 1, h, steps, PLANT_SUB_STEPS_MAX);
-            }
-            b->fastest = el_max(b->fastest, fastest);
-            b->sub_steps = steps > b->sub_steps ? (int)steps : b->sub_steps;
+            plant_put_constants(b, lane, axis.p);
+            plant_sizes(axis.p, b->size);
+            b->fastest = el_max(b->fastest, axis.fastest);
+            b->sub_steps = axis.sub_steps > b->sub_steps ? axis.sub_steps : b->sub_steps;
         }
     }
     return 0;

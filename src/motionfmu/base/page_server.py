@@ -54,6 +54,17 @@ class _PageSocket(WebSocketsSansIOProtocol):
         self.transport.abort()
 
 
+def listener(port: int, name: str) -> socket.socket:
+    """A socket that listens on this machine alone; an InputError with the name if it cannot."""
+    try:
+        made = socket.create_server((HOST, port))
+    except OSError as error:
+        raise InputError(f"{name}: {os.strerror(error.errno or 0)}") from None
+    # Else what follows a short part of an answer waits 40 ms for that part's acknowledgement.
+    made.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return made
+
+
 class PageServer:
     """A page on a port of this machine, in ``async with``.
 
@@ -80,13 +91,7 @@ class PageServer:
         tls: tuple[Path, Path] | None = None,
         message_max: int = MESSAGE_MAX,
     ) -> None:
-        try:
-            self._socket = socket.create_server((HOST, port))
-        except OSError as error:
-            told = os.strerror(error.errno or 0)
-            raise InputError(f"page {HOST}:{port}: {told}") from None
-        # Else head and body of an answer are 40 ms apart: the body waits for an acknowledgement.
-        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket = listener(port, f"page {HOST}:{port}")
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SENDING)
         self._server = uvicorn.Server(
             uvicorn.Config(

@@ -104,7 +104,7 @@ class Exchange:
         self._number = self._heard = 0
         self._heard_at = machine.steps
         self.counts, self.lost = ExchangeCount(), True
-        self._peer = _address(plan.peer, "udp")
+        self._peer = _address(plan.peer)
         self._body = struct.Struct(f"<{len(plan.take)}d")
         self._socket = _bound(plan.bind)
         try:
@@ -210,13 +210,13 @@ def _of(had: Any, value: float) -> Any:
     return round(value) if isinstance(had, int) else value
 
 
-def _address(url: str, scheme: str) -> tuple[str, int]:
+def _address(url: str) -> tuple[str, int]:
     parts = urlsplit(url)
     try:
         host, port = parts.hostname, parts.port
     except ValueError:
         host, port = None, None
-    if parts.scheme != scheme or not host or not port:
+    if parts.scheme != "udp" or not host or not port:
         raise InputError(f"exchange {url}: udp://HOST:PORT wanted")
     try:
         found = socket.getaddrinfo(host, port, socket.AF_INET, socket.SOCK_DGRAM)

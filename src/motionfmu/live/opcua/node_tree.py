@@ -20,7 +20,9 @@ _UNITS = {
     "rad": ("C81", "rad", "radian"),
     "rpm": ("RPM", "r/min", "revolutions per minute"),
 }
-_PLACES = {"Machinery:Machines": "ObjectsFolder"}  # of objects that are no part of another node
+_PLACES = {
+    "Machinery:Machines": "ObjectsFolder"
+}  # where an object stands that is part of no other node
 
 
 def unit(symbol: str | None) -> ua.EUInformation | None:

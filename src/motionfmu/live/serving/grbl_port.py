@@ -8,10 +8,10 @@ import sys
 from types import TracebackType
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.page_server import HOST, listener
 from motionfmu.live.serving.grbl_session import GrblSession
 from motionfmu.live.serving.machine_link import MachineLink
 
-HOST = "127.0.0.1"
 PORT_MAX = 65535
 TERMINAL = "pty"
 CHUNK = 4096  # [byte]
@@ -54,13 +54,7 @@ class GrblPort:
             raise InputError(f"--grbl {where}: a port from 0 to {PORT_MAX}, or {TERMINAL}")
 
     def _open_socket(self, port: int) -> None:
-        try:
-            self._socket = socket.create_server((HOST, port))
-        except OSError as error:
-            told = os.strerror(error.errno or 0)
-            raise InputError(f"--grbl {port}: {HOST}: {told}") from None
-        # Answers are short: none may wait for the acknowledgement of the one before.
-        self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._socket = listener(port, f"--grbl {port}: {HOST}")
         self.address = f"tcp://{HOST}:{self._socket.getsockname()[1]}"
 
     def _open_terminal(self) -> None:

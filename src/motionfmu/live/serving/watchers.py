@@ -23,7 +23,7 @@ PAGES = 100  # open at once
 STRANGERS = 100  # connections that have not said the token yet
 SAMPLES = 1 << 14  # of a channel, that a page is sent at a time
 ANSWERS = 64  # that wait for a page to take them; it is not listened to until then
-PROGRAMS = 16  # keys of the hand that programs have by HTTP
+PROGRAMS = 16  # keys that are kept: with one a program keeps the hand from request to request
 _LOG = logging.getLogger(__name__)
 _Parts = tuple[str | bytes, ...]
 
