@@ -20,9 +20,8 @@ _UNITS = {
     "rad": ("C81", "rad", "radian"),
     "rpm": ("RPM", "r/min", "revolutions per minute"),
 }
-_PLACES = {
-    "Machinery:Machines": "ObjectsFolder"
-}  # where an object stands that is part of no other node
+# Where an object stands that is part of no other node.
+_PLACES = {"Machinery:Machines": "ObjectsFolder"}
 
 
 def unit(symbol: str | None) -> ua.EUInformation | None:
