@@ -47,6 +47,7 @@ def ready(page: Any) -> None:
     ):
         page.locator("#take").click()
     expect(page.locator("#hand")).to_contain_text("in your hand")
+    expect(page.locator("#readout tbody td").first).to_contain_text(re.compile(r"\d"))
 
 
 def position(page: Any, axis: int) -> float:

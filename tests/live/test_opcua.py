@@ -103,11 +103,8 @@ def test_a_program_with_hold_override_alarm_and_reset(tmp_path: Path) -> None:
             assert await b.read(*read) == ["Running", 0, 0]
             await b.step(1.0)
             assert await b.read(*read, last) == ["Ended", 2, 0, "RunningToEnded"]
-            changes = await b.client.ask("changes")
-            assert changes == [
-                *("Initializing", "Running", "Interrupted", "Running", "Aborted"),
-                *("Initializing", "Running", "Interrupted", "Running", "Ended"),
-            ]
+            way = ["Initializing", "Running", "Interrupted", "Running"]
+            await b.client.until([*way, "Aborted", *way, "Ended"], "changes")
 
     asyncio.run(work())
 

@@ -180,7 +180,7 @@ def test_too_many_rows_are_refused_however_narrow(tmp_path: Path) -> None:
 
 def test_what_scopes_hold_in_memory_is_bounded(tmp_path: Path) -> None:
     folder = scenario(tmp_path)
-    text = message(folder, "--stop", "1000", "--step", "1e-5", "--engine", "native")
+    text = message(folder, "--stop", "100", "--step", "1e-5", "--engine", "native")
     assert "rows of _scope1 make a recording of" in text and "2 are the most" in text
 
 
