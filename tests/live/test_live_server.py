@@ -318,7 +318,11 @@ def test_fifty_watch_at_once(served: Served) -> None:
 @pytest.mark.more
 def test_silent_connections_and_pages_that_read_nothing_are_cut_off(served: Served) -> None:
     silent = [socket.create_connection(("127.0.0.1", served.port)) for _ in range(500)]
+    for s in silent[::2]:
+        s.send(b"GET / HTTP/1.1\r\n")  # and no more
     alone = socket.create_connection(("127.0.0.1", served.port))
+    page = served.page()  # while they are there
+    assert page.frame()["watchers"] == 1
     for s in (*silent, alone):
         s.settimeout(PATIENCE)
         try:
@@ -326,7 +330,6 @@ def test_silent_connections_and_pages_that_read_nothing_are_cut_off(served: Serv
         except ConnectionResetError:
             pass
         s.close()
-    page = served.page()
     page.ask("take")
     page.ask("channels", names=[f"mcc.position[{k}]" for k in range(1, 7)])
     page.ask("samples", since=0)

@@ -17,23 +17,30 @@ from motionfmu.base.errors import InputError
 HOST = "127.0.0.1"
 MESSAGE_MAX = 4096  # [byte] of a page to the server: it says its token
 CLOSING = 1.0  # [s] for pages that are open when it ends
-CONNECTIONS = 256  # at once; what comes then is cut off
+CONNECTIONS = 256  # at once; with one more, the oldest that asks for nothing is cut off
 ASKING = 10.0  # [s] for a connection's first request
 SENDING = 1 << 18  # [byte] that the system keeps for a page that does not read them
 
 
 class _PageConnection(AutoHTTPProtocol):  # type: ignore[misc,valid-type]  # chosen as it is loaded
-    """A connection, which is cut off if they are too many or it asks for nothing."""
+    """A connection; one that has not asked for anything yet gives way when they are too many."""
 
     def connection_made(self, transport: asyncio.Transport) -> None:
         super().connection_made(transport)
+        loop = asyncio.get_running_loop()
+        self.begun = loop.time()
         if len(self.connections) > CONNECTIONS:
-            transport.abort()
-        else:
-            asyncio.get_running_loop().call_later(ASKING, self._asked, transport)
+            silent = [c for c in self.connections if isinstance(c, _PageConnection) and c.silent]
+            min(silent, key=lambda c: c.begun).transport.abort()  # this one, if all others asked
+        loop.call_later(ASKING, self._asked, transport)
+
+    @property
+    def silent(self) -> bool:
+        """Whether no whole request came yet."""
+        return self.cycle is None
 
     def _asked(self, transport: asyncio.Transport) -> None:
-        if self.scope is None and transport.get_protocol() is self:
+        if self.silent and transport.get_protocol() is self:
             transport.abort()
 
 
