@@ -125,12 +125,16 @@ def test_the_best_of_fits_beside_one_another_is_taken(known: Known) -> None:
     assert (told.deviations > 0.9e-4 * own.reach(free, good.guess.free)).all()
 
 
-@pytest.mark.long
+@pytest.mark.more
 def test_a_gap_that_is_not_the_plants_is_told(known: Known) -> None:
+    """With the one that is, and deviations that hold what the wrong one does."""
     truth, record = known
-    gap = {"machine.backlash": 0.5 * truth.values["machine.backlash"]}
+    right = truth.values["machine.backlash"]
+    gap = {"machine.backlash": 0.5 * right}
     found = identify(truth.scenario().changed(set=gap), record, OPTIONS)
     assert any("Standard deviations are" in note for note in found.notes), found.notes
+    told = next(n for n in found.notes if n.startswith("The record contradicts machine.backlash"))
+    assert float(re.findall(r"[\d.e-]+(?= m\b)", told)[1]) == pytest.approx(right, rel=0.01)
     for p in found.parameters:
         if p.told:
             away = abs(p.value - truth.values[p.name])

@@ -17,7 +17,7 @@ _STRANGE = 0.1
 # times what is noise in it.
 _BAD, _TIMES = 0.15, 3.0
 # Times that are told, and how much wider deviations are for it to be told.
-_SHOWN, _WIDER = 5, 1.1
+_SHOWN, WIDER = 5, 1.1
 
 
 def bad_fit(own: Ground, chosen: Validation | None) -> dict[str, tuple[float, float]]:
@@ -57,7 +57,7 @@ def contact_notes(own: Ground, fit: Fitted, span: tuple[int, int]) -> Iterator[s
             " recorded one, as when a passage through the gap falls the other way."
         )
     wider = misfit(own, fit, span) if fit.linear.sound else 1.0
-    if wider > _WIDER:
+    if wider > WIDER:
         yield (
             f"Standard deviations are {wider:.3g} times what residuals alone would make them: so"
             " much more than noise does the fit leave."

@@ -36,6 +36,7 @@ class Identifiable(BaseModel):
     law: dict[str, FrictionLaw] = Field(default_factory=dict)
     # values of other parameters that are tried, unless the scenario says them
     other: dict[str, list[bool | int | float]] = Field(default_factory=dict)
+    gap: str = ""  # parameter that is the width of the gap between parts
 
 
 @functools.cache

@@ -196,6 +196,12 @@ class Ground:
                     return float(value)
         raise KeyError(name)
 
+    def set_name(self, name: str) -> str:
+        """A component's variable as --set takes it: the axis' element of an array."""
+        component, _, variable = name.partition(".")
+        shape = self.loop.scenario.resolver.ports[component][variable].shape
+        return f"{name}[{self.loop.axis}]" if shape else name
+
     def shooting(
         self, free: FreeParameters, span: tuple[int, int], values: Array
     ) -> tuple[Shooting, PieceStart]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from motionfmu.identify import identify_file, rigid_motion
 from motionfmu.identify.axis_record import AxisRecord, of_record
 from motionfmu.identify.controller_check import ControllerCheck
+from motionfmu.identify.doubted_gap import doubted_gap
 from motionfmu.identify.fit_notes import contact_notes, notes
 from motionfmu.identify.free_parameters import FreeParameters
 from motionfmu.identify.friction_curve import FrictionCurve, friction_curve
@@ -231,6 +232,13 @@ def identify(
         own, (names, laws, judge, asked), span, near, progress
     )
     why |= late
+    progress("the gap", 0.9)
+    known, doubts = doubted_gap(
+        own,
+        (free, fitted, known),
+        span,
+        lambda gap: ground(scenario, record, options, ({**given, **gap}, own.other)),
+    )
     marks.append(clock.perf_counter())
     parts = np.diff(marks).tolist()
     measured, simulated = stretch_signals(own, fitted, span)
@@ -257,6 +265,7 @@ def identify(
         notes=(
             *notes(own, free, options, chosen),
             *contact_notes(own, fitted, span),
+            *doubts,
             *(
                 f"The law {n} was left out again: in all of the record it may be nothing."
                 for n in idle
@@ -364,20 +373,11 @@ def _deviation(free: FreeParameters, known: Spread, name: str) -> float:
 
 def _settings(own: Ground, free: FreeParameters, fit: Fitted) -> dict[str, Any]:
     """Values by the name that --set takes."""
-    component, ports = own.loop.component, own.loop.scenario.resolver.ports
-    found: dict[str, Any] = {}
-
-    def add(name: str, value: Any) -> None:
-        c, _, variable = name.partition(".")
-        found[f"{name}[{own.loop.axis}]" if ports[c][variable].shape else name] = value
-
-    for name, value in free.settings(fit.guess.free).items():
-        add(f"{component}.{name}", value)
-    for name, value in own.other.items():
-        add(name, value)
+    component = own.loop.component
+    found = {own.set_name(f"{component}.{n}"): v for n, v in free.settings(fit.guess.free).items()}
+    found |= {own.set_name(n): v for n, v in own.other.items()}
     if own.check is not None and own.check.taken and own.gains_taken:
-        for name, (_, value) in own.check.gains.items():
-            add(name, value)
+        found |= {own.set_name(n): v for n, (_, v) in own.check.gains.items()}
     return found
 
 

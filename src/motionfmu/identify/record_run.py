@@ -73,7 +73,7 @@ def run_of_record(
     own, data = found.ground, found.ground.data
     scenario = _along(found.scenario, own)
     values = dict(found.given) | (dict(found.settings) if set is None else dict(set))
-    values |= {_named(own, n): v for n, v in _begin(own).items()}
+    values |= {own.set_name(n): v for n, v in _begin(own).items()}
     result = scenario.run(set=values, progress=progress)
     rows = np.arange(data.samples - 1) * data.every
     columns = []
@@ -132,12 +132,6 @@ def _along(scenario: Scenario, own: Ground) -> Scenario:
         stop=round(stop / own.loop.step) * own.loop.step,
         check={},
     )
-
-
-def _named(own: Ground, name: str) -> str:
-    component, _, variable = name.partition(".")
-    shape = own.loop.scenario.resolver.ports[component][variable.partition("[")[0]].shape
-    return f"{name}[{own.loop.axis}]" if shape else name
 
 
 def _begin(own: Ground) -> dict[str, float]:
