@@ -262,12 +262,12 @@ class AskFrame(Request):
     """Give the present state and values of signals, once."""
 
     hand: ClassVar[bool] = False
-    gives: ClassVar[str] = "as a WebSocket gets it 50 times a second"
+    gives: ClassVar[str] = "as a WebSocket gets it 60 times a second"
     names: Names = []
 
 
 class AskWatch(Request):
-    """Get frames with these signals 50 times a second; null: no frames."""
+    """Get frames with these signals 60 times a second; null: no frames."""
 
     hand: ClassVar[bool] = False
     server: ClassVar[bool] = True

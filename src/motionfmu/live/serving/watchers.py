@@ -17,7 +17,7 @@ from motionfmu.live.serving.hand import Hand, Holder
 from motionfmu.live.serving.machine_link import MachineLink
 from motionfmu.live.serving.request_table import CheckedRequest, checked, parsed
 
-PERIOD = 1 / 50  # [s] between two frames
+PERIOD = 1 / 60  # [s] between two frames
 PATIENCE = 5.0  # [s] for the token, and for a page that takes nothing
 PAGES = 100  # open at once
 STRANGERS = 100  # connections that have not said the token yet
@@ -216,10 +216,11 @@ class Watchers:
                     watcher.put(text, data)
 
     async def _tell(self) -> None:
-        """Send frames to all pages 50 times a second, for as long as any is open."""
+        """Send frames to all pages 60 times a second, for as long as any is open."""
         loop = asyncio.get_running_loop()
+        due = loop.time()
         while self._open:
-            due = loop.time() + PERIOD
+            due = max(due, loop.time() - PERIOD) + PERIOD  # what sleep adds does not add up
             try:
                 await self._frames()
                 await self._samples()
