@@ -285,6 +285,12 @@ class MachineLoop:
         """Times [s] of the states that one can go back to."""
         return self.machine.kept
 
+    def do_lateness(self) -> dict[str, Any]:
+        """How late the machine was woken, as a histogram."""
+        late = self.pace.lateness
+        ends = [2.0**k / 64e3 for k in range(len(late.counts))]
+        return {"ends": ends, "counts": late.counts, "worst": late.worst}
+
     def do_save(self, folder: str, check: Mapping[str, Any] | None = None) -> str:
         """Save what was done as a scenario."""
         return str(self.machine.save(folder, check))

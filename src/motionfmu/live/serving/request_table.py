@@ -176,6 +176,13 @@ class AskKept(Request):
     gives: ClassVar[str] = "their times [s]"
 
 
+class AskLateness(Request):
+    """Tell how late the machine was woken since it began."""
+
+    hand: ClassVar[bool] = False
+    gives: ClassVar[str] = "wake-ups by the end of their class [s], the last open; and the worst [s]"
+
+
 class AskSave(Request):
     """Write what was done as a scenario."""
 
