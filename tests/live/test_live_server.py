@@ -465,3 +465,18 @@ def test_wrong_input_is_one_message(tmp_path: Path) -> None:
         (["circle", "--set", "mcc.nix=1"], "mcc.nix"),
     ):
         assert text in told(*arguments, "--port", "0")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="SCHED_FIFO is Linux's")
+def test_only_the_machine_runs_before_others() -> None:
+    may = "import os; os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(49))"
+    if subprocess.run([sys.executable, "-c", may], capture_output=True, check=False).returncode:
+        command = [sys.executable, "-m", "motionfmu", "live", "circle", "--realtime"]
+        ran = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert ran.returncode == 2 and "motionfmu: --realtime: Operation not" in ran.stderr
+        return
+    server = Served("circle", "--realtime")
+    threads = os.listdir(f"/proc/{server.machine}/task")
+    assert {os.sched_getscheduler(int(t)) for t in threads} == {os.SCHED_FIFO}
+    assert len(threads) > 2 and os.sched_getscheduler(server.process.pid) == os.SCHED_OTHER
+    server.end()

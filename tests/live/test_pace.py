@@ -1,10 +1,14 @@
 """Simulated time against a clock that the test turns."""
 
+import errno
 import math
+import os
+import sys
+from typing import Any
 
 import pytest
 
-from motionfmu.live import Pace
+from motionfmu.live import Pace, machine_process
 
 
 class Wall:
@@ -79,3 +83,18 @@ def test_paces_that_are_none_are_refused(factor: float) -> None:
     with pytest.raises(ValueError, match=r"0\.01 to 100, or inf"):
         pace.set(factor)
     assert pace.factor == 1.0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="SCHED_FIFO is Linux's")
+def test_a_machine_that_may_not_run_before_others_says_what_it_takes(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refused(pid: int, policy: int, priority: Any) -> None:
+        raise PermissionError(errno.EPERM, "")
+
+    asked = []
+    monkeypatch.setattr(machine_process.os, "sched_setscheduler", lambda *a: asked.append(a[:2]))
+    assert not machine_process.before_others() and asked == [(0, os.SCHED_FIFO)]
+    monkeypatch.setattr(machine_process.os, "sched_setscheduler", refused)
+    told = machine_process.before_others()
+    assert told.startswith("Operation not permitted: it takes root") and "rtprio 49" in told

@@ -64,6 +64,9 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     bind: Annotated[
         str, typer.Option(metavar="HOST:PORT", help="Where it sends to; port 0: any.")
     ] = "127.0.0.1:0",
+    realtime: Annotated[
+        bool, typer.Option("--realtime", help="Before this computer's other work: SCHED_FIFO.")
+    ] = False,
     open_: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
     set_: Set = [],  # noqa: B006
 ) -> None:
@@ -95,6 +98,7 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         not paused,
         None if save_as is None else str(save_as),
         plan,
+        realtime,
     )
     asyncio.run(_serve(start, _Ports(port, opcua, opcua_nodesets, grbl), open_))
 

@@ -41,6 +41,8 @@ class MachineStart:
         Folder of the scenario that is written when it ends, however that comes about.
     exchange : ExchangePlan, optional
         Signals that go to another program, and come from it.
+    realtime : bool
+        Whether its process runs before all others of the computer (Linux: SCHED_FIFO).
     """
 
     path: str
@@ -50,6 +52,7 @@ class MachineStart:
     running: bool = True
     save_as: str | None = None
     exchange: ExchangePlan | None = None
+    realtime: bool = False
 
 
 class MachineLink:

@@ -180,7 +180,9 @@ class AskLateness(Request):
     """Tell how late the machine was woken since it began."""
 
     hand: ClassVar[bool] = False
-    gives: ClassVar[str] = "wake-ups by the end of their class [s], the last open; and the worst [s]"
+    gives: ClassVar[str] = (
+        "wake-ups by the end of their class [s], the last open; and the worst [s]"
+    )
 
 
 class AskSave(Request):
