@@ -1,4 +1,5 @@
-"""How late a live machine wakes at 1x, with its page open: `live_lateness.py MINUTES [attacked]`.
+"""How late a live machine wakes at 1x, with its page open: `live_lateness.py MINUTES [attacked]
+[OPTION...]`, options of `motionfmu live`.
 
 A line a minute: wake-ups, their quantiles, memory of server and machine. With `attacked` every
 other minute has strangers at its port: who is silent, who has no token, another host's name, a
@@ -35,9 +36,9 @@ REQUESTS = (
 
 
 @contextlib.contextmanager
-def machine() -> Iterator[tuple[int, str, int, str]]:
+def machine(*options: str) -> Iterator[tuple[int, str, int, str]]:
     """The command's process, its page, port and token."""
-    command = [sys.executable, "-m", "motionfmu", "live", MACHINE, "--port", "0"]
+    command = [sys.executable, "-m", "motionfmu", "live", MACHINE, "--port", "0", *options]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     try:
         assert process.stdout is not None
@@ -123,9 +124,9 @@ def quantile(ends: NDArray[np.float64], counts: NDArray[np.int64], share: float)
     return float(1e3 * ends[min(reached, len(ends) - 1)])
 
 
-async def watch(minutes: int, attacked: bool) -> None:
+async def watch(minutes: int, attacked: bool, *options: str) -> None:
     """Open the page, and tell a line a minute."""
-    with machine() as (pid, url, port, token):
+    with machine(*options) as (pid, url, port, token):
         async with async_playwright() as play:
             browser = await play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
             page = await browser.new_page(viewport={"width": 1400, "height": 900})
@@ -149,4 +150,5 @@ async def watch(minutes: int, attacked: bool) -> None:
 
 
 if __name__ == "__main__":
-    asyncio.run(watch(int(sys.argv[1]), "attacked" in sys.argv[2:]))
+    more = [a for a in sys.argv[2:] if a != "attacked"]
+    asyncio.run(watch(int(sys.argv[1]), len(more) < len(sys.argv) - 2, *more))
