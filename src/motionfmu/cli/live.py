@@ -34,6 +34,10 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         Path | None,
         typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
     ] = None,
+    save_last: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Of a longer time, --save-as has the end only."),
+    ] = None,
     grbl: Annotated[
         str | None,
         typer.Option(metavar="PORT|pty", help="Be a Grbl 1.1 for its senders, on 127.0.0.1."),
@@ -78,6 +82,8 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         raise InputError("--opcua-nodesets goes with --opcua")
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
+    if save_last is not None and (save_as is None or not 0.0 < save_last < math.inf):
+        raise InputError(f"--save-last {save_last:g}: seconds wanted, with --save-as FOLDER")
     from motionfmu.live.exchange import ExchangePlan
     from motionfmu.live.serving import MachineStart
 
@@ -94,6 +100,7 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         None if pace == math.inf else pace,
         not paused,
         None if save_as is None else str(save_as),
+        save_last,
         plan,
     )
     asyncio.run(_serve(start, _Ports(port, opcua, opcua_nodesets, grbl), open_))

@@ -285,9 +285,11 @@ class MachineLoop:
         """Times [s] of the states that one can go back to."""
         return self.machine.kept
 
-    def do_save(self, folder: str, check: Mapping[str, Any] | None = None) -> str:
+    def do_save(
+        self, folder: str, check: Mapping[str, Any] | None = None, begin: float | None = None
+    ) -> str:
         """Save what was done as a scenario."""
-        return str(self.machine.save(folder, check))
+        return str(self.machine.save(folder, check, begin))
 
     def do_checks(self, names: list[str] | None = None) -> dict[str, Any]:
         """Figures of which checks are made: present values; least and largest ones in the scope."""

@@ -73,7 +73,7 @@ class BeginState:
             system,
             begin=begin,
             settings=(*system.settings, *own),
-            stimuli=(*changed, *(s for s in system.stimuli if s.step >= begin)),
+            stimuli=tuple(sorted((*changed, *system.stimuli), key=lambda s: s.step)),
         )
 
     def _check_files(self, resolver: Resolver, system: System) -> None:

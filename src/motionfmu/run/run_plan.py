@@ -201,7 +201,9 @@ class RunPlan:
             until=until,
         )
         begin = self.begin
-        return made if begin is None else faults.of(lambda: begin.begun(resolver, made))
+        if begin is None or faults.lines:
+            return made
+        return faults.of(lambda: begin.begun(resolver, made))
 
     def _times(self, options: Options) -> tuple[int, int]:
         """Communication step [ns] and how many there are at most."""

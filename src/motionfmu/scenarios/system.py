@@ -116,9 +116,9 @@ class System:
         return fmus.version(self.components[component], fmi)
 
     def due(self) -> dict[int, list[Stimulus]]:
-        """The stimuli by the number of the step before which they act."""
+        """The stimuli by the number of the step before which they act, none of before the begin."""
         found: dict[int, list[Stimulus]] = {}
-        for stimulus in self.stimuli:
+        for stimulus in (s for s in self.stimuli if s.step >= self.begin):
             found.setdefault(stimulus.step, []).append(stimulus)
         return found
 
