@@ -69,8 +69,8 @@ struct fmu_part {
     /* Time since the start [ns]. */
     int64_t (*now)(const void *part);
 
-    /* The state as its FMU serializes it: its size [byte], and the bytes themselves if there is room
-     * for them. */
+    /* The state as its FMU serializes it: its size [byte], and the bytes themselves if there is
+     * room for them. */
     size_t (*save)(const void *part, void *bytes, size_t room);
 
     /* Rows of MODEL_IN_USE, with places in the instance: which part of its arrays is in use. */

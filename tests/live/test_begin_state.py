@@ -66,9 +66,9 @@ def signals_of(scenario: Path, engine: str) -> Any:
     return plan.changed(record={"signals": ["*.*"]}).run(engine=engine)
 
 
-@pytest.mark.parametrize("case", MACHINES, ids=[m[0] for m in MACHINES])
+@pytest.mark.parametrize("case", few(MACHINES, 1), ids=lambda case: case[0])
 def test_every_engine_goes_on_with_the_bits_of_the_run_from_0(case: Any, tmp_path: Path) -> None:
-    name, at, before, behind = case
+    _, at, before, behind = case
     worked_at(*case, tmp_path)
     whole = signals_of(tmp_path / "whole", "fused")
     written = (tmp_path / "late" / "scenario.toml").read_text()
@@ -98,7 +98,9 @@ def test_of_so_many_steps_one_is_recorded_from_the_begin_on(
     worked_at(*MACHINES[0], tmp_path)
     late, whole = (motionfmu.load(tmp_path / n) for n in ("late", "whole"))
     a, b = late.run(engine=engine, fmi=fmi, every=10), whole.run(every=10)
-    assert len(a.time) == round(REST / 1e-3) and a.time.tobytes() == b.time[-len(a.time) :].tobytes()
+    assert (
+        len(a.time) == round(REST / 1e-3) and a.time.tobytes() == b.time[-len(a.time) :].tobytes()
+    )
     for name in a.signals:
         there = np.ascontiguousarray(b[name][-len(a.time) :])
         assert np.ascontiguousarray(a[name]).tobytes() == there.tobytes(), name
@@ -202,7 +204,7 @@ def test_another_program_is_refused(saved: Path, tmp_path: Path) -> None:
     folder = copied(saved, tmp_path)
     program = folder / "circle.ngc"
     program.write_text(program.read_text() + "\n")
-    with pytest.raises(InputError, match="mcc.program: the file is not as it was"):
+    with pytest.raises(InputError, match=r"mcc.program: the file is not as it was"):
         motionfmu.load(folder)
 
 
@@ -226,7 +228,7 @@ def test_a_value_that_is_given_later_acts_from_the_begin_on(saved: Path, engine:
 
 
 def test_a_run_cannot_end_before_it_begins(saved: Path) -> None:
-    with pytest.raises(InputError, match="is of 0.9 s, and the run ends at 0.5 s"):
+    with pytest.raises(InputError, match=r"is of 0.9 s, and the run ends at 0.5 s"):
         motionfmu.load(saved).run(stop=0.5)
 
 
@@ -267,7 +269,7 @@ def test_no_state_is_kept_from_then(tmp_path: Path) -> None:
         machine.step(100)
         machine.keep()
         machine.step(10)
-        with pytest.raises(InputError, match="no state is kept at or before 0.005 s"):
+        with pytest.raises(InputError, match=r"no state is kept at or before 0.005 s"):
             machine.save(tmp_path / "x", begin=0.005)
         with pytest.raises(InputError, match="finite"):
             machine.save(tmp_path / "x", begin=float("nan"))
@@ -283,8 +285,7 @@ def test_what_looks_at_a_run_finds_the_later_begin(tmp_path: Path) -> None:
         "drives.torque": {"max": 1e3, "windows": [(0.95, 1.05)]},
     }
     assert late.changed(check=check).run().ok
-    a, b = late.run().contour().error, whole.run().contour().error
-    own = b.time >= 0.9
-    assert np.array_equal(a.time, b.time[own])
-    values = np.abs(a.values - b.values[own])
-    assert values.max() < 1e-9
+    a, b = (plan.run().contour() for plan in (late, whole))
+    count = len(a.track.distance)
+    assert 1000 < count < len(b.track.distance)
+    assert np.abs(a.track.distance - b.track.distance[-count:]).max() < 1e-9

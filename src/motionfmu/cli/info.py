@@ -248,11 +248,11 @@ def _engine(scenario: "Scenario") -> str:
 
 def _begin(state: "BeginState") -> str:
     """When a scenario begins, and what has been set by then."""
-    force = ", ".join(f"{n} = {_value(v)}" for n, v in state.force.items())
+    force = ", ".join(f"{n} = {_plain(v)}" for n, v in state.force.items())
     return f"at {state.ns / 1e9:.9g} s, in {state.name}" + (f", with {force}" if force else "")
 
 
-def _value(values: tuple[Any, ...]) -> str:
+def _plain(values: tuple[Any, ...]) -> str:
     return str(values[0] if len(set(values)) == 1 else list(values))
 
 

@@ -133,7 +133,7 @@ class Description:
 
     @property
     def begin(self) -> str | None:
-        """Name of the parameter that names a state to begin in; None of a system, whose parts do."""
+        """Name of the parameter that names a state to begin in; a system has none."""
         return next((v.name for v in self.variables if v.name == BEGIN), None)
 
     @property

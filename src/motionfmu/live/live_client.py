@@ -381,8 +381,10 @@ class LiveClient:
 
         Parameters
         ----------
-        folder, check, begin
-            As of `LiveMachine.save`.
+        folder : str or Path
+        check : mapping, optional
+        begin : float, optional
+            All as of `LiveMachine.save`.
 
         Returns
         -------

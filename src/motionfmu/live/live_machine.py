@@ -714,7 +714,7 @@ class LiveMachine:
         self._refusable(lambda: self._library.call("FreeFMUState", byref(kept.state)))
 
     def as_scenario(self, name: str | None = None) -> Scenario:
-        """The scenario that does what was done, from where this machine began.
+        """The scenario that does what was done since it began.
 
         Parameters
         ----------

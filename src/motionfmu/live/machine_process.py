@@ -118,7 +118,9 @@ def _serve(start: dict[str, Any], requests: BinaryIO, answers: _Answers) -> None
         threading.Thread(target=_listen, args=(requests, loop, answers), daemon=True).start()
         loop.run()
         if save_as is not None and machine.steps:
-            answers.put({"told": "saved", "file": str(_saved(machine, save_as, start["save_last"]))})
+            answers.put(
+                {"told": "saved", "file": str(_saved(machine, save_as, start["save_last"]))}
+            )
 
 
 def _scenario(path: str, program: str | None) -> Scenario:

@@ -203,7 +203,9 @@ def _check_components(
         if was["name"] != now["name"]:
             raise InputError(f"{component}: it is the state of a {was['name']}, not {now['name']}")
         if was != now:
-            told = f"{was['name']} of {was['made']} {was['token']}, not {now['made']} {now['token']}"
+            told = (
+                f"{was['name']} of {was['made']} {was['token']}, not {now['made']} {now['token']}"
+            )
             raise InputError(f"{component}: it is the state of another version: {told}")
     for component in saved:
         if component not in here:
