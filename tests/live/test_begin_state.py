@@ -66,10 +66,13 @@ def signals_of(scenario: Path, engine: str) -> Any:
     return plan.changed(record={"signals": ["*.*"]}).run(engine=engine)
 
 
-@pytest.mark.parametrize("case", few(MACHINES, 1), ids=lambda case: case[0])
-def test_every_engine_goes_on_with_the_bits_of_the_run_from_0(case: Any, tmp_path: Path) -> None:
-    _, at, before, behind = case
-    worked_at(*case, tmp_path)
+@pytest.mark.parametrize(
+    ("name", "at", "before", "behind"), few(MACHINES, 1), ids=[m[0] for m in MACHINES]
+)
+def test_every_engine_goes_on_with_the_bits_of_the_run_from_0(
+    name: str, at: float, before: Any, behind: Any, tmp_path: Path
+) -> None:
+    worked_at(name, at, before, behind, tmp_path)
     whole = signals_of(tmp_path / "whole", "fused")
     written = (tmp_path / "late" / "scenario.toml").read_text()
     head = written.partition("\n\n")[0]
@@ -289,3 +292,25 @@ def test_what_looks_at_a_run_finds_the_later_begin(tmp_path: Path) -> None:
     count = len(a.track.distance)
     assert 1000 < count < len(b.track.distance)
     assert np.abs(a.track.distance - b.track.distance[-count:]).max() < 1e-9
+
+
+def test_a_program_is_saved_as_it_was_loaded(tmp_path: Path) -> None:
+    """Somebody edits the file in the meantime; the machine and its scenario keep the loaded one."""
+    program = tmp_path / "part.ngc"
+    program.write_text("G91 G1 X5 F1000\no<more> call\nM2\n")
+    (tmp_path / "more.ngc").write_text("o<more> sub\nG1 Y3\no<more> endsub\nM2\n")
+    loaded = program.read_text()
+    plan = motionfmu.machine("mill3").scenario(program)
+    with LiveMachine(plan) as machine:
+        machine.step(1000)
+        program.write_text("G91 G1 X-50 F3000\nM2\n")
+        (tmp_path / "more.ngc").unlink()
+        rows = machine.trace(["mcc.position"], 5000)["mcc.position"]
+        machine.save(tmp_path / "saved")
+        kept = machine.as_scenario()
+    assert (tmp_path / "saved" / "part.ngc").read_text() == loaded
+    assert (tmp_path / "saved" / "more.ngc").is_file()
+    for scenario in (motionfmu.load(tmp_path / "saved"), kept):
+        result = scenario.changed(record=["mcc.position"]).run()
+        assert result["mcc.position"][1000:6000].tobytes() == rows.tobytes()
+    assert np.ptp(rows[:, 0]) > 1.0

@@ -14,8 +14,6 @@ from motionfmu.cli.common import FAILED, Set, app, out, setting, settings
 if TYPE_CHECKING:
     from motionfmu.live.serving import MachineStart
 
-PORT_MAX = 65535
-
 
 @app.command()
 def live(  # noqa: PLR0913  (each is an option of the command)
@@ -80,6 +78,8 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         needed("opcua")
     elif opcua_nodesets is not None:
         raise InputError("--opcua-nodesets goes with --opcua")
+    from motionfmu.base.page_server import PORT_MAX
+
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
     if save_last is not None and (save_as is None or not 0.0 < save_last < math.inf):

@@ -18,6 +18,7 @@ from motionfmu.base.new_folder import new_folder
 from motionfmu.fmu.describe import STRICT
 from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.live.journal import Action, Journal
+from motionfmu.live.loaded_files import LoadedFiles
 from motionfmu.live.sample_ring import CHANNELS, SampleRing
 from motionfmu.run import begin_state
 from motionfmu.run.engines import fmu_messages
@@ -28,7 +29,7 @@ from motionfmu.run.saved_scenario import copied_files
 from motionfmu.scenarios import package_files
 from motionfmu.scenarios.system import End, Stimulus
 from motionfmu.scenarios.toml_text import document_lines, value_text
-from motionfmu.scenarios.values import start_values, values_of
+from motionfmu.scenarios.values import start_values, value_of, values_of
 
 # Steps whose samples are gathered before they are sorted into rings: 16 of a turn at 0.1 ms.
 _BATCH = 64
@@ -112,7 +113,9 @@ class LiveMachine:
         self, scenario: Scenario | str | Path, set: Mapping[str, Any] | None = None
     ) -> None:
         self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
-        self._options = Options(set=dict(set or {}))
+        given = Options(set=dict(set or {}))
+        self._loaded = LoadedFiles(self.scenario.resolved(given).settings)
+        self._options = Options(set={**given.set, **self._loaded.values})
         self._system = self.scenario.resolved(self._options)
         self._outputs = {e.name: e for e in self._ends("output")}
         self._made = fused.program(self._system, list(self._outputs.values()), 3)
@@ -268,8 +271,8 @@ class LiveMachine:
         InputError
             There is no such variable.
         """
-        found = (s.values for s in self._system.settings if s.end.name == name)
-        return next(found, tuple(start_values(self.scenario.resolver.end(name, "", "").port)))
+        given = {s.end.name: s.values for s in self._system.settings}
+        return value_of(self.scenario.resolver, given, name)
 
     def set(self, name: str, value: Any) -> Action:
         """Give an input or a parameter a value from now on.
@@ -740,7 +743,7 @@ class LiveMachine:
         drives = [*tables.get("drive", []), *self.journal.drives(begin)]
         cut: dict[str, Any] = {k: None for k in _CLAIMS if k in tables}
         cut |= {t: dict.fromkeys(tables[t]) for t in ("check", "expect") if tables.get(t)}
-        return self.scenario.changed(
+        found = self.scenario.changed(
             set=self._options.set,
             drive=drives,
             stop=self.time,
@@ -748,6 +751,8 @@ class LiveMachine:
             **cut,
             **more,
         )
+        found.held = self._loaded
+        return found
 
     def save(
         self,

@@ -93,14 +93,21 @@ def _same(a: Values, b: Values) -> bool:
     return (a * count if len(a) == 1 else a) == (b * count if len(b) == 1 else b)
 
 
+def files_of(setting: Setting) -> list[Path]:
+    """The file that a setting has an FMU read, and those that it calls if it is a program."""
+    path, port = Path(str(setting.values[0])), setting.end.port
+    if port.file != "read" or port.name == BEGIN or not path.is_file():
+        return []
+    return [path, *(called(path) if path.suffix.lower() in GCODE else [])]
+
+
 def file_hashes(settings: Iterable[Setting]) -> dict[str, dict[str, str]]:
     """Hashes of the files that FMUs read, and of those that a program calls, by their names."""
     found: dict[str, dict[str, str]] = {}
     for s in settings:
-        path = Path(str(s.values[0]))
-        if s.end.port.file != "read" or s.end.port.name == BEGIN or not path.is_file():
+        several = files_of(s)
+        if not several:
             continue
-        several = [path, *(called(path) if path.suffix.lower() in GCODE else [])]
         # The program by its parameter: a copy may have another name.
         names = ["the file", *(f.name for f in several[1:])]
         hashes = [hashlib.sha256(f.read_bytes()).hexdigest() for f in several]
