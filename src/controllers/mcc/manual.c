@@ -367,9 +367,9 @@ static double inside(const struct mcc *m, int axis, double pulse)
     return el_max(low, el_min(high, pulse));
 }
 
-/* True if the axis is to come to rest before it goes to a target, behind which it would stop. A plan
- * that turns round brakes by the smaller of acceleration and deceleration, which may be too little
- * at a software limit. */
+/* True if the axis is to come to rest before it goes to a target, behind which it would stop. A
+ * plan that turns round brakes by the smaller of acceleration and deceleration, which may be too
+ * little at a software limit. */
 static bool stops_first(struct mcc *m, int axis, double target)
 {
     struct axes *a = &m->trajectory.axes;

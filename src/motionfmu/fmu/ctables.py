@@ -52,7 +52,7 @@ def _nested(values: list[str], dims: tuple[int, ...]) -> str:
     return "{" + ", ".join(parts) + "}"
 
 
-def _own(v: Variable) -> bool:
+def _keeps(v: Variable) -> bool:
     """Whether an instance keeps its own value when it begins in a saved state."""
     return v.name in COMMON or v.declared in FILES.values()
 
@@ -88,7 +88,7 @@ def table(d: Description) -> str:
         rows.append(
             f'    {{"{v.name}", {ref}, {v.count}, offsetof(struct vars, {member(v.name)}), '
             f"VAR_{v.type.upper()}, CAUSE_{v.causality.upper()}, {_VARY[v.variability]}, "
-            f"{low}, {high}, {int(_own(v))}}},"
+            f"{low}, {high}, {int(_keeps(v))}}},"
         )
         refs += [str(row)] * v.count
     lines = [", ".join(refs[i : i + 24]) for i in range(0, len(refs), 24)]

@@ -695,7 +695,7 @@ class LiveMachine:
         InputError
             No state is kept from then.
         """
-        there = self._kept_at(time)
+        there = self._kept_at(time, "back to")
         while self._kept[-1] is not there:
             self._drop(self._kept.pop())
         self._refusable(lambda: self._library.call("SetFMUState", there.state))
@@ -703,10 +703,10 @@ class LiveMachine:
         self.journal.forget(self.steps)
         return self.time
 
-    def _kept_at(self, time: float) -> _SavedState:
+    def _kept_at(self, time: float, asked: str) -> _SavedState:
         """The latest state that is kept at or before a time [s]."""
         if not math.isfinite(time):
-            raise InputError(f"the state of {time} s: a finite time wanted")
+            raise InputError(f"{asked} {time} s: a finite time wanted")
         step = round(time * 1e9 / self._system.step_ns)
         found = [k for k in self._kept if k.step <= step]
         if not found:
@@ -784,7 +784,7 @@ class LiveMachine:
             there is not.
         """
         place = Path(folder)
-        there = None if begin is None else self._kept_at(begin)
+        there = None if begin is None else self._kept_at(begin, "begin at")
         with new_folder(place) as part:
             plan = self._saved_plan(place.name, there, part)
             if check:
