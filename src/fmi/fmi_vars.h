@@ -4,6 +4,7 @@
 #define FMI_VARS_H
 
 #include <float.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -23,6 +24,7 @@ struct var_info {
     uint8_t causality;   /* enum var_causality */
     uint8_t variability; /* enum var_variability */
     double min, max;     /* -DBL_MAX, DBL_MAX where there is no limit: finite at least */
+    bool own;            /* stays the instance's when it begins in a saved state: names of files */
 };
 
 #endif

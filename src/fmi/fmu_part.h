@@ -32,7 +32,7 @@ struct fmu_host {
 
 /* The sizes are in the object file as decimal digits too, for the generator of a system's C
  * text. */
-#define FMU_PART_MARK "motionfmu part 3 "
+#define FMU_PART_MARK "motionfmu part 4 "
 enum { FMU_PART_DIGITS = 9, FMU_PART_ALIGN = 16 };
 
 struct fmu_part {
@@ -65,6 +65,13 @@ struct fmu_part {
     /* Report the first element of an input, by its offset in struct vars, that is out of range;
      * returns -1. */
     int (*refuse)(void *part, size_t offset);
+
+    /* Time since the start [ns]. */
+    int64_t (*now)(const void *part);
+
+    /* The state as its FMU serializes it: its size [byte], and the bytes themselves if there is
+     * room for them. */
+    size_t (*save)(const void *part, void *bytes, size_t room);
 
     /* Rows of MODEL_IN_USE, with places in the instance: which part of its arrays is in use. */
     const struct fmu_row *rows;

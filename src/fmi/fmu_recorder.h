@@ -46,6 +46,7 @@ struct recorder {
     char *blocks;           /* memory of all blocks */
     int count, group_count; /* number of streams; of groups */
     double time, period;    /* [s] time of the row; from row to row */
+    int64_t base;           /* number of the first row, 0 if the run begins at time 0 */
     int64_t row;            /* number of the next row */
     int64_t full;           /* number of rows before which no block is full */
     char why[RECORDER_WHY]; /* error, "" if none */
@@ -112,7 +113,7 @@ static inline bool recorder_head(const struct recorder *r, const struct recorder
              c.kind == 'd'   ? "f8"
              : c.kind == 'i' ? "i4"
                              : "b1",
-             r->row, c.count == 1 ? -1 : c.count);
+             r->row - r->base, c.count == 1 ? -1 : c.count);
     return recorder_seek(s->file, 0) == 0 && fwrite(head, 1, sizeof head, s->file) == sizeof head;
 }
 
@@ -232,7 +233,7 @@ static inline void recorder_make_room(struct recorder_stream *s, int64_t at, siz
 static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
 {
     const size_t size = (size_t)(r->row - g->first) * g->width;
-    const int64_t next = RECORDER_HEAD + r->row * (int64_t)g->width;
+    const int64_t next = RECORDER_HEAD + (r->row - r->base) * (int64_t)g->width;
     for (int k = 0; k < g->count; k++) {
         struct recorder_stream *s = &g->streams[k];
         const bool empty = recorder_empty(s->block, size);
@@ -316,6 +317,16 @@ static inline int recorder_row(struct recorder *r)
     return ++r->row < r->full ? 0 : recorder_flush_full(r);
 }
 
+/* Before the first row: its number, if the run does not begin at time 0. */
+static inline void recorder_begin(struct recorder *r, int64_t row)
+{
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
+        g->first = row;
+    }
+    r->base = r->row = row;
+    r->full = 0;
+}
+
 /* Set the number of the next row, as after a state was restored: later rows are dropped, and rows
  * that were never recorded are 0. */
 static inline int recorder_at(struct recorder *r, int64_t row)
@@ -323,11 +334,14 @@ static inline int recorder_at(struct recorder *r, int64_t row)
     if (row == r->row) {
         return 0;
     }
+    if (row < r->base) {
+        snprintf(r->why, sizeof r->why, "a row before the first one");
+    }
     if (r->why[0] || recorder_flush_all(r) != 0) {
         return -1;
     }
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
-        const int64_t at = RECORDER_HEAD + row * (int64_t)g->width;
+        const int64_t at = RECORDER_HEAD + (row - r->base) * (int64_t)g->width;
         for (int k = 0; k < g->count; k++) {
             struct recorder_stream *s = &g->streams[k];
             s->ahead = at;
@@ -351,7 +365,7 @@ static inline int recorder_end(struct recorder *r)
     }
     for (int k = 0; k < r->count; k++) {
         struct recorder_stream *s = &r->streams[k];
-        const int64_t size = RECORDER_HEAD + r->row * (int64_t)recorder_width(r, s);
+        const int64_t size = RECORDER_HEAD + (r->row - r->base) * (int64_t)recorder_width(r, s);
         errno = 0;
         const bool whole = recorder_head(r, s) && recorder_cut(s->file, size) == 0;
         const bool good = fclose(s->file) == 0 && whole;

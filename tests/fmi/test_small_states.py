@@ -17,8 +17,8 @@ from motionfmu.scenarios.fmus import fmu_names
 ROOT = Path(__file__).parents[2]
 # [byte] at rest, at most, where it is not 40 kB; a network card has 2 MB of flash, erased.
 LARGEST = {
-    "mcc": 62_000,
-    "mcc_groups": 62_000,
+    "mcc": 63_000,
+    "mcc_groups": 63_000,
     "soft_controller": 48_000,
     "network_card": 65_000,
 }
@@ -52,7 +52,7 @@ def test_states_are_small_at_rest(name: str, tmp_path: Path) -> None:
     fresh = len(instance.serialize(instance.save()))
     instance.initialize(start_values(name, tmp_path))
     size = len(instance.serialize(instance.save()))
-    assert fresh <= 13_000 and size <= LARGEST.get(name, 40_000), (fresh, size)
+    assert fresh <= 14_000 and size <= LARGEST.get(name, 40_000), (fresh, size)
     state, sizes = instance.save(), []
     for _ in range(20):  # one place for all
         assert instance.step(STEP) == OK

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.fmu import ctables, fmu_toml
+from motionfmu.fmu.describe import STRING_MAX
 from motionfmu.fmu.modelica import codegen
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -96,7 +97,8 @@ class Library:
         for name in ("run_start", "run_free", "run_step"):
             getattr(self.c, name).argtypes = [ctypes.c_void_p]
         self.c.run_step.argtypes += [ctypes.c_int64] * 2
-        kinds = {"f64": ctypes.c_double, "i32": ctypes.c_int32, "bool": ctypes.c_bool}
+        kinds: dict[str, Any] = {"f64": ctypes.c_double, "i32": ctypes.c_int32}
+        kinds |= {"bool": ctypes.c_bool, "string": ctypes.c_char * STRING_MAX}
         fields = [
             (v.name, kinds[v.type] * v.count if v.dims else kinds[v.type])
             for v in self.description.variables
@@ -136,7 +138,7 @@ class Run:
             if isinstance(member, ctypes.Array):
                 member[:] = np.broadcast_to(value, len(member)).tolist()
             else:
-                setattr(self.vars, name, value)
+                setattr(self.vars, name, value.encode() if isinstance(value, str) else value)
         return self
 
     def get(self, name: str) -> np.ndarray:

@@ -203,7 +203,15 @@ def small(tmp_path):
 
 def test_a_project_elsewhere_works(small, tmp_path):
     d = fmu_toml.load(small)
-    assert [v.name for v in d.variables] == ["active", "micro_step", "tau", "u", "x", "strict_step"]
+    assert [v.name for v in d.variables] == [
+        "active",
+        "micro_step",
+        "tau",
+        "u",
+        "x",
+        "strict_step",
+        "begin_state",
+    ]
     codegen.write(small, tmp_path / "out")
     before = (tmp_path / "out" / "plant.c").stat().st_mtime_ns
     codegen.write(small, tmp_path / "out")

@@ -320,8 +320,18 @@ int MCC_MPG_set(struct mcc *m, int axis, int encoder, double ratio)
     manual_use(m, axis, MANUAL_WHEEL);
     m->manual.axis[axis].encoder = encoder;
     m->manual.axis[axis].ratio = ratio;
+    m->manual.axis[axis].rests = false;
     rebase(m, axis);
     return MCC_NO_ERR;
+}
+
+int manual_follow(struct mcc *m, int axis, int encoder, double ratio)
+{
+    const int code = MCC_MPG_set(m, axis, encoder, ratio);
+    if (code == MCC_NO_ERR) {
+        m->manual.axis[axis].rests = true;
+    }
+    return code;
 }
 
 int MCC_MPG_disable(struct mcc *m)
@@ -347,6 +357,34 @@ bool manual_wheel(const struct mcc *m)
     return on;
 }
 
+/* The pulse nearest to one that the software limits of an axis leave open, from where it is. */
+static double inside(const struct mcc *m, int axis, double pulse)
+{
+    const struct machine_axis *a = &m->machine.axis[axis];
+    const double scale = machine_pulses_per_mm(a), at = pulses_of(m, axis);
+    const double high = el_max(round(machine_high(a) * scale), at);
+    const double low = el_min(round(machine_low(a) * scale), at);
+    return el_max(low, el_min(high, pulse));
+}
+
+/* True if the axis is to come to rest before it goes to a target, behind which it would stop. A
+ * plan that turns round brakes by the smaller of acceleration and deceleration, which may be too
+ * little at a software limit. */
+static bool stops_first(struct mcc *m, int axis, double target)
+{
+    struct axes *a = &m->trajectory.axes;
+    double place, speed;
+
+    if (axes_rests(a, axis)) {
+        return false;
+    }
+    if (a->axis[axis].order != AXES_STAND) {
+        axes_stand(a, axis);
+    }
+    axes_state(a, axis, &place, &speed);
+    return (target - a->axis[axis].side * a->axis[axis].plan.s1) * speed < 0.0;
+}
+
 /* Follow the wheel: to the pulse base + ratio * counts, or no further onto a limit switch. */
 static void follow(struct mcc *m, int axis)
 {
@@ -356,8 +394,15 @@ static void follow(struct mcc *m, int axis)
 
     w->turned += (int32_t)((uint32_t)now - (uint32_t)w->count);
     w->count = now;
-    const double want = round(w->base + w->ratio * (double)w->turned);
-    const double target = el_max(-COMMAND_PULSES_MAX, el_min(COMMAND_PULSES_MAX, want)) / scale;
+    const double asked = round(w->base + w->ratio * (double)w->turned);
+    const bool rests = w->rests && m->machine.axis[axis].check_ot;
+    double want = el_max(-COMMAND_PULSES_MAX, el_min(COMMAND_PULSES_MAX, asked));
+    if (rests && inside(m, axis, want) != want) {
+        want = inside(m, axis, want);
+        w->base = (int32_t)want;
+        w->turned = 0;
+    }
+    const double target = want / scale;
     if (target != place_of(m, axis) && on_limit(m, axis, target - place_of(m, axis))) {
         axes_stand(&m->trajectory.axes, axis);
         rebase(m, axis);
@@ -365,6 +410,9 @@ static void follow(struct mcc *m, int axis)
                || m->trajectory.axes.axis[axis].goal != target) {
         const struct axes_limits l =
             machine_axis_limits(&m->machine, axis, machine_ptp_speed(&m->machine, axis));
+        if (rests && stops_first(m, axis, target)) {
+            return;
+        }
         axes_go(&m->trajectory.axes, axis, target, &l);
     }
 }

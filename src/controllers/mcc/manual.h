@@ -19,6 +19,7 @@ struct manual_axis {
     bool steps;      /* JOG: its goal is the end of steps (manual_step) */
     int32_t encoder; /* encoder counter of the handwheel, 0 .. 8 */
     double ratio;    /* [pulses/count] of the axis by the handwheel */
+    bool rests;      /* WHEEL: it does not lead beyond a software limit in force */
     int32_t count;   /* [counts] of that counter at the latest look */
     int64_t turned;  /* [counts] that the wheel has turned since the axis was at `base` */
     int32_t base;    /* [pulses] position from which those counts move the axis */
@@ -42,6 +43,10 @@ int manual_jog(struct mcc *m, int axis, int direction, double percent);
  * end beyond a software limit in force, further out than the axis is, is refused with
  * MCC_COMMAND_NOTACCEPTED. */
 int manual_step(struct mcc *m, int axis, double distance, double percent);
+
+/* As MCC_MPG_set; with the software limits of the axis in force it comes to rest at the limit to
+ * which the wheel leads. What it is turned beyond is forgotten: turned back it leaves at once. */
+int manual_follow(struct mcc *m, int axis, int encoder, double ratio);
 
 /* True while some axis follows a handwheel. */
 bool manual_wheel(const struct mcc *m);

@@ -51,7 +51,7 @@ static void by_hand(struct pc *pc, const struct pc_panel *panel)
     if (panel->wheel_axis != p->wheel_axis) {
         p->wheel_axis = panel->wheel_axis;
         MCC_MPG_disable(m);
-        MCC_MPG_set(m, panel->wheel_axis - 1, panel->wheel_encoder - 1, panel->wheel_ratio);
+        manual_follow(m, panel->wheel_axis - 1, panel->wheel_encoder - 1, panel->wheel_ratio);
     }
 }
 

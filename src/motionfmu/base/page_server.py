@@ -15,6 +15,7 @@ from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIO
 from motionfmu.base.errors import InputError
 
 HOST = "127.0.0.1"
+PORT_MAX = 65535
 MESSAGE_MAX = 4096  # [byte] of a page to the server: it says its token
 CLOSING = 1.0  # [s] for pages that are open when it ends
 CONNECTIONS = 256  # at once; with one more, the oldest that asks for nothing is cut off

@@ -17,6 +17,7 @@ from motionfmu.cli.console_text import width
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
+    from motionfmu.run.begin_state import BeginState
     from motionfmu.scenarios.fmus import Port
 
 HEADINGS = {
@@ -205,6 +206,8 @@ def _scenario(scenario: "Scenario") -> None:
     body = scenario.document.body
     print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
     print(_until(body))
+    if scenario.begin is not None:
+        print(_wrapped(_begin(scenario.begin), "begins ", "  "))
     print(_engine(scenario))
     print("components")
     print_rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
@@ -241,6 +244,16 @@ def _engine(scenario: "Scenario") -> str:
 
     name, why = usual(scenario.resolved(Options()))
     return f"engine: {name}" + (f" ({why})" if why else "")
+
+
+def _begin(state: "BeginState") -> str:
+    """When a scenario begins, and what has been set by then."""
+    force = ", ".join(f"{n} = {_plain(v)}" for n, v in state.force.items())
+    return f"at {state.ns / 1e9:.9g} s, in {state.name}" + (f", with {force}" if force else "")
+
+
+def _plain(values: tuple[Any, ...]) -> str:
+    return str(values[0] if len(set(values)) == 1 else list(values))
 
 
 def _until(body: Any) -> str:

@@ -14,8 +14,6 @@ from motionfmu.cli.common import FAILED, Set, app, out, setting, settings
 if TYPE_CHECKING:
     from motionfmu.live.serving import MachineStart
 
-PORT_MAX = 65535
-
 
 @app.command()
 def live(  # noqa: PLR0913  (each is an option of the command)
@@ -33,6 +31,10 @@ def live(  # noqa: PLR0913  (each is an option of the command)
     save_as: Annotated[
         Path | None,
         typer.Option(metavar="FOLDER", help="Scenario of what was done, written when it ends."),
+    ] = None,
+    save_last: Annotated[
+        float | None,
+        typer.Option(metavar="SECONDS", help="Of a longer time, --save-as has the end only."),
     ] = None,
     grbl: Annotated[
         str | None,
@@ -79,8 +81,12 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         needed("opcua")
     elif opcua_nodesets is not None:
         raise InputError("--opcua-nodesets goes with --opcua")
+    from motionfmu.base.page_server import PORT_MAX
+
     if not 0 <= port <= PORT_MAX:
         raise InputError(f"--port {port}: 0 to {PORT_MAX} wanted")
+    if save_last is not None and (save_as is None or not 0.0 < save_last < math.inf):
+        raise InputError(f"--save-last {save_last:g}: seconds wanted, with --save-as FOLDER")
     from motionfmu.live.exchange import ExchangePlan
     from motionfmu.live.serving import MachineStart
 
@@ -97,6 +103,7 @@ def live(  # noqa: PLR0913  (each is an option of the command)
         None if pace == math.inf else pace,
         not paused,
         None if save_as is None else str(save_as),
+        save_last,
         plan,
         realtime,
     )

@@ -109,7 +109,10 @@ def as_ssp(
 
 
 def _check_parts(name: str, system: System, fmi: int) -> None:
-    """Refuse FMUs and wires that an SSP of this version cannot hold."""
+    """Refuse what an SSP of this version cannot hold."""
+    if system.begin:
+        told = "it begins in a saved state, and what drives an SSP begins at 0 s"
+        raise InputError(f"{name}: {told}: export it as one FMU")
     for component in system.components:
         if system.version(component, fmi) > fmi:
             told = f"{component} is FMI 3, which no SSP {VERSIONS[fmi]} has: --fmi 3"

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 
-from motionfmu.fmu.describe import STRING_MAX, Description, Variable
+from motionfmu.fmu.describe import COMMON, FILES, STRING_MAX, Description, Variable
 from motionfmu.fmu.licence import version
 
 _NOTE = "/* Generated from the FMU's description; do not edit. */\n"
@@ -52,10 +52,17 @@ def _nested(values: list[str], dims: tuple[int, ...]) -> str:
     return "{" + ", ".join(parts) + "}"
 
 
+def _keeps(v: Variable) -> bool:
+    """Whether an instance keeps its own value when it begins in a saved state."""
+    return v.name in COMMON or v.declared in FILES.values()
+
+
 def header(d: Description) -> str:
     """Text of vars.h: the FMU_* constants and `struct vars`, one member per variable."""
     members = "\n".join(_members(d.variables))
     known = f"#define FMU_STRICT {member(d.strict)}\n"
+    if d.begin:
+        known += f"#define FMU_BEGIN {member(d.begin)}\n"
     if d.grid:
         known += f'#define FMU_GRID {member(d.grid)} /* [s] */\n#define FMU_GRID_NAME "{d.grid}"\n'
     return (
@@ -81,7 +88,7 @@ def table(d: Description) -> str:
         rows.append(
             f'    {{"{v.name}", {ref}, {v.count}, offsetof(struct vars, {member(v.name)}), '
             f"VAR_{v.type.upper()}, CAUSE_{v.causality.upper()}, {_VARY[v.variability]}, "
-            f"{low}, {high}}},"
+            f"{low}, {high}, {int(_keeps(v))}}},"
         )
         refs += [str(row)] * v.count
     lines = [", ".join(refs[i : i + 24]) for i in range(0, len(refs), 24)]

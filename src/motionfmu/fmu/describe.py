@@ -38,7 +38,8 @@ FILES = {
 }
 
 Scalar = float | int | bool | str
-STRICT = "strict_step"
+STRICT, BEGIN = "strict_step", "begin_state"
+COMMON = STRICT, BEGIN  # parameters that every FMU has
 
 
 def element_names(name: str, dims: tuple[int, ...]) -> list[str]:
@@ -131,6 +132,11 @@ class Description:
         return next(v.name for v in self.variables if v.name.rpartition(".")[2] == STRICT)
 
     @property
+    def begin(self) -> str | None:
+        """Name of the parameter that names a state to begin in; a system has none."""
+        return next((v.name for v in self.variables if v.name == BEGIN), None)
+
+    @property
     def token(self) -> str:
         """GUID / instantiation token: a hash of the parsed description."""
         text = json.dumps(asdict(self), sort_keys=True)
@@ -153,9 +159,12 @@ def strict_step(unit: str, otherwise: str, name: str = STRICT) -> Variable:
     return Variable(name, "parameter", "bool", doc, start=[False])
 
 
-def strict_tick(tick_ns: int) -> Variable:
-    """The parameter `strict_step` of an FMU, which follows the FMU's own variables."""
-    return strict_step(f"{tick_ns} ns", "each runs to the nearest, and the next ones catch up")
+def common(tick_ns: int) -> tuple[Variable, ...]:
+    """The parameters that every FMU has, which follow its own variables."""
+    strict = strict_step(f"{tick_ns} ns", "each runs to the nearest, and the next ones catch up")
+    doc = "File with a serialized FMU state in which it begins, its time startTime; empty: at rest"
+    begin = Variable(BEGIN, "parameter", "string", doc, start=[""], declared=FILES["read"])
+    return strict, begin
 
 
 _KINDS: dict[str, tuple[type, ...]] = {

@@ -8,7 +8,7 @@ from typing import Any
 from motionfmu.base.errors import Faults, InputError, suggestion
 from motionfmu.base.toml_lines import ordered, shown, tables_of, text_of
 from motionfmu.fmu import agree, terminals
-from motionfmu.fmu.describe import CAUSALITIES, STRICT, Description, Variable, strict_tick, variable
+from motionfmu.fmu.describe import CAUSALITIES, COMMON, Description, Variable, common, variable
 from motionfmu.fmu.head import line_of, matches, wrong_head, wrong_keys
 
 HEAD = {"name", "description", "tick_ns", "experiment", "cores"}
@@ -28,7 +28,7 @@ def _variables(
             variables.append(variable(name, causality, row))
         except InputError as error:
             wrong += ((name, told) for told in error.args)
-        if name == STRICT:
+        if name in COMMON:
             wrong.append((name, f"the name {name} is taken: every FMU has it"))
         if name in names:
             wrong.append((name, f"{name} is described twice"))
@@ -65,7 +65,7 @@ def parse(text: str, file: str = "fmu.toml") -> Description:
     Faults(ordered(faults.lines, [file])).tell()
     return Description(
         **{**doc, "cores": tuple(cores)},
-        variables=(*variables, strict_tick(doc["tick_ns"])),
+        variables=(*variables, *common(doc["tick_ns"])),
         terminals=tuple(joined),
         agree=tuple(shared),
     )

@@ -116,6 +116,8 @@ def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
 def _shows(system: System, used: Roles) -> Iterable[str]:
     taken = [f"SYSTEM_COPY({_in_part(e)}, {_here(e)});" for e in used.taken]
     yield _function("void system_take(struct model *m, const struct vars *v)", taken, ["m", "v"])
+    back = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.taken]
+    yield _function("void system_return(const struct model *m, struct vars *v)", back, ["m", "v"])
     shown = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.shown]
     if system.until is not None:
         shown.append("v->until_.step = m->until;")

@@ -78,8 +78,13 @@ class Journal:
         """
         self.actions = [a for a in self.actions if a.step < step]
 
-    def drives(self) -> list[dict[str, Any]]:
+    def drives(self, begin: int = 0) -> list[dict[str, Any]]:
         """The [[drive]] tables of a scenario that does the same.
+
+        Parameters
+        ----------
+        begin : int
+            Step from which on.
 
         Returns
         -------
@@ -92,12 +97,12 @@ class Journal:
                 "at": [a.step * self.step_ns / 1e9 for a in actions],
                 "value": [_plain(a.values) for a in actions],
             }
-            for name, actions in self._by_name().items()
+            for name, actions in self._by_name(begin).items()
         ]
 
-    def _by_name(self) -> Mapping[str, list[Action]]:
+    def _by_name(self, begin: int) -> Mapping[str, list[Action]]:
         found: dict[str, list[Action]] = {}
-        for action in self.actions:
+        for action in (a for a in self.actions if a.step >= begin):
             found.setdefault(action.name, []).append(action)
         return found
 

@@ -371,22 +371,28 @@ class LiveClient:
         """
         return list(self.ask("record"))
 
-    def save(self, folder: str | Path, check: Mapping[str, Any] | None = None) -> Path:
+    def save(
+        self,
+        folder: str | Path,
+        check: Mapping[str, Any] | None = None,
+        begin: float | None = None,
+    ) -> Path:
         """Write what was done as a scenario.
 
         Parameters
         ----------
         folder : str or Path
-            Not there yet.
         check : mapping, optional
-            The [check] of the scenario.
+        begin : float, optional
+            All as of `LiveMachine.save`.
 
         Returns
         -------
         Path
             The scenario.toml.
         """
-        given = {} if check is None else {"check": dict(check)}
+        given: dict[str, Any] = {} if check is None else {"check": dict(check)}
+        given |= {} if begin is None else {"begin": begin}
         return Path(self.ask("save", folder=str(Path(folder).absolute()), **given))
 
     def _component(self, table: str) -> str:

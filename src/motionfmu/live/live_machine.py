@@ -4,7 +4,7 @@ import json
 import math
 from collections import deque
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from ctypes import byref, c_size_t, c_void_p, sizeof
+from ctypes import byref, c_int, c_size_t, c_void_p, create_string_buffer, sizeof
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,9 @@ from motionfmu.base.new_folder import new_folder
 from motionfmu.fmu.describe import STRICT
 from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.live.journal import Action, Journal
+from motionfmu.live.loaded_files import LoadedFiles
 from motionfmu.live.sample_ring import CHANNELS, SampleRing
+from motionfmu.run import begin_state
 from motionfmu.run.engines import fmu_messages
 from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
 from motionfmu.run.run_plan import Options
@@ -26,14 +28,15 @@ from motionfmu.run.runner import Scenario, load
 from motionfmu.run.saved_scenario import copied_files
 from motionfmu.scenarios import package_files
 from motionfmu.scenarios.system import End, Stimulus
-from motionfmu.scenarios.toml_text import document_lines
-from motionfmu.scenarios.values import start_values, values_of
+from motionfmu.scenarios.toml_text import document_lines, value_text
+from motionfmu.scenarios.values import start_values, value_of, values_of
 
 # Steps whose samples are gathered before they are sorted into rings: 16 of a turn at 0.1 ms.
 _BATCH = 64
 # Sets of channels whose calls are kept.
 _SAMPLERS = 16
 NAME = "system"
+BEGIN_FILE = "begin.zip"  # of a saved scenario that begins in a state
 # Bytes of all states that are kept to go back to.
 STATES_MAX = 512 << 20
 # What a scenario says of its own run, at times that this one need not reach.
@@ -110,7 +113,9 @@ class LiveMachine:
         self, scenario: Scenario | str | Path, set: Mapping[str, Any] | None = None
     ) -> None:
         self.scenario = scenario if isinstance(scenario, Scenario) else load(scenario)
-        self._options = Options(set=dict(set or {}))
+        given = Options(set=dict(set or {}))
+        self._loaded = LoadedFiles(self.scenario.resolved(given).settings)
+        self._options = Options(set={**given.set, **self._loaded.values})
         self._system = self.scenario.resolved(self._options)
         self._outputs = {e.name: e for e in self._ends("output")}
         self._made = fused.program(self._system, list(self._outputs.values()), 3)
@@ -125,7 +130,7 @@ class LiveMachine:
         self._samplers: dict[tuple[str, ...], _Sampler] = {}
         self._readers: dict[tuple[str, ...], Callable[[], list[Any]]] = {}
         self.journal = Journal(self._system.step_ns)
-        self.steps, self._closed = 0, False
+        self.steps, self._closed = self._system.begin, False
         try:
             self._begin()
         except BaseException:
@@ -169,10 +174,14 @@ class LiveMachine:
             library.instantiate(NAME, self._token, self._made.folder / "resources", self._tell)
             library.warn()
             library.set((self._places[n], v) for n, v in given.items())
-            library.enter()
+            library.enter(system.begin_time)
             library.leave()
 
         self._refusable(begin)
+        if system.begin:  # what is in force there is in the state
+            found = zip(self._inputs, self.read(self._inputs), strict=True)
+            self._values = {name: tuple(values) for name, values in found}
+            self._first = dict(self._values)
         self._advance_one = library.stepper(system.step_ns * 1e-9)
 
     def _tell(self, status: int, text: str) -> None:
@@ -262,8 +271,8 @@ class LiveMachine:
         InputError
             There is no such variable.
         """
-        found = (s.values for s in self._system.settings if s.end.name == name)
-        return next(found, tuple(start_values(self.scenario.resolver.end(name, "", "").port)))
+        given = {s.end.name: s.values for s in self._system.settings}
+        return value_of(self.scenario.resolver, given, name)
 
     def set(self, name: str, value: Any) -> Action:
         """Give an input or a parameter a value from now on.
@@ -686,24 +695,29 @@ class LiveMachine:
         InputError
             No state is kept from then.
         """
-        if not math.isfinite(time):
-            raise InputError(f"back to {time} s: a finite time wanted")
-        step = round(time * 1e9 / self._system.step_ns)
-        if not any(k.step <= step for k in self._kept):
-            raise InputError(f"no state is kept at or before {time:g} s")
-        while self._kept[-1].step > step:
+        there = self._kept_at(time, "back to")
+        while self._kept[-1] is not there:
             self._drop(self._kept.pop())
-        there = self._kept[-1]
         self._refusable(lambda: self._library.call("SetFMUState", there.state))
         self.steps, self._values = there.step, dict(there.values)
         self.journal.forget(self.steps)
         return self.time
 
+    def _kept_at(self, time: float, asked: str) -> _SavedState:
+        """The latest state that is kept at or before a time [s]."""
+        if not math.isfinite(time):
+            raise InputError(f"{asked} {time} s: a finite time wanted")
+        step = round(time * 1e9 / self._system.step_ns)
+        found = [k for k in self._kept if k.step <= step]
+        if not found:
+            raise InputError(f"no state is kept at or before {time:g} s")
+        return found[-1]
+
     def _drop(self, kept: _SavedState) -> None:
         self._refusable(lambda: self._library.call("FreeFMUState", byref(kept.state)))
 
     def as_scenario(self, name: str | None = None) -> Scenario:
-        """The scenario that does what was done.
+        """The scenario that does what was done since it began.
 
         Parameters
         ----------
@@ -719,21 +733,33 @@ class LiveMachine:
         InputError
             The machine has not been stepped.
         """
-        if not self.steps:
+        return self._as_scenario(name, self._system.begin, {})
+
+    def _as_scenario(self, name: str | None, begin: int, more: Mapping[str, Any]) -> Scenario:
+        """The scenario that does what was done from a step on."""
+        if self.steps <= begin:
             raise InputError(f"{self.scenario.name}: no step was made")
         tables = self.scenario.document.tables
-        drives = [*tables.get("drive", []), *self.journal.drives()]
+        drives = [*tables.get("drive", []), *self.journal.drives(begin)]
         cut: dict[str, Any] = {k: None for k in _CLAIMS if k in tables}
         cut |= {t: dict.fromkeys(tables[t]) for t in ("check", "expect") if tables.get(t)}
-        return self.scenario.changed(
+        found = self.scenario.changed(
             set=self._options.set,
             drive=drives,
             stop=self.time,
             name=name,
             **cut,
+            **more,
         )
+        found.held = self._loaded
+        return found
 
-    def save(self, folder: str | Path, check: Mapping[str, Any] | None = None) -> Path:
+    def save(
+        self,
+        folder: str | Path,
+        check: Mapping[str, Any] | None = None,
+        begin: float | None = None,
+    ) -> Path:
         """Write what was done as a scenario, with the files it reads.
 
         Parameters
@@ -742,6 +768,9 @@ class LiveMachine:
             Not there yet.
         check : mapping, optional
             The [check] of the scenario.
+        begin : float, optional
+            It begins in the latest state that is kept from this time [s] or before; what was set
+            until then is in the state. Else it begins where the machine did.
 
         Returns
         -------
@@ -751,20 +780,68 @@ class LiveMachine:
         Raises
         ------
         InputError
-            The folder is there, no step was made, or a check names what there is not.
+            The folder is there, no step was made, no state is kept from then, or a check names what
+            there is not.
         """
         place = Path(folder)
-        plan = self.as_scenario(place.name)
-        if check:
-            plan = plan.changed(check=check)
-        given = plan.document.tables.items()
-        tables = {k: v for k, v in given if k not in ("machine", "extends") and v not in ({}, [])}
+        there = None if begin is None else self._kept_at(begin, "begin at")
         with new_folder(place) as part:
+            plan = self._saved_plan(place.name, there, part)
+            if check:
+                plan = plan.changed(check=check)
+            given = plan.document.tables.items()
+            tables = {
+                k: v for k, v in given if k not in ("machine", "extends") and v not in ({}, [])
+            }
             tables = copied_files(plan, tables, part, place)
-            about = f"# {self.scenario.document.about.rstrip('.')}, as it was worked at."
-            text = "\n".join([about, *document_lines(tables)]) + "\n"
+            about = [f"# {self.scenario.document.about.rstrip('.')}, as it was worked at."]
+            about += [] if there is None else self._told(there)
+            text = "\n".join([*about, *document_lines(tables)]) + "\n"
             (part / package_files.SCENARIO).write_text(text, encoding="utf-8")
         return place / package_files.SCENARIO
+
+    def _saved_plan(self, name: str, there: _SavedState | None, part: Path) -> Scenario:
+        """What was done, all of it or from a state on, which is written into a folder."""
+        if there is None or there.step == self._system.begin:
+            return self.as_scenario(name)
+        file = part / BEGIN_FILE
+        states = self._component_states(there)
+        ns = there.step * self._system.step_ns
+        begin_state.write(file, self._system, ns, states, self._in_force(there))
+        return self._as_scenario(name, there.step, {"begin": str(file)})
+
+    def _in_force(self, there: _SavedState) -> dict[str, tuple[Any, ...]]:
+        """What had another value at a state than at the beginning."""
+        pairs = ((n, _all(v, self._first[n])) for n, v in there.values.items())
+        return {n: v for n, v in pairs if v != _all(self._first[n], v)}
+
+    def _told(self, there: _SavedState) -> list[str]:
+        """Lines of comment: the state in which a scenario begins, and what is in force there."""
+        time = there.step * self._system.step_ns / 1e9
+        lines = [f"# It begins at {time:.9g} s, in the state {BEGIN_FILE}. In force there:"]
+        for name, values in self._in_force(there).items():
+            alike = len(set(values)) == 1
+            lines.append(f"# {name} = {value_text(values[0] if alike else values)}")
+        return lines if len(lines) > 1 else [lines[0].replace(" In force there:", "")]
+
+    def _component_states(self, there: _SavedState) -> dict[str, bytes]:
+        """A state as the FMU of each component serializes it; the machine stays where it is."""
+        now, library = c_void_p(), self._library
+        save = library.own("motionfmu_part_state")
+        save.restype = c_size_t
+        self._refusable(lambda: library.call("GetFMUState", byref(now)))
+        try:
+            self._refusable(lambda: library.call("SetFMUState", there.state))
+            found = {}
+            for k, component in enumerate(self._system.components):
+                room = save(library.instance, c_int(k), None, c_size_t(0))
+                data = create_string_buffer(room)
+                save(library.instance, c_int(k), data, c_size_t(room))
+                found[component] = data.raw
+        finally:
+            self._refusable(lambda: library.call("SetFMUState", now))
+            self._refusable(lambda: library.call("FreeFMUState", byref(now)))
+        return found
 
     def close(self) -> None:
         """Free the program and the states that are kept."""

@@ -291,9 +291,11 @@ class MachineLoop:
         ends = [2.0**k / 64e3 for k in range(len(late.counts))]
         return {"ends": ends, "counts": late.counts, "worst": late.worst}
 
-    def do_save(self, folder: str, check: Mapping[str, Any] | None = None) -> str:
+    def do_save(
+        self, folder: str, check: Mapping[str, Any] | None = None, begin: float | None = None
+    ) -> str:
         """Save what was done as a scenario."""
-        return str(self.machine.save(folder, check))
+        return str(self.machine.save(folder, check, begin))
 
     def do_checks(self, names: list[str] | None = None) -> dict[str, Any]:
         """Figures of which checks are made: present values; least and largest ones in the scope."""

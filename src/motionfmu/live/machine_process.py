@@ -138,7 +138,9 @@ def _serve(start: dict[str, Any], requests: BinaryIO, answers: _Answers) -> None
         threading.Thread(target=_listen, args=(requests, loop, answers), daemon=True).start()
         loop.run()
         if save_as is not None and machine.steps:
-            answers.put({"told": "saved", "file": str(_saved(machine, save_as))})
+            answers.put(
+                {"told": "saved", "file": str(_saved(machine, save_as, start["save_last"]))}
+            )
 
 
 def _scenario(path: str, program: str | None) -> Scenario:
@@ -157,13 +159,17 @@ def _scenario(path: str, program: str | None) -> Scenario:
     return scenario.changed(set={name: str(Path(program).absolute())})
 
 
-def _saved(machine: LiveMachine, folder: str) -> Path:
-    """Save what was done; beside a folder that has come there in the meantime."""
+def _saved(machine: LiveMachine, folder: str, last: float | None) -> Path:
+    """Save what was done, or the last seconds; beside a folder that has come there meanwhile."""
+    kept = machine.kept
+    begin = None if last is None else machine.time - last
+    if begin is not None and (not kept or begin < kept[0]):
+        begin = None
     place, more = Path(folder), 1
     while os.path.lexists(place):
         more += 1
         place = Path(f"{folder}-{more}")
-    return machine.save(place)
+    return machine.save(place, begin=begin)
 
 
 def _listen(requests: BinaryIO, loop: MachineLoop, answers: _Answers) -> None:

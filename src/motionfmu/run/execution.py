@@ -88,7 +88,8 @@ class Execution:
 
     def _time(self, steps: int) -> NDArray[np.float64]:
         """Times of the rows of so many steps [s]."""
-        rows = np.arange(self.system.rows(steps), dtype=np.float64)
+        first = self.system.begin // self.system.every
+        rows = np.arange(first, first + self.system.rows(steps), dtype=np.float64)
         return rows * (self.system.sample_ns * 1e-9)
 
     def _seconds(self, steps: int) -> float:

@@ -245,9 +245,7 @@ class Result(Mapping[str, NDArray[Any]]):
         tuple
             One value per element.
         """
-        if name in self.parameters:
-            return self.parameters[name]
-        return values.start_values(self.resolver.end(name, "set", name).port)
+        return values.value_of(self.resolver, self.parameters, name)
 
     def contour(self, progress: Callable[[float], None] = lambda share: None) -> "ContourResult":
         """The contour error of this run against the planned geometry.

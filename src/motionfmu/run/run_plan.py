@@ -8,7 +8,7 @@ from typing import Any
 
 from motionfmu.base.errors import Faults, InputError
 from motionfmu.base.memo import Memo
-from motionfmu.run import contrary, figures, waveforms
+from motionfmu.run import begin_state, contrary, figures, waveforms
 from motionfmu.run.checks import is_figure, misplaced, table_of
 from motionfmu.scenarios import (
     agreement,
@@ -90,6 +90,7 @@ class RunPlan:
         self._kept: Memo[system.System] = Memo(_KEPT)
         faults = Faults(self.document.wrong)
         self.resolver = system.Resolver(self.document, faults)
+        self.begin = faults.of(lambda: begin_state.read(self.resolver))
         self._check_names(faults)
         self._check_whole(faults)
         self.document.refuse(faults.lines)
@@ -189,7 +190,7 @@ class RunPlan:
         until = None
         if options.stop is None:
             until = faults.of(lambda: system.until(resolver, step_ns))
-        return system.System(
+        made = system.System(
             components=dict(body.component),
             wires=tuple(wires),
             settings=tuple(given),
@@ -199,6 +200,10 @@ class RunPlan:
             every=body.record.every if options.every is None else options.every,
             until=until,
         )
+        begin = self.begin
+        if begin is None or faults.lines:
+            return made
+        return faults.of(lambda: begin.begun(resolver, made))
 
     def _times(self, options: Options) -> tuple[int, int]:
         """Communication step [ns] and how many there are at most."""

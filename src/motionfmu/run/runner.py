@@ -49,6 +49,7 @@ class Scenario(RunPlan):
     """
 
     notes: tuple[str, ...] = ()
+    held: object = None  # keeps files that its values name for as long as it is there
 
     def __repr__(self) -> str:
         body = self.document.body
@@ -210,7 +211,7 @@ class Scenario(RunPlan):
             given["record"] = {"signals": _names(record)}
         given = {k: v for k, v in given.items() if v is not None} | tables
         found = type(self)(changed(self.document, given, name or self.name))
-        found.notes = self.notes
+        found.notes, found.held = self.notes, self.held
         return found
 
 

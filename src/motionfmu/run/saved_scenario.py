@@ -37,13 +37,17 @@ def copied_files(
     values = tables.get("set", {})
     files = read_files(plan.resolver, values)
     found = {**tables, "set": {**values, **{name: file.name for name, file in files.items()}}}
+    if begin := tables.get("begin"):
+        files["begin"] = plan.document.beside(begin) or Path(begin)
+        found["begin"] = files["begin"].name
     if "record_file" in tables:
         files["record_file"] = record_file(plan.resolver)
         found["record_file"] = {**tables["record_file"], "file": files["record_file"].name}
     for file in [*files.values(), *(c for f in files.values() for c in _called(f))]:
-        if (part / file.name).exists() and not filecmp.cmp(file, part / file.name, False):
+        if not (part / file.name).exists():
+            shutil.copyfile(file, part / file.name)
+        elif not filecmp.cmp(file, part / file.name, False):
             raise InputError(f"{folder}: two files {file.name} would stand there")
-        shutil.copyfile(file, part / file.name)
     return found
 
 

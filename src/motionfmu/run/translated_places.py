@@ -16,6 +16,12 @@ def write_places(program: Path, source: Path, places: Sequence[str]) -> None:
     program.with_name(program.name + ENDING).write_text(told, encoding="utf-8")
 
 
+def places_beside(program: Path) -> list[Path]:
+    """The file of places beside a program, if it was made of another one."""
+    beside = program.with_name(program.name + ENDING)
+    return [beside] if beside.is_file() else []
+
+
 def in_source(text: str) -> str:
     """A message with the place in the user's file instead of that in a program made of it."""
     m = _MADE.search(text)

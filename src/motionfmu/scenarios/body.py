@@ -217,6 +217,7 @@ class Body(BaseModel):
     stop: Annotated[float, Field(gt=0)] | Name
     limit: Annotated[float, Field(gt=0)] | Literal["planned"] | None = None
     settle: float | None = Field(default=None, ge=0)
+    begin: Name | None = None  # file of a saved state in which it begins
     step: float = Field(gt=0)
     component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
     connect: dict[str, Name] = Field(default_factory=dict, max_length=NAMED_MAX)

@@ -90,6 +90,7 @@ class System:
     steps: int  # how many
     every: int = 1  # of them is recorded
     until: Until | None = None  # ends the run before
+    begin: int = 0  # steps that had been made when the saved state was in which it begins
 
     @property
     def sample_ns(self) -> int:
@@ -97,8 +98,13 @@ class System:
         return self.step_ns * self.every
 
     def rows(self, steps: int) -> int:
-        """Number of rows that the recording of so many steps has."""
-        return -(-steps // self.every)
+        """Number of rows that the recording has if it ends behind so many steps."""
+        return -(-steps // self.every) - self.begin // self.every
+
+    @property
+    def begin_time(self) -> float:
+        """When the run begins [s]."""
+        return self.begin * self.step_ns * 1e-9
 
     @property
     def elementwise(self) -> bool:
@@ -110,9 +116,9 @@ class System:
         return fmus.version(self.components[component], fmi)
 
     def due(self) -> dict[int, list[Stimulus]]:
-        """The stimuli by the number of the step before which they act."""
+        """The stimuli by the number of the step before which they act, none of before the begin."""
         found: dict[int, list[Stimulus]] = {}
-        for stimulus in self.stimuli:
+        for stimulus in (s for s in self.stimuli if s.step >= self.begin):
             found.setdefault(stimulus.step, []).append(stimulus)
         return found
 

@@ -22,7 +22,7 @@ KEYED = {"drive": "input", "contrary": "off"}
 ORIGINS = ("extends", "without")
 # What a machine does not say, for it has no job.
 NOT_OF_A_SCENARIO = ("drawing",)  # its program is a file that the controller reads
-NOT_OF_A_MACHINE = ("machine", "stop", "limit", "settle", "drive", "expect", "contrary")
+NOT_OF_A_MACHINE = ("machine", "begin", "stop", "limit", "settle", "drive", "expect", "contrary")
 
 
 @dataclass(frozen=True)

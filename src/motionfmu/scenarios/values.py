@@ -79,6 +79,11 @@ def start_values(port: Port) -> Values:
     return tuple(kind(x) for x in listed)
 
 
+def value_of(resolver: Resolver, given: Mapping[str, Values], name: str) -> Values:
+    """A variable's values by ``component.variable``: those given, or of its FMU's description."""
+    return given[name] if name in given else start_values(resolver.end(name, "set", name).port)
+
+
 def values_in(given: Mapping[str, Values], component: str, port: Port) -> Values:
     """A variable's values, one per element, where these are set by ``component.variable``."""
     values = given.get(f"{component}.{port.name}") or start_values(port)

@@ -411,6 +411,65 @@ static void wheel_limits(void)
     CHECK(MCC_check_stop(&m) && r.last.place[2] < left - 1.0 && r.last.place[2] > met - 25.0);
 }
 
+/* A panel's wheel leads to a software limit and not beyond, without an error; turned back it leaves
+ * at once. From beyond a limit it leads back alone. */
+static void wheel_rests(void)
+{
+    uint64_t seed = 11;
+
+    for (int k = 0; k < 40; k++) {
+        struct machine machine = mcc_machine();
+        struct record r = { 0 };
+        machine.axis[2].check_ot = true;
+        machine.axis[2].high_limit = check_real(&seed, 5.0, 30.0);
+        machine.axis[2].low_limit = -machine.axis[2].high_limit / 3.0;
+        machine.axis[2].hot_offset = machine.axis[2].lot_offset = 1.0;
+        machine.asyn.acc_type[2] = k & 1 ? 'S' : 'T';
+        machine.asyn.dec_type[2] = k & 2 ? 'S' : 'T';
+        machine.asyn.acc_time[2] = check_real(&seed, 0.02, 0.3);
+        machine.asyn.dec_time[2] = check_real(&seed, 0.02, 0.3);
+        const int32_t high = (int32_t)lround((machine.axis[2].high_limit - 1.0) * 1000.0);
+        const int32_t low = (int32_t)lround((machine.axis[2].low_limit + 1.0) * 1000.0);
+        begin(machine);
+        REFUSED(manual_follow(&m, 2, 9, 1.0), MCC_PARAMETER);
+        CHECK_EQ(manual_follow(&m, 2, 6, -2.0), 0);
+        m.signals.enc_aux[0] = -100000; /* 200 mm up */
+        steps(&r, 1500);
+        CHECK_EQ(r.sum[2], high);
+        m.signals.enc_aux[0] -= 30; /* on, from rest */
+        steps(&r, 50);
+        CHECK_EQ(r.sum[2], high);
+        m.signals.enc_aux[0] += 350; /* 700 pulses back, at once */
+        steps(&r, 500);
+        CHECK_EQ(r.sum[2], high - 700);
+        for (int j = 0; j < 4000; j++) { /* to and fro over both limits */
+            m.signals.enc_aux[0] +=
+                (int32_t)check_real(&seed, -400.0, 400.0) + (j / 400 % 2 ? 90 : -90);
+            step(&r);
+            CHECK(r.sum[2] <= high && r.sum[2] >= low);
+        }
+        CHECK_EQ(MCC_get_errcode(&m), 0);
+        m.signals.enc_aux[0] += 100000;
+        steps(&r, 1500);
+        CHECK_EQ(r.sum[2], low);
+        CHECK(MCC_get_errcode(&m) == 0 && m.manual.axis[2].use == MANUAL_WHEEL);
+        CHECK_EQ(MCC_MPG_disable(&m), 0);
+        run(&r);
+        m.machine.axis[2].low_limit += 2.0; /* it stands 2 mm beyond */
+        CHECK_EQ(manual_follow(&m, 2, 6, 1.0), 0);
+        m.signals.enc_aux[0] -= 500;
+        steps(&r, 100);
+        CHECK_EQ(r.sum[2], low);
+        m.signals.enc_aux[0] += 1500;
+        steps(&r, 500);
+        CHECK_EQ(r.sum[2], low + 1500);
+        m.signals.enc_aux[0] -= 900;
+        steps(&r, 500);
+        CHECK_EQ(r.sum[2], low + 1500);
+        CHECK_EQ(MCC_get_errcode(&m), 0);
+    }
+}
+
 /* Frames too large: a ramp to rest, the error, then nothing more is taken. */
 static void too_many_pulses(void)
 {
@@ -467,6 +526,7 @@ int main(void)
     jog_steps();
     wheel();
     wheel_limits();
+    wheel_rests();
     too_many_pulses();
     range();
     return check_result();

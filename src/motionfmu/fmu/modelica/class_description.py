@@ -112,7 +112,8 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
     names = [name for name, _, _ in own]
     try:
         _check_tunable(packing, ode)
-        for name, most in (("active", 1), ("micro_step", 1), (describe.STRICT, 0)):
+        kept = dict.fromkeys(describe.COMMON, 0)
+        for name, most in ({"active": 1, "micro_step": 1} | kept).items():
             if names.count(name) > most:
                 raise ValueError(f"the name {name} is taken: every plant has it")
         variables = tuple(describe.variable(*row) for row in own)
@@ -126,7 +127,7 @@ def describe_class(toml: Path, packing: Packing, ode: Ode) -> describe.Descripti
         packing.tick_ns,
         packing.experiment,
         grid="micro_step",
-        variables=(*variables, describe.strict_tick(packing.tick_ns)),
+        variables=(*variables, *describe.common(packing.tick_ns)),
         terminals=tuple(joined),
         agree=tuple(shared),
     )

@@ -8,11 +8,10 @@ import sys
 from types import TracebackType
 
 from motionfmu.base.errors import InputError
-from motionfmu.base.page_server import HOST, listener
+from motionfmu.base.page_server import HOST, PORT_MAX, listener
 from motionfmu.live.serving.grbl_session import GrblSession
 from motionfmu.live.serving.machine_link import MachineLink
 
-PORT_MAX = 65535
 TERMINAL = "pty"
 CHUNK = 4096  # [byte]
 # How a request of a web page begins, which any page could send here: no sender of G-code does.

@@ -39,6 +39,9 @@ class MachineStart:
         Whether it goes at once.
     save_as : str, optional
         Folder of the scenario that is written when it ends, however that comes about.
+    save_last : float, optional
+        That scenario begins so long [s] before the end, in a saved state, if the machine has run
+        longer.
     exchange : ExchangePlan, optional
         Signals that go to another program, and come from it.
     realtime : bool
@@ -51,6 +54,7 @@ class MachineStart:
     pace: float | None = 1.0
     running: bool = True
     save_as: str | None = None
+    save_last: float | None = None
     exchange: ExchangePlan | None = None
     realtime: bool = False
 

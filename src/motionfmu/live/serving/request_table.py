@@ -191,6 +191,11 @@ class AskSave(Request):
     gives: ClassVar[str] = "path of the scenario.toml"
     folder: Path = Field(description="not there yet")
     check: dict[Name, Any] | None = Field(None, description="the scenario's [check]")
+    begin: float | None = Field(
+        None,
+        description="the scenario begins in the latest state kept from then [s] or before, else at"
+        " the beginning",
+    )
 
 
 class AskChecks(Request):

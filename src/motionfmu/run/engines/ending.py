@@ -14,8 +14,8 @@ SHARES = 100
 
 def shares(system: System, due: Iterable[int], most: int) -> Iterator[tuple[int, int]]:
     """Parts of a run, each driven by one call: from and to which step; inputs are due between."""
-    part = min(max(1, system.steps // SHARES), most)
-    cuts = {*range(0, system.steps, part), *(k for k in due if k < system.steps)}
+    part = min(max(1, (system.steps - system.begin) // SHARES), most)
+    cuts = {*range(system.begin, system.steps, part), *(k for k in due if k < system.steps)}
     return pairwise([*sorted(cuts), system.steps])
 
 
@@ -39,7 +39,8 @@ class Ending:
 
     def points(self, progress: Callable[[float], None]) -> Iterator[int]:
         """The communication points of the run, one after the other, each before its step."""
-        part, element, k = max(1, self.steps // SHARES), 0, 0
+        begin = k = self._system.begin
+        part, element = max(1, (self.steps - begin) // SHARES), 0
         if self._until is not None and self._until.element is not None:
             element = self._until.element
         while k < self.steps:
@@ -50,6 +51,6 @@ class Ending:
                     self.steps = min(self.steps, k + 1 + self._until.settle)
             yield k
             if k % part == 0:
-                progress(k / self._system.steps)
+                progress((k - begin) / (self._system.steps - begin))
             k += 1
         progress(1.0)

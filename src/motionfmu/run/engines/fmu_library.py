@@ -78,6 +78,10 @@ class Library:
         """A function of the standard, by its name without the version."""
         return getattr(self._dll, f"fmi{self.fmi}{name}")
 
+    def own(self, name: str) -> Any:
+        """A function of the library that is none of the standard's."""
+        return getattr(self._dll, name)
+
     def call(self, name: str, *arguments: Any) -> None:
         """Call a function of the instance."""
         if self.function(name)(self.instance, *arguments) > WARNING:
@@ -154,14 +158,14 @@ class Library:
         self.access("Get", [variable], values)()
         return list(values)
 
-    def enter(self) -> None:
-        """Enter Initialization Mode, at time 0."""
-        none, zero = c_int(0), c_double(0.0)
+    def enter(self, time: float = 0.0) -> None:
+        """Enter Initialization Mode, at a time [s]."""
+        none, zero, start = c_int(0), c_double(0.0), c_double(time)
         if self.fmi == 2:
-            self.call("SetupExperiment", none, zero, zero, none, zero)
+            self.call("SetupExperiment", none, zero, start, none, zero)
             self.call("EnterInitializationMode")
         else:
-            self.call("EnterInitializationMode", c_bool(False), zero, zero, c_bool(False), zero)
+            self.call("EnterInitializationMode", c_bool(False), zero, start, c_bool(False), zero)
 
     def leave(self) -> None:
         """Leave Initialization Mode."""

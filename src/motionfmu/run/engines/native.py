@@ -39,7 +39,8 @@ def build(system: System, fmi: int, folder: Path) -> Path:
     before, log.disabled = log.disabled, True  # the log warns of every output that nothing reads
     try:
         container = _Folder(IDENTIFIER, folder, fmi_version=outer(system, fmi))
-        container.start_time, container.stop_time = 0.0, system.steps * system.step_ns * 1e-9
+        container.start_time = system.begin_time
+        container.stop_time = system.steps * system.step_ns * 1e-9
         for name, fmu in system.components.items():
             container.get_fmu(str(lean.packed(fmu, fmi)), name=f"{name}.fmu")
         for wire in system.wires:
@@ -104,7 +105,7 @@ class Container:
         self._used = True
         for s in system.settings:
             self._give(system, s)
-        slave.initialize()
+        slave.initialize(system.begin_time)
         slave.start()
         ending = ending_of(slave, system, self._fmi)
         if system.until is None:
@@ -131,7 +132,7 @@ class Container:
             for now in due.get(k, ()):
                 self._give(system, now)
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
-            progress(following / system.steps)
+            progress((following - system.begin) / (system.steps - system.begin))
 
     def close(self) -> None:
         """Free the instance, the library and its files."""

@@ -70,7 +70,7 @@ class Master:
                 port = s.end.port
                 slaves[s.end.component].assign(port.type, port.reference, s.values)
             for slave in slaves.values():
-                slave.initialize()
+                slave.initialize(system.begin_time)
             wires = [_wire(slaves, w) for w in system.wires]
             _exchange(wires)  # an output of a foreign FMU may follow its inputs at once
             for slave in slaves.values():

@@ -123,10 +123,10 @@ class Slave:
         with self._told():
             self._library.set([(ValuePlace(kind, reference, len(listed)), listed)])
 
-    def initialize(self) -> None:
-        """Enter Initialization Mode at time 0."""
+    def initialize(self, time: float = 0.0) -> None:
+        """Enter Initialization Mode at a time [s]."""
         with self._told():
-            self._library.enter()
+            self._library.enter(time)
 
     def start(self) -> None:
         """Leave Initialization Mode."""

@@ -54,6 +54,9 @@ function present(name) {
   return all[index.split(",").reduce((at, i, k) => at * shape[k] + Number(i) - 1, 0)];
 }
 
+// A scenario of what was done may begin so long before [s], once there is more.
+const MINUTE = 60;
+
 // By how much a number may differ at the end, until somebody says it: a share of it, or a little.
 const SHARE = 1e-3, LEAST = 1e-6;
 export const usualRoom = (now) => Number(Math.max(LEAST, SHARE * Math.abs(now)).toPrecision(1));
@@ -72,7 +75,8 @@ part("save").addEventListener("submit", async (event) => {
   event.preventDefault();
   const ticked = [...checks].filter(([, on]) => on).map(([name]) => name);
   const check = checkTable(ticked, present, (name) => rooms.get(name));
-  const place = await act("save", { folder: part("folder").value.trim(), check });
+  const last = Number(part("save-begin").value), begin = last ? frame.time - last : null;
+  const place = await act("save", { folder: part("folder").value.trim(), check, begin });
   if (place) told(`Saved: ${place}`, "good");
 });
 
@@ -85,6 +89,9 @@ part("back").addEventListener("click", async () => {
 
 export function showJournal() {
   const range = part("back-to"), kept = frame.kept;
+  const long = kept && frame.time - kept[0] > MINUTE;
+  part("save-begins").hidden = !long;
+  if (!long) part("save-begin").value = "";
   range.disabled = part("back").disabled = !kept || !frame.hand;
   if (kept) {
     [range.min, range.max] = kept;
