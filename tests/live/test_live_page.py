@@ -11,13 +11,12 @@ import pytest
 from browser import PHONE
 from browser import tab as browser_tab
 from conftest import ROOT
-from live_pages import serving
+from live_pages import DESK, MOVED, position, ready, rests, serving, until
 from page_rules import RULES
 from page_words import WORDS
 
 import motionfmu
 
-DESK = {"width": 1400, "height": 900}
 # The program waits for cycle start, so that the axes can be moved by hand.
 WAITS = {"mcc.auto_start": False}
 
@@ -33,52 +32,6 @@ def tab(browser: Any, address: str) -> Iterator[Any]:
     with browser_tab(browser, address, DESK) as page:
         ready(page)
         yield page
-
-
-def ready(page: Any) -> None:
-    """Wait until the page has the machine, and take it in hand."""
-    from playwright.sync_api import expect
-
-    expect(page.locator("#name")).to_have_text("circle")
-    expect(page.locator("#hand")).not_to_have_text("")
-    if (
-        page.locator("#take").is_visible()
-        and "in your hand" not in page.locator("#hand").inner_text()
-    ):
-        page.locator("#take").click()
-    expect(page.locator("#hand")).to_contain_text("in your hand")
-    expect(page.locator("#readout tbody td").first).to_contain_text(re.compile(r"\d"))
-
-
-def position(page: Any, axis: int) -> float:
-    """A number of the readout [mm]."""
-    text = page.locator("#readout tbody tr").nth(axis - 1).locator("td").first.inner_text()
-    return float(text.replace("\N{MINUS SIGN}", "-"))
-
-
-def until(page: Any, script: str, argument: Any = None) -> Any:
-    """Wait for as long as it takes until a script gives something true."""
-    return page.wait_for_function(script, arg=argument, timeout=60_000).json_value()
-
-
-MOVED = """([axis, from, way]) => {
-  const cell = document.querySelector(`#readout tbody tr:nth-child(${axis}) td`);
-  return way * (Number(cell.textContent.replace("\\u2212", "-")) - from) > 0.05;
-}"""
-RESTS = """([axis, times]) => {
-  const cell = document.querySelector(`#readout tbody tr:nth-child(${axis}) td`);
-  const now = [cell.textContent, document.querySelector("#time").textContent];
-  window.rest = window.rest?.[0] === now[0] ? [now[0], window.rest[1],
-    window.rest[2] + (now[1] !== window.rest[1])] : [...now, 0];
-  if (window.rest[2]) window.rest[1] = now[1];
-  return window.rest[2] > times;
-}"""
-
-
-def rests(page: Any, axis: int) -> None:
-    """Wait until an axis has the same position in 15 readouts of a running machine."""
-    page.evaluate("() => { window.rest = null; }")
-    until(page, RESTS, [axis, 15])
 
 
 def test_a_key_of_the_keyboard_jogs_while_it_is_down(tab: Any) -> None:
