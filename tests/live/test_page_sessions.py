@@ -325,8 +325,10 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
 
 
 # Whether the first number of the readout is within a few counts of another.
-NEAR = r"""(there) => Math.abs(there - Number(document.querySelector("#readout tbody td").textContent
-  .replace("\u2212", "-"))) < 40"""
+NEAR = r"""(there) => {
+  const cell = document.querySelector("#readout tbody td");
+  return Math.abs(there - Number(cell.textContent.replace("\u2212", "-"))) < 40;
+}"""
 
 
 @pytest.mark.more
