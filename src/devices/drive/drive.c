@@ -78,6 +78,16 @@ static void stand(const struct drive_config *c, struct drive_state *s, double sp
     out->saturated = false; /* the drive gives no torque */
 }
 
+/* A reset clears the alarm; an encoder that is not seen is one at once. */
+static void look_at_reset(struct drive_state *s, const struct drive_input *in)
+{
+    if (in->alarm_reset && !s->reset)
+        s->alarm = DRIVE_NO_ALARM;
+    s->reset = in->alarm_reset;
+    if (in->unplugged)
+        s->alarm = DRIVE_ENCODER;
+}
+
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
                              const struct drive_input *in, struct drive_output *out)
 {
@@ -89,12 +99,7 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
     int32_t pulses = (int32_t)((uint32_t)in->pulses - (uint32_t)s->pulses);
     s->pulses = in->pulses;
     s->primed = true;
-    if (in->alarm_reset && !s->reset)
-        s->alarm = DRIVE_NO_ALARM;
-    s->reset = in->alarm_reset;
-
-    if (in->unplugged)
-        s->alarm = DRIVE_ENCODER;
+    look_at_reset(s, in);
 
     *out = (struct drive_output){ 0 };
     /* The brake sits on the shaft: it needs no encoder. */

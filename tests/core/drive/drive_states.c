@@ -193,8 +193,8 @@ static void brake(void)
 }
 
 /* A phase that cannot be counted changes nothing. */
-/* A motor that turns: without its encoder the drive trips at once and sees no speed, its brake holds
- * all the same, and a reset helps only once the plug is in. */
+/* A motor that turns: without its encoder the drive trips at once and sees no speed. Its brake
+ * holds all the same, and a reset helps only once the plug is in. */
 static void encoder_alarm(void)
 {
     struct drive_config c = config(DRIVE_VELOCITY);
