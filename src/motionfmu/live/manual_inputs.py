@@ -219,7 +219,9 @@ ABORT = "abort"
 
 def _abort(panel: OperatorPanel) -> str | None:
     """The variable that ends a motion: its key, or what its monitor names."""
-    return ABORT if ABORT in panel.key else panel.monitor and panel.monitor.abort
+    if ABORT in panel.key:
+        return ABORT
+    return None if panel.monitor is None else panel.monitor.abort
 
 
 def _after(number: int, count: int) -> int:

@@ -69,8 +69,9 @@ export function unitOf(name, axis) {
 
 function tableOf(one) {
   const { names, axes, set, panel } = one;
-  const columns = [["machine", "Machine"], ["offset", "Work"], ["to_go", "To go"]].filter(([key]) => names[key]);
-  if (lengthOf(names)) columns.push(["length", "mm"]);
+  const counts = lengthOf(names) > 0;
+  const columns = [["machine", counts ? "Counts" : "Machine"], ["offset", "Work"], ["to_go", "To go"]].filter(([key]) => names[key]);
+  if (counts) columns.push(["length", "mm"]);
   if (names.offset) columns.sort(([a], [b]) => (b === "offset") - (a === "offset"));
   const head = made("tr", "", {}, made("td"),
     ...columns.map(([, words]) => made("th", words, { scope: "col" })), made("td"), ...(set ? [made("td")] : []));
@@ -78,7 +79,7 @@ function tableOf(one) {
   one.cells = axes.map((axis) => {
     const row = made("tr", "", {}, made("th", axis.name, { scope: "row" }));
     const cells = columns.map(([key]) => [key, row.appendChild(made("td"))]);
-    row.append(made("td", unitOf(names.machine, axis), { className: "unit" }));
+    row.append(made("td", counts ? "" : unitOf(names.machine, axis), { className: "unit" }));
     if (set) {
       const button = made("button", "Set", { type: "button", title: `This place is the value below in ${axis.name}`, "aria-label": `Touch off ${axis.name}` });
       button.addEventListener("click", () => act("mdi", { component: panel.component, line: `G10 L20 P0 ${axis.name}${programmed(panel, Number(field.value) || 0, axis)}` }));

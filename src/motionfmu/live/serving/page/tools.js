@@ -20,7 +20,7 @@ function tableOf(panel) {
   const one = { panel, names, axes, loaded: panel.full(panel.readout.tool), body: made("tbody") };
   const head = made("tr", "", {}, made("th", "Tool", { scope: "col" }),
     ...axes.map((a) => made("th", `${a.name} [${unitOf(names.offset, a)}]`, { scope: "col" })),
-    made("th", "Diameter [mm]", { scope: "col" }), made("td"));
+    made("th", "Diameter [mm]", { scope: "col" }));
   one.table = made("table", "", { className: "tools" }, made("thead", "", {}, head), one.body);
   one.none = made("p", "No tool is listed: each exists, with offsets and diameter 0.", { className: "hint" });
   const count = values(names.number).length || variable(names.number).shape[0];
@@ -66,8 +66,7 @@ function rowOf(one, number) {
     input.addEventListener("change", () => { if (input.value !== "") give(one, number, axis, Number(input.value)); });
     return made("td", "", {}, input);
   };
-  return made("tr", "", {}, made("th", `T${number}`, { scope: "row" }), ...one.axes.map((a) => field(a, a.name)), field(null, "Diameter"),
-    made("td", "", { className: "hint" }));
+  return made("tr", "", {}, made("th", "", { scope: "row" }, `T${number}`, made("small")), ...one.axes.map((a) => field(a, a.name)), field(null, "Diameter"));
 }
 
 export function showTools() {
@@ -82,7 +81,7 @@ export function showTools() {
       });
       const loaded = value(one.loaded) === shown[k];
       if (loaded) mark(row, "aria-current", "true"); else row.removeAttribute("aria-current");
-      put(row.lastChild, loaded ? "in the spindle" : "");
+      put(row.firstChild.lastChild, loaded ? "in the spindle" : "");
     });
     const count = value(names.rows) ?? 0, first = value(names.first) ?? 1;
     one.none.hidden = count > 0;
