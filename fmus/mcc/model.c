@@ -123,6 +123,22 @@ static void publish_schedule(struct vars *v, const struct pc *pc)
     }
 }
 
+/* Show a window of the tool table. */
+static void publish_tools(struct vars *v, const struct tool_table *t)
+{
+    enum { ROWS = sizeof v->tool_listed / sizeof *v->tool_listed };
+    static const struct tool none = { .number = -1 };
+
+    v->tool_rows = t->count;
+    for (int i = 0; i < ROWS; i++) {
+        const int32_t row = v->tool_row - 1 + i;
+        const struct tool *tool = row < t->count ? &t->tool[row] : &none;
+        v->tool_listed[i] = tool->number;
+        memcpy(v->tool_offset[i], tool->offset, sizeof tool->offset);
+        v->tool_diameter[i] = tool->diameter;
+    }
+}
+
 static void publish(struct fmu *f)
 {
     struct vars *v = &f->s.v;
@@ -153,6 +169,7 @@ static void publish(struct fmu *f)
     v->tool = mcc->written.outputs.tool;
     v->tool_asked = mcc->written.outputs.asks ? mcc->written.outputs.asked : -1;
     memcpy(v->analog, mcc->written.outputs.analog, sizeof v->analog);
+    publish_tools(v, &mcc->program.tools.table);
     v->mdi_taken = m->taken;
     v->mdi_room = mdi_room(&mcc->mdi);
     v->mdi_lines = mcc->mdi.line;

@@ -14,8 +14,9 @@ FOUND = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "go
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    from playwright.sync_api import sync_playwright
+    from playwright.sync_api import expect, sync_playwright
 
+    expect.set_options(timeout=60_000)  # whatever the machine's speed
     with sync_playwright() as p:
         path = FOUND or p.chromium.executable_path
         if not Path(path).exists():

@@ -11,13 +11,12 @@ import pytest
 from browser import PHONE
 from browser import tab as browser_tab
 from conftest import ROOT
-from live_pages import serving
+from live_pages import DESK, MOVED, position, ready, rests, serving, until
 from page_rules import RULES
 from page_words import WORDS
 
 import motionfmu
 
-DESK = {"width": 1400, "height": 900}
 # The program waits for cycle start, so that the axes can be moved by hand.
 WAITS = {"mcc.auto_start": False}
 
@@ -33,52 +32,6 @@ def tab(browser: Any, address: str) -> Iterator[Any]:
     with browser_tab(browser, address, DESK) as page:
         ready(page)
         yield page
-
-
-def ready(page: Any) -> None:
-    """Wait until the page has the machine, and take it in hand."""
-    from playwright.sync_api import expect
-
-    expect(page.locator("#name")).to_have_text("circle")
-    expect(page.locator("#hand")).not_to_have_text("")
-    if (
-        page.locator("#take").is_visible()
-        and "in your hand" not in page.locator("#hand").inner_text()
-    ):
-        page.locator("#take").click()
-    expect(page.locator("#hand")).to_contain_text("in your hand")
-    expect(page.locator("#readout tbody td").first).to_contain_text(re.compile(r"\d"))
-
-
-def position(page: Any, axis: int) -> float:
-    """A number of the readout [mm]."""
-    text = page.locator("#readout tbody tr").nth(axis - 1).locator("td").first.inner_text()
-    return float(text.replace("\N{MINUS SIGN}", "-"))
-
-
-def until(page: Any, script: str, argument: Any = None) -> Any:
-    """Wait for as long as it takes until a script gives something true."""
-    return page.wait_for_function(script, arg=argument, timeout=60_000).json_value()
-
-
-MOVED = """([axis, from, way]) => {
-  const cell = document.querySelector(`#readout tbody tr:nth-child(${axis}) td`);
-  return way * (Number(cell.textContent.replace("\\u2212", "-")) - from) > 0.05;
-}"""
-RESTS = """([axis, times]) => {
-  const cell = document.querySelector(`#readout tbody tr:nth-child(${axis}) td`);
-  const now = [cell.textContent, document.querySelector("#time").textContent];
-  window.rest = window.rest?.[0] === now[0] ? [now[0], window.rest[1],
-    window.rest[2] + (now[1] !== window.rest[1])] : [...now, 0];
-  if (window.rest[2]) window.rest[1] = now[1];
-  return window.rest[2] > times;
-}"""
-
-
-def rests(page: Any, axis: int) -> None:
-    """Wait until an axis has the same position in 15 readouts of a running machine."""
-    page.evaluate("() => { window.rest = null; }")
-    until(page, RESTS, [axis, 15])
 
 
 def test_a_key_of_the_keyboard_jogs_while_it_is_down(tab: Any) -> None:
@@ -130,6 +83,158 @@ def test_a_finger_jogs_and_a_page_that_loses_the_focus_lets_go(browser: Any, add
                 button.dispatch_event(gone, touch)
             rests(tab, 1)
             assert "down" not in (button.get_attribute("class") or "")
+
+
+# A gamepad in the page: its axes and buttons are set by the test, and it can be pulled out.
+GAMEPAD = """() => {
+  window.pad = { connected: true, axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 },
+    () => ({ pressed: false, value: 0 })) };
+  navigator.getGamepads = () => [null, window.pad];
+}"""
+
+
+@pytest.mark.parametrize("gone", ["pulled out", "no longer listed", "shoulder", "middle"])
+def test_a_gamepad_jogs_while_its_shoulder_is_down_and_its_loss_stops(tab: Any, gone: str) -> None:
+    tab.evaluate(GAMEPAD)
+    before = position(tab, 2)
+    tab.evaluate("() => { pad.axes[1] = -1; }")  # without the shoulder nothing moves
+    rests(tab, 2)
+    assert position(tab, 2) == before
+    tab.evaluate("() => { pad.buttons[4].pressed = true; }")
+    until(tab, MOVED, [2, before, 1])
+    tab.evaluate(
+        {
+            "pulled out": "() => { pad.connected = false; }",
+            "no longer listed": "() => { pad = null; }",
+            "shoulder": "() => { pad.buttons[4].pressed = false; }",
+            "middle": "() => { pad.axes[1] = 0.2; }",
+        }[gone]
+    )
+    rests(tab, 2)
+    assert position(tab, 2) > before
+    assert tab.locator(".jog-pad .down").count() == 0
+
+
+def test_a_refused_gamepad_asks_once_and_not_at_every_picture(
+    browser: Any, tab: Any, address: str
+) -> None:
+    from playwright.sync_api import expect
+
+    with browser_tab(browser, address, DESK) as other:
+        expect(other.locator("body")).to_have_class("watching")
+        sent: list[Any] = []
+        other.evaluate(
+            """() => { window.asked = 0; const send = WebSocket.prototype.send;
+              WebSocket.prototype.send = function (text) {
+                asked += text.includes('"do":"jog"') && text.includes('"direction":1');
+                send.call(this, text); }; }"""
+        )
+        other.evaluate(GAMEPAD)
+        other.evaluate("() => { pad.buttons[4].pressed = true; pad.axes[0] = 1; }")
+        expect(other.locator("#told")).to_contain_text("take it first")
+        rests(other, 1)
+        sent.append(other.evaluate("() => asked"))
+        assert 1 <= sent[0] <= 5
+        other.evaluate("() => { pad.axes[0] = 0; }")
+
+
+TOOLS = "T1 P1 D6.0 Z50.2\nT3 P2 D10.0 Z-12.5 X1.5\n" + "".join(
+    f"T{n} P{n} Z{n}.0\n" for n in range(10, 22)
+)
+
+
+def test_tools_are_shown_changed_and_turned_over(browser: Any, tmp_path: Path) -> None:
+    from playwright.sync_api import expect
+
+    file = tmp_path / "tools.tbl"
+    file.write_text(TOOLS)
+    given = {**WAITS, "mcc.tool_table": str(file), "mcc.tool_change": "immediate"}
+    with (
+        serving(ROOT / "scenarios/circle", set=given) as place,
+        browser_tab(browser, place, DESK) as tab,
+    ):
+        ready(tab)
+        rows = tab.locator("#tools tbody tr")
+        expect(rows).to_have_count(10)
+        expect(tab.get_by_label("Diameter of tool 1", exact=True)).to_have_value("6.000")
+        expect(tab.get_by_label("X of tool 3", exact=True)).to_have_value("1.500")
+        expect(tab.locator("#tools [aria-current]")).to_have_count(0)
+        line = tab.get_by_label("Line to run")
+        line.fill("T3 M6")
+        line.press("Enter")
+        expect(tab.locator("#tools [aria-current]")).to_contain_text("T3")
+        expect(tab.locator("#tools [aria-current]")).to_contain_text("in the spindle")
+        # What is given there counts in the units of the page, whatever the program's are.
+        line.fill("G20")
+        line.press("Enter")
+        expect(tab.locator("#readout")).to_contain_text("G20")
+        diameter = tab.get_by_label("Diameter of tool 3", exact=True)
+        diameter.fill("8.5")
+        diameter.press("Enter")
+        tab.get_by_label("X of tool 3", exact=True).fill("-2.54")
+        tab.get_by_label("X of tool 3", exact=True).press("Enter")
+        tab.locator("#tools h3, #h-tools").first.click()
+        expect(tab.locator(".typed li").first).to_contain_text("taken")
+        until(tab, SHOWN_TOOL, ["T3", [-2.54, 8.5]])
+        touched = tab.get_by_label("Value of a touch-off")
+        touched.fill("25.4")
+        tab.get_by_role("button", name="Touch off X").click()
+        expect(tab.locator("#readout tbody td").first).to_have_text("25.400")
+        line.fill("G21")
+        line.press("Enter")
+        # More of them, and one that the file does not have.
+        tab.get_by_role("button", name="Tools behind").click()
+        expect(rows).to_have_count(4)
+        expect(rows.last).to_contain_text("T21")
+        tab.get_by_role("button", name="Tools before").click()
+        expect(rows).to_have_count(10)
+        tab.get_by_label("Number of a tool").fill("77")
+        tab.get_by_role("button", name="Set tool").click()
+        expect(tab.locator("#mdi [role=status]")).to_contain_text("Refused")
+
+
+# Whether the row of a tool has this X and this diameter.
+SHOWN_TOOL = """([name, wanted]) => {
+  const row = [...document.querySelectorAll("#tools tbody tr")]
+    .find((r) => r.textContent.startsWith(name));
+  const found = [...row.querySelectorAll("input")].map((i) => Number(i.value));
+  return found[0] === wanted[0] && found.at(-1) === wanted[1];
+}"""
+
+
+@pytest.mark.parametrize("kind", ["csv", "npz"])
+def test_a_record_has_every_step_until_its_end(tab: Any, tmp_path: Path, kind: str) -> None:
+    from playwright.sync_api import expect
+
+    file = tmp_path / f"trace.{kind}"
+    tab.locator("#tab-scope").click()
+    expect(tab.locator("#scope-channels li")).not_to_have_count(0)
+    names = tab.locator("#scope-channels b").all_inner_texts()
+    tab.locator("#record summary").click()
+    end = tab.locator("#record").get_by_role("button", name="End", exact=True)
+    expect(end).to_be_disabled()
+    tab.get_by_label("File", exact=True).fill(str(file))
+    tab.get_by_role("button", name="Record", exact=True).click()
+    expect(tab.locator("#record-state")).to_contain_text(f"trace.{kind}")
+    until(
+        tab,
+        """() => / 0\\.[3-9]|, [1-9]/.test(document.querySelector("#record-state").textContent)""",
+    )
+    end.click()
+    expect(tab.locator("#told")).to_contain_text(f"trace.{kind}")
+    expect(tab.locator("#record-state")).to_have_text("off")
+    if kind == "npz":
+        with np.load(file) as record:
+            found = {name: record[name] for name in record.files}
+    else:
+        heads = [head.split(" [")[0] for head in file.read_text().splitlines()[0].split(",")]
+        columns = np.loadtxt(file, delimiter=",", skiprows=1, unpack=True)
+        found = dict(zip(heads, columns, strict=True))
+    assert list(found) == ["time", *names]
+    assert len(found["time"]) > 2000
+    assert np.allclose(np.diff(found["time"]), 1e-4)
+    tab.get_by_role("button", name="Record", exact=True).click()  # it is there
+    expect(tab.locator("#told")).to_have_class("told bad")
 
 
 def test_lines_by_hand_run_and_wrong_ones_are_refused_in_words(tab: Any) -> None:

@@ -167,6 +167,39 @@ def test_stop_is_for_everything_that_has_one(bench: Bench) -> None:
     assert bench.machine["mcc.jog[1]"] == 0
 
 
+def slide() -> Bench:
+    return Bench(LiveMachine(motionfmu.run.scenario({"machine": "hydraulic_slide", "stop": 1.0})))
+
+
+def test_a_press_lasts_as_long_as_its_panel_says_and_is_not_taken_for_bouncing() -> None:
+    bench = slide()
+    with bench.machine as machine:
+        bench.turns(0.1)
+        bench.ask("press", name="controller.pb1")
+        bench.turns(0.099)
+        assert machine["controller.pb1"]
+        bench.turns(0.003)
+        assert not machine["controller.pb1"]
+        assert machine["controller.state"] == 2  # it searches its home switch
+
+
+def test_a_stop_by_a_key_of_several_uses_is_pressed_in_motion_alone() -> None:
+    bench = slide()
+    with bench.machine as machine:
+        bench.turns(0.1)
+        assert bench.ask("stop") == []
+        bench.turns(0.3)
+        assert machine["controller.state"] == 0
+        assert abs(machine["axis.table_speed"]) < 1e-9
+        bench.ask("press", name="controller.pb1")
+        bench.turns(0.5)
+        assert machine["controller.state"] == 2
+        assert bench.ask("stop") == ["controller.pb1"]
+        bench.turns(0.3)
+        assert machine["controller.state"] == 0
+        assert abs(machine["axis.table_speed"]) < 1e-3
+
+
 def test_a_fault_of_an_fmu_stands_the_machine_until_it_goes_back(bench: Bench) -> None:
     bench.loop.advance(100)
     bench.ask("set", name="machine.force[1]", value=1e18)

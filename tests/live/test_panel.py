@@ -27,6 +27,12 @@ def test_names_of_a_panel_are_variables_that_fit_their_use(fmu: str) -> None:
         assert port.causality == "input" or (port.causality == "parameter" and port.tunable), name
     for name, key in found.key.items():
         assert ports[name].type == "Boolean", (name, key)
+    if found.advice:
+        words = ports[found.alarm or ""].declared
+        assert words is not None
+        assert all(f"{code} " in words[1] for code in found.advice)
+    for name in (found.readout.low, found.readout.high, found.readout.limited):
+        assert name is None or ports[name].causality == "parameter"
     for name in found.lamp:
         assert ports[name].causality == "output" and ports[name].type == "Boolean", name
 
@@ -42,6 +48,39 @@ def test_a_panel_that_names_no_variable_is_refused(monkeypatch: pytest.MonkeyPat
         with pytest.raises(InputError, match=said):
             panel_of("epcio")
     panel_of.cache_clear()
+
+
+FAR = {"mcc.home_order": [1, 0, 0, 0, 0, 0], "mcc.home_search": 20.0}
+
+
+def test_a_search_that_finds_no_switch_is_an_alarm_in_words() -> None:
+    from motionfmu.scenarios import fmus
+
+    with LiveMachine(run.scenario({"machine": "mill3", "stop": 1.0}, name="home"), FAR) as mill:
+        mill.step(3000)
+        mill.set("mcc.go_home", True)
+        mill.step(10000)
+        declared = fmus.ports("mcc")["error"].declared
+        assert declared is not None
+        assert f"{mill['mcc.error']} axis 1 finds no home switch" in declared[1]
+
+
+def test_the_window_of_the_tool_table_shows_what_lines_by_hand_make_of_it(tmp_path: Path) -> None:
+    file = tmp_path / "tools.tbl"
+    file.write_text("".join(f"T{n} P{n} Z{n}.5 D{2 * n}\n" for n in range(1, 24)))
+    made = run.scenario({"machine": "mill3", "stop": 1.0}, name="tools")
+    with LiveMachine(made, {"mcc.tool_table": str(file)}) as mill:
+        mill.step(100)
+        assert mill["mcc.tool_rows"] == 23
+        assert list(mill["mcc.tool_listed"]) == list(range(1, 11))
+        mill.set("mcc.tool_row", 21)
+        mill.set("mcc.mdi", "G10 L1 P22 X-1.5 R7")
+        mill.set("mcc.mdi_seq", 1)
+        mill.step(1000)
+        assert list(mill["mcc.tool_listed"]) == [21, 22, 23, *[-1] * 7]
+        offset = np.reshape(mill["mcc.tool_offset"], (10, 6))
+        assert list(offset[1]) == [-1.5, 0.0, 22.5, 0.0, 0.0, 0.0]
+        assert list(mill["mcc.tool_diameter"][:4]) == [42.0, 14.0, 46.0, 0.0]
 
 
 @pytest.mark.more

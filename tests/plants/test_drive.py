@@ -78,6 +78,23 @@ def test_a_torque_stands_one_period_after_its_cause(fmi: int) -> None:
     fmu.free()
 
 
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_an_encoder_that_is_unplugged_trips_its_drive_alone(fmi: int) -> None:
+    fmu = drives(fmi)
+    to_tick(fmu, PERIOD)
+    fmu.set("encoder_unplugged", [False, True, False, False, False, False])  # while it runs
+    to_tick(fmu, 3 * PERIOD)
+    assert fmu.get("alarm") == [0, 4, 0, 0, 0, 0]
+    assert fmu.get("ready") == [True, False, True, True, True, True]
+    fmu.set("encoder_unplugged", False)
+    to_tick(fmu, 5 * PERIOD)
+    assert fmu.get("alarm") == [0, 4, 0, 0, 0, 0]
+    fmu.set("alarm_reset", True)
+    to_tick(fmu, 7 * PERIOD)
+    assert fmu.get("alarm") == [0] * 6
+    fmu.free()
+
+
 def test_a_wrong_period_is_named() -> None:
     fmu = Instance("servo_drives", 3)
     assert fmu.set("period", 1.00003e-4) == OK

@@ -63,8 +63,9 @@ static bool overloaded(const struct drive_config *c, struct drive_state *s, bool
 }
 
 /* The drive is off: no torque but that of the holding brake, the torque that brings the motor to
- * rest and keeps it there, limited to brake_torque. */
-static void stand(const struct drive_config *c, struct drive_state *s, struct drive_output *out)
+ * rest from its speed [rpm] and keeps it there, limited to brake_torque. */
+static void stand(const struct drive_config *c, struct drive_state *s, double speed,
+                  struct drive_output *out)
 {
     s->on = out->ready = false;
     out->torque = out->speed_command = 0.0;
@@ -72,9 +73,19 @@ static void stand(const struct drive_config *c, struct drive_state *s, struct dr
         struct drive_config brake = *c;
         brake.torque_limit = c->brake_torque;
         s->integral = clamp(s->integral, c->brake_torque);
-        velocity_loop(&brake, s, -out->speed * RAD_PER_S_PER_RPM, false, out);
+        velocity_loop(&brake, s, -speed * RAD_PER_S_PER_RPM, false, out);
     }
     out->saturated = false; /* the drive gives no torque */
+}
+
+/* A reset clears the alarm; an encoder that is not seen is one at once. */
+static void look_at_reset(struct drive_state *s, const struct drive_input *in)
+{
+    if (in->alarm_reset && !s->reset)
+        s->alarm = DRIVE_NO_ALARM;
+    s->reset = in->alarm_reset;
+    if (in->unplugged)
+        s->alarm = DRIVE_ENCODER;
 }
 
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
@@ -88,12 +99,12 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
     int32_t pulses = (int32_t)((uint32_t)in->pulses - (uint32_t)s->pulses);
     s->pulses = in->pulses;
     s->primed = true;
-    if (in->alarm_reset && !s->reset)
-        s->alarm = DRIVE_NO_ALARM;
-    s->reset = in->alarm_reset;
+    look_at_reset(s, in);
 
     *out = (struct drive_output){ 0 };
-    out->speed = (double)moved * RPM_PER_TURN_PER_S / (c->encoder_counts * c->period);
+    /* The brake sits on the shaft: it needs no encoder. */
+    const double speed = (double)moved * RPM_PER_TURN_PER_S / (c->encoder_counts * c->period);
+    out->speed = in->unplugged ? 0.0 : speed;
     bool run = in->enable && s->alarm == DRIVE_NO_ALARM;
     bool first = run && !s->on;
     if (first) {
@@ -119,7 +130,7 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
             s->alarm = DRIVE_OVERLOAD;
     }
     if (!run || s->alarm == DRIVE_OVERLOAD)
-        stand(c, s, out);
+        stand(c, s, speed, out);
     out->alarm = s->alarm;
     return DRIVE_OK;
 }

@@ -12,7 +12,8 @@ enum drive_alarm {
     DRIVE_NO_ALARM = 0,
     DRIVE_FOLLOWING_ERROR = 1,
     DRIVE_OVERSPEED = 2,
-    DRIVE_OVERLOAD = 3
+    DRIVE_OVERLOAD = 3,
+    DRIVE_ENCODER = 4
 };
 enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
 
@@ -49,6 +50,7 @@ struct drive_input {
     double volts;     /* [V] velocity command */
     int32_t pulses;   /* [pulses] command, cumulative, may wrap */
     double phase;     /* [line periods] motor encoder */
+    bool unplugged;   /* the plug of the encoder is out: the drive does not see it */
 };
 
 struct drive_state {

@@ -139,7 +139,7 @@ class LiveClient:
         return float(self.ask("set", name=name, value=plain))
 
     def press(self, name: str) -> float:
-        """Press a key for 10 ms of simulated time.
+        """Press a key for 10 ms of simulated time, or its panel's.
 
         Parameters
         ----------

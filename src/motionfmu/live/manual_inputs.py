@@ -11,7 +11,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.panel import Mdi, OperatorPanel, panel_of
 
-PRESS = 0.01  # [s] of simulated time that a key is down
+PRESS = 0.01  # [s] of simulated time that a key is down, if its panel does not say it
 DEAD_MAN = 0.1  # [s] on the wall without a sign of who holds a key, and it is let go
 LINES_MAX = 256  # of MDI that wait until a controller has room for them
 _NUMBER_MAX = 2**31 - 1
@@ -73,7 +73,11 @@ class ManualInputs:
 
     def press(self, name: str, value: Any, rest: Any) -> None:
         """Press a key and let it go."""
-        self._keep(name, value, rest, PRESS / self._machine.step_seconds, math.inf)
+        component, _, variable = name.partition(".")
+        panel = self.panels.get(component)
+        key = panel.key.get(variable.partition("[")[0]) if panel else None
+        seconds = PRESS if key is None else key.seconds
+        self._keep(name, value, rest, seconds / self._machine.step_seconds, math.inf)
         self._cleared(name, value)
 
     def _keep(self, name: str, value: Any, rest: Any, steps: float, seconds: float) -> None:
@@ -169,17 +173,29 @@ class ManualInputs:
         self.release()
         self._lines.clear()
         stops = [f"{c}.{p.stop}" for c, p in self.panels.items() if p.stop is not None]
-        aborts = [f"{c}.{ABORT}" for c, p in self.panels.items() if ABORT in p.key]
+        aborts = [f"{c}.{a}" for c, p in self.panels.items() if (a := _abort(p)) is not None]
         free = self._machine.names[1]
         stops, aborts = ([n for n in names if n in free] for names in (stops, aborts))
         for name in stops:
             self._machine.set(name, True)
-        if not stops:
-            for name in aborts:
-                self.press(name, True, False)
         if not stops and not aborts:
             raise InputError("no component has an emergency stop that is free, or an abort")
-        return stops or aborts
+        if stops:
+            return stops
+        pressed = [n for n in aborts if self._aborts(n)]
+        for name in pressed:
+            self.press(name, True, False)
+        return pressed
+
+    def _aborts(self, name: str) -> bool:
+        """Whether a key ends a motion now: one that does other things at rest, only in motion."""
+        component, _, variable = name.partition(".")
+        panel = self.panels[component]
+        if variable == ABORT or panel.monitor is None or panel.state is None:
+            return True
+        states, watched = panel.monitor, int(self._machine[f"{component}.{panel.state}"])
+        moving = [*states.running, *states.interrupted, *states.aborting]
+        return watched in [*moving, *(s for by in states.by_hand.values() for s in by)]
 
     def _cleared(self, name: str, value: Any) -> None:
         """Lines that wait are gone when their controller is stopped."""
@@ -199,6 +215,13 @@ class ManualInputs:
 
 # The key that ends a motion, by its variable.
 ABORT = "abort"
+
+
+def _abort(panel: OperatorPanel) -> str | None:
+    """The variable that ends a motion: its key, or what its monitor names."""
+    if ABORT in panel.key:
+        return ABORT
+    return None if panel.monitor is None else panel.monitor.abort
 
 
 def _after(number: int, count: int) -> int:

@@ -21,6 +21,7 @@ class Key(_PanelTable):
 
     label: str
     kind: Literal["press", "switch"]
+    seconds: float = Field(0.01, gt=0.0, le=10.0)  # that a press is down, simulated
 
 
 class Dial(_PanelTable):
@@ -50,6 +51,9 @@ class Readout(_PanelTable):
     """Outputs that are numbers of the machine."""
 
     machine: str | None = None
+    low: str | None = None  # ends of its travel: parameters
+    high: str | None = None
+    limited: str | None = None  # whether they are in force
     offset: str | None = None  # machine less this is the work coordinate
     to_go: str | None = None
     feed: str | None = None
@@ -69,6 +73,16 @@ class Mdi(_PanelTable):
     done: str | None = None  # of these, with their motion ended
     fault: str | None = None
     refused: str | None = None
+
+
+class ToolWindow(_PanelTable):
+    """A window of the tool table: the number of its first row, tools, offsets, diameters."""
+
+    rows: str  # how many there are
+    first: str  # from 1
+    number: str
+    offset: str
+    diameter: str
 
 
 class PanelCommand(_PanelTable):
@@ -120,6 +134,7 @@ class OperatorPanel(_PanelTable):
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None
+    tools: ToolWindow | None = None
     command: PanelCommand | None = None
     monitor: Monitor | None = None
     stop: str | None = None  # the emergency stop: true while it acts
@@ -127,10 +142,11 @@ class OperatorPanel(_PanelTable):
     dial: dict[str, Dial] = Field(default_factory=dict)
     lamp: dict[str, Lamp] = Field(default_factory=dict)
     fault: dict[str, Lamp] = Field(default_factory=dict)
+    advice: dict[str, str] = Field(default_factory=dict)  # by value of `alarm`, what to do
 
     def names(self) -> list[str]:
         """All variables that it names."""
-        parts = (self.readout, self.jog, self.mdi)
+        parts = (self.readout, self.jog, self.mdi, self.tools)
         single = [self.state, self.alarm, self.line, self.stop]
         single += [v for p in parts if p is not None for v in p.model_dump().values()]
         if self.command:

@@ -32,6 +32,7 @@ enum { USED = 6 };
     X(mcc, card_cmd_count, int32_t, 1) X(mcc, card_index_low, bool, AXES)                         \
     X(mcc, card_latch_seq, int32_t, AXES) X(mcc, card_clear_seq, int32_t, 1)                      \
     X(mcc, tool, int32_t, 1) X(mcc, tool_asked, int32_t, 1) X(mcc, analog, double, 4)             \
+    X(mcc, tool_rows, int32_t, 1)                                                                 \
     X(card, irq, bool, 1) X(card, irq_seq, int32_t, 1) X(card, irq_clock, double, 1)              \
     X(card, irq_pages, int32_t, 1) X(card, cmd_ack, int32_t, 1) X(card, reg_ack, int32_t, 1)      \
     X(card, reg_status, int32_t, 1) X(card, frames_taken, int32_t, 1)                             \

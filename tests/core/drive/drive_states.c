@@ -193,6 +193,35 @@ static void brake(void)
 }
 
 /* A phase that cannot be counted changes nothing. */
+/* A motor that turns: without its encoder the drive trips at once and sees no speed. Its brake
+ * holds all the same, and a reset helps only once the plug is in. */
+static void encoder_alarm(void)
+{
+    struct drive_config c = config(DRIVE_VELOCITY);
+    struct drive_state s = { 0 };
+    struct drive_output out;
+    struct drive_input in = { .enable = true, .volts = 1.0 };
+    const double turn = 2500 * 5.0 * 1e-4; /* [line periods] of a sample at 300 rpm */
+
+    c.brake_torque = 3.0;
+    for (int k = 0; k < 20; k++, in.phase += turn)
+        drive_tick(&c, &s, &in, &out);
+    CHECK(out.ready && fabs(out.speed - 300.0) < 61.0);
+    in.unplugged = true;
+    for (int k = 0; k < 20; k++, in.phase += turn) {
+        in.alarm_reset = k % 2;
+        drive_tick(&c, &s, &in, &out);
+        CHECK(out.alarm == DRIVE_ENCODER && !out.ready && out.speed == 0.0);
+        CHECK(out.torque < 0.0 && out.torque >= -3.0); /* of the brake */
+    }
+    in.unplugged = in.alarm_reset = false;
+    drive_tick(&c, &s, &in, &out);
+    CHECK(out.alarm == DRIVE_ENCODER && !out.ready && fabs(out.speed - 300.0) < 61.0);
+    in.alarm_reset = true;
+    drive_tick(&c, &s, &in, &out);
+    CHECK(out.alarm == DRIVE_NO_ALARM && out.ready && out.torque == 0.0);
+}
+
 static void bad_phase(void)
 {
     struct drive_config c = config(DRIVE_POSITION);
@@ -219,6 +248,7 @@ int main(void)
     overspeed_alarm();
     overload_alarm();
     brake();
+    encoder_alarm();
     bad_phase();
     return check_result();
 }

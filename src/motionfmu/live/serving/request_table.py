@@ -85,7 +85,7 @@ class AskUndo(Request):
 
 
 class AskPress(Request):
-    """Press a key for 10 ms of simulated time."""
+    """Press a key for 10 ms of simulated time, or as long as its panel says."""
 
     gives: ClassVar[str] = "time from which it acts [s]"
     name: Name

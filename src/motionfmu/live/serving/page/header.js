@@ -1,16 +1,17 @@
 // The head of the page: state, alarm, time, pace, who has the machine in hand, emergency stop.
 import { choice, made, mark, part, put } from "./dom.js";
 import { act, on } from "./link.js";
-import { about, frame, panels, value, variable, watch } from "./machine.js";
+import { about, axisOf, frame, panels, value, values, variable, watch } from "./machine.js";
 import { advice, capital, clock, figures, meaning } from "./words.js";
 
 const PACES = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 const FASTEST = "max";
-let shown = { states: [], alarms: [], stops: [] };
+let shown = { panels: [], states: [], alarms: [], stops: [] };
 
 export function headOf() {
   const all = panels(), named = (key) => all.filter((p) => p[key]).map((p) => p.full(p[key]));
-  shown = { states: named("state"), alarms: named("alarm"), stops: named("stop") };
+  shown = { panels: all.filter((p) => p.state || p.alarm), states: named("state"), alarms: named("alarm"),
+    stops: named("stop").filter((name) => variable(name)?.set) };
   put(part("name"), about.name);
   document.title = `${about.name}: live machine`;
   part("name").title = about.about;
@@ -74,8 +75,7 @@ function showHand() {
 
 function showState() {
   const words = shown.states.map((name) => meaning(variable(name), value(name)));
-  const alarms = shown.alarms.filter((name) => value(name))
-    .map((name) => alarmWords(name)).filter(Boolean);
+  const alarms = shown.panels.flatMap(alarmsOf);
   if (frame.error) alarms.unshift(["The machine has stopped", `${frame.error}. Go back to an earlier state.`]);
   if (stopped() && !alarms.length) alarms.push(["Emergency stop", "Release it, then reset."]);
   const state = alarms.length ? "alarm" : frame.running ? "runs" : "stands";
@@ -85,12 +85,26 @@ function showState() {
   showAlarm(alarms);
 }
 
-function alarmWords(name) {
-  const own = variable(name), now = value(name);
-  const word = own.type === "Boolean" ? own.doc : own.words?.[now];
+// "axis 2" by the name that the machine's second axis has.
+const byName = (words) => words.replace(/\baxis (\d+)/g, (whole, row) => axisOf(Number(row))?.name ?? whole);
+
+// The alarms of a panel: by its codes, one for each axis of an array; else by its state.
+function alarmsOf(panel) {
+  const name = panel.alarm && panel.full(panel.alarm), own = variable(name ?? "");
+  const codes = own ? values(name).map((code, k) => [code, own.shape.length ? k + 1 : 0]).filter(([code]) => code) : [];
+  const told = codes.map(([code, row]) => alarmWords(panel, own, code, row)).filter(Boolean);
+  const state = panel.state && value(panel.full(panel.state));
+  if (told.length || !panel.monitor?.fault?.includes(state)) return told;
+  const words = meaning(variable(panel.full(panel.state)), state);
+  return [[capital(words), advice(words)]];
+}
+
+function alarmWords(panel, own, code, row) {
+  const word = own.type === "Boolean" ? own.doc : own.words?.[code];
   if (word === "none") return null;
-  const text = word ? capital(word) : `Error ${now}`;
-  return [text, advice(word ?? own.doc)];
+  const where = row ? `${panel.title}, ${axisOf(row)?.name ?? `axis ${row}`}: ` : "";
+  const text = where + byName(word ?? `error ${code}`);
+  return [capital(text), panel.advice?.[code] ?? advice(word ?? own.doc)];
 }
 
 // The same words are not told twice by a screen reader.
@@ -100,7 +114,7 @@ function showAlarm(alarms) {
   box.dataset.text = text;
   box.hidden = !alarms.length;
   box.replaceChildren(...alarms.map(([what, todo]) =>
-    made("p", "", {}, made("b", what), made("span", todo))));
+    made("p", "", {}, made("b", `${what}.`), " ", made("span", todo))));
 }
 
 on("link", (words, good) => {

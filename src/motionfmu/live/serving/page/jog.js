@@ -10,6 +10,7 @@ const WAYS = [0, 0.001, 0.01, 0.1, 1, 10]; // in the unit of the variable; 0: fo
 // Keys of the keyboard: axis from 1, direction.
 export const KEYS = { ArrowRight: [1, 1], ArrowLeft: [1, -1], ArrowUp: [2, 1], ArrowDown: [2, -1],
   PageUp: [3, 1], PageDown: [3, -1] };
+const refused = new Set(); // "component.axis": a stick of these must come back to its middle first
 const held = new Map(); // "component.axis": what is held, with its timer and button
 let pads = [], keysOn = false, padded = false;
 
@@ -125,7 +126,11 @@ function press(pad, axis, way) {
   // The first one is told if it is refused, and then no more is asked.
   const one = { way, button, pad, axis, timer: setInterval(() => ask("jog", asked).catch(() => release(pad, axis)), AGAIN) };
   held.set(name, one);
-  act("jog", asked).then((ok) => { if (ok === undefined && held.get(name) === one) release(pad, axis); });
+  act("jog", asked).then((ok) => {
+    if (ok !== undefined) return;
+    refused.add(name);
+    if (held.get(name) === one) release(pad, axis);
+  });
 }
 
 function release(pad, axis) {
@@ -171,8 +176,10 @@ function gamepad() {
   for (const [stick, axis, sign] of STICKS) {
     const own = pad.axes[axis - 1], at = sign * (found.axes[stick] ?? 0);
     if (!own) continue;
-    if (on && Math.abs(at) > DEAD) { press(pad, own.row, Math.sign(at)); padded = true; }
-    else if (padded && held.has(`${pad.component}.${own.row}`)) release(pad, own.row);
+    const name = `${pad.component}.${own.row}`, far = on && Math.abs(at) > DEAD;
+    if (!far) refused.delete(name);
+    if (far && !refused.has(name)) { press(pad, own.row, Math.sign(at)); padded = true; }
+    else if (padded && held.has(name)) release(pad, own.row);
   }
   if (!on) padded = false;
 }

@@ -11,6 +11,8 @@ import { pathOf, showPath } from "./path.js";
 import { programOf, showProgram } from "./program.js";
 import { readoutOf, showReadout } from "./readout.js";
 import { scopeOf, showScope, stream } from "./scope.js";
+import { showRecord } from "./record.js";
+import { showTools, toolsOf } from "./tools.js";
 import "./trigger.js";
 import { showValues, valuesOf } from "./values.js";
 
@@ -18,7 +20,7 @@ const VIEWS = ["operate", "scope", "values", "journal"];
 let view = "operate", fresh = false;
 
 on("about", () => {
-  for (const make of [headOf, readoutOf, keysOf, jogOf, mdiOf, programOf, pathOf, valuesOf, journalOf, scopeOf]) make();
+  for (const make of [headOf, readoutOf, keysOf, jogOf, mdiOf, toolsOf, programOf, pathOf, valuesOf, journalOf, scopeOf]) make();
   part("bare").hidden = [...document.querySelectorAll("#view-operate section")].some((s) => !s.hidden);
 });
 on("frame", () => { fresh = true; });
@@ -32,8 +34,9 @@ function draw(now) {
   const operate = view === "operate";
   if (fresh) {
     showHead();
-    if (operate) for (const show of [showReadout, showKeys, showMdi, showProgram]) show();
+    if (operate) for (const show of [showReadout, showKeys, showMdi, showTools, showProgram]) show();
     if (view === "journal") showJournal();
+    if (view === "scope") showRecord();
     fresh = false;
   }
   showJog();

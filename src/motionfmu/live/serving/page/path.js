@@ -201,7 +201,7 @@ function toolOn(tip) {
 const micrometres = (x) => (x >= 1 ? `${x.toFixed(2)} mm` : `${(1e3 * x).toFixed(x < 0.01 ? 1 : 0)} µm`);
 function tellError() {
   part("path-scale").hidden = !scale;
-  put(part("path-error"), Number.isNaN(error) ? "" : `contour error ${micrometres(error)}, largest ${micrometres(largest)}`);
+  put(part("path-error"), Number.isNaN(error) ? "" : `error ${micrometres(error)}, largest ${micrometres(largest)}`);
   put(part("path-most"), scale ? micrometres(scale) : "\u2013");
 }
 

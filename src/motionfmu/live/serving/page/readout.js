@@ -19,26 +19,59 @@ export function axesOf(name) {
   return fits;
 }
 
+const ENDS = ["low", "high", "limited"]; // parameters, which no frame has
+
+// A length [mm] as a line of a program says it now: in inch behind G20. Angles stay.
+const INCH = 25.4, G20 = 200;
+export function programmed(panel, millimetres, axis) {
+  const inch = panel.readout.modes && values(panel.full(panel.readout.modes)).includes(G20);
+  return inch && axis?.kind !== "rotary" ? Number((millimetres / INCH).toPrecision(12)) : millimetres;
+}
+
+// Where an axis can go no further, in the shown unit: at most so far from an end of its travel.
+const NEAR = 0.02;
+function endOf({ names, limits }, axis, now) {
+  if (!limits || limits.on?.[axis.row - 1] === false) return "";
+  const unit = unitOf(names.machine, axis);
+  for (const end of [limits.low, limits.high]) {
+    const there = end?.[axis.row - 1];
+    if (Math.abs(now - there) <= (unit === "counts" ? 0 : NEAR)) return `${axis.name} is at the end of its travel, ${figures(there, 6)} ${unit}`;
+  }
+  return "";
+}
+
+// Ends of the travel by axis; parameters have them in the unit that the position is shown in: mm, degrees, counts.
+function limitsOf({ component, readout }) {
+  if (!readout.low || !readout.high) return null;
+  const own = about.components[component].parameters;
+  return { low: own[readout.low], high: own[readout.high], on: readout.limited && own[readout.limited] };
+}
+
 export function readoutOf() {
   shown = panels().filter((p) => p.readout.machine).map((panel) => {
     const { readout, mdi } = panel, full = (key) => readout[key] && panel.full(readout[key]);
-    const names = Object.fromEntries(Object.keys(readout).map((key) => [key, full(key)]));
-    return { panel, names, axes: axesOf(names.machine), set: Boolean(mdi && names.offset) };
+    const names = Object.fromEntries(Object.keys(readout).map((key) => [key, full(key)]).filter(([key]) => !ENDS.includes(key)));
+    return { panel, names, axes: axesOf(names.machine), set: Boolean(mdi && names.offset), limits: limitsOf(panel) };
   });
   part("readout").closest("section").hidden = !shown.length;
   part("readout").replaceChildren(...shown.map(tableOf));
   watch("readout", shown.flatMap((s) => Object.values(s.names)));
 }
 
+// Length of a count [mm], where the machine tells it; 0 of what is no count.
+const lengthOf = (names) => (variable(names.machine).type === "Int32" ? 1000 * (about.signals.count ?? 0) : 0);
+
 // A row of a rotary axis counts 1 mm for 1°.
-function unitOf(name, axis) {
+export function unitOf(name, axis) {
   const { unit, type } = variable(name), shown = shownUnit(unit)[1];
   return shown === "mm" && axis.kind === "rotary" ? "°" : shown || (type === "Int32" ? "counts" : "");
 }
 
 function tableOf(one) {
   const { names, axes, set, panel } = one;
-  const columns = [["machine", "Machine"], ["offset", "Work"], ["to_go", "To go"]].filter(([key]) => names[key]);
+  const counts = lengthOf(names) > 0;
+  const columns = [["machine", counts ? "Counts" : "Machine"], ["offset", "Work"], ["to_go", "To go"]].filter(([key]) => names[key]);
+  if (counts) columns.push(["length", "mm"]);
   if (names.offset) columns.sort(([a], [b]) => (b === "offset") - (a === "offset"));
   const head = made("tr", "", {}, made("td"),
     ...columns.map(([, words]) => made("th", words, { scope: "col" })), made("td"), ...(set ? [made("td")] : []));
@@ -46,32 +79,35 @@ function tableOf(one) {
   one.cells = axes.map((axis) => {
     const row = made("tr", "", {}, made("th", axis.name, { scope: "row" }));
     const cells = columns.map(([key]) => [key, row.appendChild(made("td"))]);
-    row.append(made("td", unitOf(names.machine, axis), { className: "unit" }));
+    row.append(made("td", counts ? "" : unitOf(names.machine, axis), { className: "unit" }));
     if (set) {
       const button = made("button", "Set", { type: "button", title: `This place is the value below in ${axis.name}`, "aria-label": `Touch off ${axis.name}` });
-      button.addEventListener("click", () => act("mdi", { component: panel.component, line: `G10 L20 P0 ${axis.name}${Number(field.value) || 0}` }));
+      button.addEventListener("click", () => act("mdi", { component: panel.component, line: `G10 L20 P0 ${axis.name}${programmed(panel, Number(field.value) || 0, axis)}` }));
       row.append(made("td", "", {}, button));
     }
     return { row, cells };
   });
   const table = made("table", "", { className: `position${names.offset ? " work" : ""}` }, made("thead", "", {}, head), made("tbody", "", {}, ...one.cells.map((c) => c.row)));
   one.facts = made("dl", "", { className: "facts" });
+  one.ends = made("p", "", { className: "ends-told", role: "status" });
   const box = made("div", "", {}, table);
   if (set) box.append(made("label", "Set to ", { className: "touch" }, field));
-  box.append(one.facts);
+  box.append(one.ends, one.facts);
   return box;
 }
 
 export function showReadout() {
   for (const one of shown) {
-    const { names, axes, cells } = one;
+    const { names, axes, cells } = one, ends = [];
     const [machine, offset, to_go] = ["machine", "offset", "to_go"].map((key) => names[key] && values(names[key]));
     axes.forEach((axis, k) => {
       const at = axis.row - 1, factor = shownUnit(variable(names.machine).unit)[0];
-      const numbers = { machine: machine[at] * factor, offset: offset && (machine[at] - offset[at]) * factor, to_go: to_go && to_go[at] * factor };
+      const numbers = { machine: machine[at] * factor, offset: offset && (machine[at] - offset[at]) * factor, to_go: to_go && to_go[at] * factor, length: machine[at] * lengthOf(names) };
       const whole = variable(names.machine).type === "Int32";
-      for (const [key, cell] of cells[k].cells) put(cell, fixed(numbers[key], whole ? 0 : 3));
+      for (const [key, cell] of cells[k].cells) put(cell, fixed(numbers[key], whole && key !== "length" ? 0 : 3));
+      ends.push(endOf(one, axis, numbers.machine));
     });
+    put(one.ends, ends.filter(Boolean).join("; "));
     showFacts(one);
   }
 }

@@ -41,11 +41,12 @@ const ADVICE = [
   [/limit/i, "Reset, then jog away from the switch."],
   [/following error|not in position/i,
     "The axis did not follow: look for a load, a brake, a drive or an encoder that fails; then reset."],
+  [/card has stopped/i, "Look for what stopped the card: a limit switch, a drive's alarm, the emergency stop. Once it is gone, reset."],
   [/encoder|scale|unplugged/i, "Plug the encoder in again, reset, and home."],
   [/probe/i, "Take the probe off what it touches, then reset."],
   [/dda|max_dda_acc|too many pulses/i, "The command changes too fast for the axis: a lower feed or override; then reset."],
   [/invalid|refused|syntax/i, "Mend the line, then reset."],
-  [/home|switch/i, "Look at the home switches, reset, and home again."],
+  [/home|switch|index/i, "Look at the home switches, reset, and home again."],
   [/drive|servo|overload|current/i, "Find out what loads the drive; reset it, then the controller."],
   [/link|connection|timeout|late/i, "Look at the link, then reset."],
 ];
