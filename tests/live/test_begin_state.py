@@ -13,6 +13,8 @@ from few_cases import few
 import motionfmu
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveMachine
+from motionfmu.live.machine_loop import MachineLoop
+from motionfmu.live.machine_process import _saved
 from motionfmu.run.engines import ENGINES
 
 # A scenario, when it is in motion [s], and what is done before and behind that.
@@ -314,3 +316,17 @@ def test_a_program_is_saved_as_it_was_loaded(tmp_path: Path) -> None:
         result = scenario.changed(record=["mcc.position"]).run()
         assert result["mcc.position"][1000:6000].tobytes() == rows.tobytes()
     assert np.ptp(rows[:, 0]) > 1.0
+
+
+def test_a_request_and_the_end_save_the_last_seconds(tmp_path: Path) -> None:
+    """States are kept each second; of a machine that has not run for so long all is saved."""
+    with LiveMachine("circle") as machine:
+        loop = MachineLoop(machine)
+        loop.advance(32_000)
+        asked = loop.do_save(str(tmp_path / "asked"), None, 1.7)
+        ended = _saved(machine, str(tmp_path / "ended"), 1.0)
+        short = _saved(machine, str(tmp_path / "short"), 60.0)
+        again = _saved(machine, str(tmp_path / "short"), None)
+    begins = [motionfmu.load(f).begin for f in (asked, ended, short, again)]
+    assert [None if b is None else b.ns for b in begins] == [10**9, 2 * 10**9, None, None]
+    assert again.parent.name == "short-2"
