@@ -373,7 +373,7 @@ def test_every_picture_of_the_oscilloscope_has_ink_of_its_channels(tab: Any, sho
         if (Math.abs(data[k] - r) + Math.abs(data[k + 1] - g) + Math.abs(data[k + 2] - b) < 12
           && data[k + 3] > 120) return true; } return false; }).length >= 2;
     }"""
-    line_of(tab, "G91 G1 X2 Y1 F600")
+    line_of(tab, "G91 G1 X20 Y10 F150")  # for as long as a slow page needs
     until(tab, ink)
 
 
