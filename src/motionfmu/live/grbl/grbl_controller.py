@@ -25,8 +25,12 @@ SETTLED = 0.02  # [s] of simulated time in which the library has seen what it wa
 CLEARED = 1.0  # [s] in which an error goes that can go
 # Lines that come while the machine rests are held back until the sender pauses, or so many are
 # there, as Grbl fills its planner before it begins: so the first ones are planned with the others.
+# What fills the library's own planner is read under a hold, before anything moves.
 PAUSE = 0.02  # [s] of simulated time
-PLAN_LINES, PLAN_BYTES = 200, 6000
+PLAN_LINES, PLAN_BYTES = (
+    700,
+    12000,
+)  # as many as the library has room for: 256 commands, a text of 8192
 TEXT = 1000  # [byte] of lines that are given at once; a text variable has 1023
 EXACT_STOP = "G61"
 _NUMBER = re.compile(r"N[+-]?[0-9.]+")
@@ -44,6 +48,24 @@ class _Fence:
         if self.seen is None and view.orders >= self.count:
             self.seen = view.time
         return -1.0 if self.seen is None else view.time - self.seen
+
+
+@dataclass
+class _Reading:
+    """Lines that the library reads under a hold: the number of the last one, and what it has read.
+
+    It is full when it reads no further.
+    """
+
+    until: int
+    lines: int = -1
+    since: float = 0.0
+
+    def ended(self, view: MachineView) -> bool:
+        """Whether all are read, or as many as there is room for."""
+        if view.lines > self.lines:
+            self.lines, self.since = view.lines, view.time
+        return view.lines >= self.until or view.time >= self.since + SETTLED
 
 
 @dataclass
@@ -89,6 +111,7 @@ class GrblController:
         self._kept_line: tuple[str, int] | None = None  # it waits for those before it
         self._given = self._moves = 0  # lines given; number of the last one that moves
         self._plan: list[str] = []  # lines that are held back
+        self._reads: _Reading | None = None  # the library reads them under a hold
         self._early: set[int] = set()  # numbers of lines that were answered before they were read
         self._heard, self._fresh = 0.0, False  # time of the latest bytes
         self._names: dict[int, int] = {}  # N of a line by its number
@@ -141,6 +164,7 @@ class GrblController:
             self._answer()
             self._pull()
             self._begin()
+            self._go_on()
         if self._asked_status and not self._critical:
             self._asked_status = False
             self._out.append(self.report.text(self._facts()))
@@ -154,7 +178,7 @@ class GrblController:
     def eager(self) -> bool:
         """Whether it wants to look at the machine as soon as can be."""
         asked = self._asked or self._asked_status or self._kept_line
-        return bool(asked or self._fence or self._plan or self._homing)
+        return bool(asked or self._fence or self._plan or self._reads or self._homing)
 
     def _tell(self, text: str) -> None:
         self._out.append(text)
@@ -177,7 +201,7 @@ class GrblController:
     @property
     def waits(self) -> bool:
         """Whether the library has stopped at M0."""
-        return self.view.status == RESTS and not self._hold
+        return self.view.status == RESTS and not (self._hold or self._reads)
 
     @property
     def name(self) -> str:
@@ -265,7 +289,7 @@ class GrblController:
             if self._stopped:
                 self._by_hand(False, self._flipped)
             self._hold = ""
-            self.orders.set("hold", False)
+            self.orders.set("hold", self._reads is not None)
 
     def _by_hand(self, stopped: bool, flipped: int) -> None:
         """Stop the spindle or not; coolant other than the program has it: 1 mist, 2 flood."""
@@ -322,9 +346,11 @@ class GrblController:
 
     def _restart(self, locked: bool) -> None:
         """Drop everything; when the machine rests, greet."""
+        held = self._hold or self._reads
         self.input.clear()
         self._asked.clear()
         self._plan.clear()
+        self._reads = None
         self._kept_line = None
         self._asked_status = self._critical = self._asleep = self._check = False
         self._homing, self._jogging = None, False
@@ -334,7 +360,7 @@ class GrblController:
         self._flipped = 0
         self._by_hand(False, 0)
         self.orders.press("abort")
-        if self._hold:
+        if held:
             self.orders.set("hold", False)
         self._hold = ""
         self._restarts = True
@@ -588,8 +614,17 @@ class GrblController:
         if self._plan and not self._hold and (enough or paused):
             self._send_plan()
 
+    def _go_on(self) -> None:
+        """Let the axes move when the lines that were held back have been read."""
+        if self._reads is not None and self._reads.ended(self.view):
+            self._reads = None
+            self.orders.set("hold", bool(self._hold))
+
     def _send_plan(self) -> None:
         lines, self._plan = self._plan, []
+        if sum(map(len, lines)) + len(lines) > TEXT and not self._hold:
+            self._reads = _Reading(self._given)
+            self.orders.set("hold", True)
         while lines:
             size, count = 0, 0
             while count < len(lines) and size + len(lines[count]) < TEXT:
