@@ -41,6 +41,7 @@ class _Fence:
     """An order, and when it was first seen to have been carried out."""
 
     count: int
+    clears: bool = True  # an error that is there then, too
     seen: float | None = None
 
     def age(self, view: MachineView) -> float:
@@ -128,11 +129,15 @@ class GrblController:
         self._stopped = False  # the spindle, by hand
         self._flipped = self._switched = 0  # coolant by hand; number of a later line that says it
         self._first = True
+        self._barred = ""  # who else has the machine in hand
 
     # -- what the transport calls ---------------------------------------------------------------
 
     def connect(self) -> None:
         """Begin anew for somebody who has opened the port."""
+        if self._barred:
+            self._restart_barred()
+            return
         self._restart(self.settings.homes and not self.view.homed if self._first else self.alarm)
         self._first = False
 
@@ -141,6 +146,25 @@ class GrblController:
         self.input.clear()
         if self._jogging:
             self._cancel_jog()
+
+    def bar(self, who: str) -> None:
+        """Somebody else has the machine in hand; or nobody, by an empty name.
+
+        What has been answered is done, a jog ends; further lines are refused.
+        """
+        if who == self._barred:
+            return
+        if who:
+            self._message(f"{who} has the machine in hand")
+            if self._jogging:
+                self._cancel_jog()
+            self._send_plan()
+        else:
+            if self._first:
+                self._first, self.alarm = False, self.settings.homes and not self.view.homed
+            self._foreign = True
+            self._raise_fence(clears=False)
+        self._barred = who
 
     def receive(self, data: bytes) -> None:
         """Take bytes."""
@@ -251,12 +275,16 @@ class GrblController:
     # -- real-time bytes ------------------------------------------------------------------------
 
     def _real_time(self, byte: int) -> None:
-        if byte == line_input.RESET:
+        if byte == line_input.RESET and self._barred:
+            self._restart_barred()
+        elif byte == line_input.RESET:
             self._reset()
         elif self._critical:
             return
         elif byte == line_input.STATUS:
             self._asked_status = True
+        elif self._barred:
+            return
         elif byte in _KEYS:
             _KEYS[byte](self)
         elif self.overrides.byte(byte):
@@ -366,9 +394,19 @@ class GrblController:
         self._restarts = True
         self._raise_fence()
 
-    def _raise_fence(self) -> None:
+    def _restart_barred(self) -> None:
+        """Drop what has not been given to the machine, whose orders are another's; greet."""
+        self.input.clear()
+        self._asked.clear()
+        self._kept_line = None
+        self._asked_status = False
+        self.report.renew()
+        self._tell(grbl_codes.GREETING)
+        self._message(f"{self._barred} has the machine in hand")
+
+    def _raise_fence(self, clears: bool = True) -> None:
         """Look at nothing before the library has seen what it was told and rests."""
-        self._fence = _Fence(self.orders.count)
+        self._fence = _Fence(self.orders.count, clears)
 
     def _pass_fence(self) -> None:
         if self._fence is None:
@@ -377,10 +415,10 @@ class GrblController:
         age = self._fence.age(view)
         if age < 0:
             return
-        if new and view.error:
+        if new and view.error and self._fence.clears:
             self.orders.press("clear_error")
         settled = age >= SETTLED and view.feed == 0 and view.lines == view.done
-        if not settled or (view.error and age < CLEARED):
+        if not settled or (view.error and self._fence.clears and age < CLEARED):
             return
         self._fence = None
         self._given = self._moves = view.lines
@@ -577,6 +615,7 @@ class GrblController:
         try:
             if text is None:
                 raise GrblRefusal(GrblError.OVERFLOW)
+            refuse(GrblError.LOCKED, bool(self._barred and text) and text not in _TOLD)
             if text.startswith("$"):
                 self._command(text, asked)
             elif text:
@@ -789,6 +828,7 @@ def _reply(answer: str) -> str:
     return "ok\r\n" if answer == "ok" else f"error:{answer}\r\n"
 
 
+_TOLD = frozenset(("$", "$$", "$G", "$#", "$I", "$N"))  # commands that only tell something
 _ANY_STATE: dict[str, Callable[[GrblController], None]] = {
     "$": GrblController._show_settings,
     "G": GrblController._show_modes,
