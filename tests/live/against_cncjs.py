@@ -204,7 +204,8 @@ async def _at_page(port: str, device: str, folder: Path) -> None:
         await _connect(page, device)
         await expect(shown).to_contain_text("Alarm", timeout=60000)
         await page.get_by_role("button", name="Homing").first.click()
-        await expect(shown).to_contain_text("Idle", timeout=120000)
+        await expect(shown).not_to_contain_text("-50.000", timeout=60000)  # where it has been
+        await expect(shown).to_contain_text("Idle", timeout=60000)
         await page.locator("button", has_text="X+").first.click()
         await expect(shown).to_contain_text("1.000")
         await page.locator("input[type=file]").first.set_input_files(file)

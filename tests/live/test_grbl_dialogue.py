@@ -239,6 +239,17 @@ def test_what_the_library_refuses_is_an_error_of_its_line() -> None:
     assert dialogue.controller.input.lost == 0
 
 
+def test_modes_of_a_line_that_the_library_refuses_are_given_again() -> None:
+    dialogue = begun()
+    dialogue.say("G1X0F100\n")
+    dialogue.machine.refusals = {"G20G55G1X2": FAULTS["arc of radius zero"]}
+    dialogue.controller.receive(b"G4P0\nG20G55G1X2\n")
+    assert dialogue.look(60).split("\r\n")[:-1] == ["ok", "error:34"]
+    count = len(dialogue.machine.lines)
+    assert dialogue.say("X3\n") == ["ok"]
+    assert dialogue.machine.lines[count:] == ["G17G20G90G94G55F3.937008", "G1X3"]
+
+
 def test_a_line_that_leaves_the_limits_is_the_soft_limit_alarm() -> None:
     dialogue = begun()
     dialogue.machine.refusals = {"G1X900F10": FAULTS[TRAVEL]}
