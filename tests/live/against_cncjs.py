@@ -210,7 +210,8 @@ async def _at_page(port: str, device: str, folder: Path) -> None:
         await expect(shown).to_contain_text("1.000")
         await page.locator("input[type=file]").first.set_input_files(file)
         await page.locator("button:has(.fa-play), button[title='Run']").first.click()
-        received = f"{len(lines)} / {len(lines)}"
+        count = len(lines) + 1  # and CNCjs's own %wait
+        received = f"{count} / {count}"
         await expect(shown.get_by_text(received)).to_have_count(2, timeout=60000)
         await expect(shown).to_contain_text("-40.000")
         await page.screenshot(path=folder / "cncjs.png")

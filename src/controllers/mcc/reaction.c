@@ -44,8 +44,8 @@ static bool homing(const struct mcc *m)
     return trajectory_ordered(&m->trajectory) && m->homing.state == HOMING_RUNS;
 }
 
-/* A smooth curve is within a tolerance of paths that are within the limits: so far out it may be. Of
- * joints that are no coordinates the tolerance says nothing. */
+/* A smooth curve is within a tolerance of paths that are within the limits: so far out it may be.
+ * Of joints that are no coordinates the tolerance says nothing. */
 static struct mechanism limits_of(const struct mcc *m, const struct mechanism *machine)
 {
     struct mechanism limits = *machine;

@@ -115,8 +115,8 @@ static void stopped_in_a_chain(void)
     }
 }
 
-/* A smooth curve of a program that ends its ways on the limit swings out at its corners: it is driven
- * to the end, by no more than the tolerance beyond, and not so if it would go further. */
+/* A smooth curve of a program that ends its ways on the limit swings out at its corners: it is
+ * driven to the end, by no more than the tolerance beyond. */
 static void curve_on_the_limit(void)
 {
     uint64_t seed = 29;
