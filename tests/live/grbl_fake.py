@@ -115,9 +115,12 @@ class FakeMachine:
 class GrblDialogue:
     """A session with a machine that does nothing by itself."""
 
-    def __init__(self, parameters: dict[str, list[Any]] | None = None, looks: int = 3) -> None:
+    def __init__(
+        self, parameters: dict[str, list[Any]] | None = None, looks: int = 3, other: str = ""
+    ) -> None:
         self.machine = FakeMachine(looks)
         self.controller = GrblController(GrblSettings(parameters or PARAMETERS), self.machine)
+        self.controller.bar(other)
         self.controller.connect()
 
     def look(self, count: int = 1) -> str:

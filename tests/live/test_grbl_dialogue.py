@@ -239,6 +239,17 @@ def test_what_the_library_refuses_is_an_error_of_its_line() -> None:
     assert dialogue.controller.input.lost == 0
 
 
+def test_modes_of_a_line_that_the_library_refuses_are_given_again() -> None:
+    dialogue = begun()
+    dialogue.say("G1X0F100\n")
+    dialogue.machine.refusals = {"G20G55G1X2": FAULTS["arc of radius zero"]}
+    dialogue.controller.receive(b"G4P0\nG20G55G1X2\n")
+    assert dialogue.look(60).split("\r\n")[:-1] == ["ok", "error:34"]
+    count = len(dialogue.machine.lines)
+    assert dialogue.say("X3\n") == ["ok"]
+    assert dialogue.machine.lines[count:] == ["G17G20G90G94G55F3.937008", "G1X3"]
+
+
 def test_a_line_that_leaves_the_limits_is_the_soft_limit_alarm() -> None:
     dialogue = begun()
     dialogue.machine.refusals = {"G1X900F10": FAULTS[TRAVEL]}
@@ -399,3 +410,48 @@ def test_commands_come_behind_the_lines_before_them() -> None:
     modes = "[GC:G0 G54 G17 G20 G90 G94 M5 M9 T0 F0 S0]"
     assert dialogue.say("G20\nG4P1\n$G\n") == ["ok", "ok", modes, "ok"]
     assert dialogue.say("G21M3\n$J=G91X1F100\n") == ["ok", "ok"]
+
+
+def test_another_hand_bars_all_but_looking() -> None:
+    dialogue = begun()
+    dialogue.controller.receive(b"G20\nG1X1F100\n")
+    dialogue.controller.bar("Ann")
+    assert dialogue.look(40).split("\r\n")[:-1] == ["ok", "ok", "[MSG:Ann has the machine in hand]"]
+    assert dialogue.machine.lines[-1] == "G1X1F100", "what was answered is done"
+    done, count = len(dialogue.machine.lines), dialogue.machine.count
+    assert dialogue.say("G1X2\n$J=X1F1\n$X\n$11=1\n$H\n\n") == ["error:9"] * 5 + ["ok"]
+    assert dialogue.say("!~\x85\x84\x91\x9e\xa0") == []
+    assert dialogue.say("$I\n$G\n")[-1] == "ok"
+    assert dialogue.say("?")[0].startswith("<Idle|")
+    assert dialogue.say("G1X3\x18") == [*GREETING, "[MSG:Ann has the machine in hand]"]
+    assert (len(dialogue.machine.lines), dialogue.machine.count) == (done, count)
+    dialogue.machine.mdi("G18")
+    dialogue.look(9)
+    dialogue.controller.bar("")
+    assert dialogue.say("G1X4\n") == ["ok"]
+    assert dialogue.machine.lines[-2:] == ["G17G20G90G94G54F100.000000", "G1X4"]
+    assert dialogue.say("?")[0].startswith("<Idle|")
+
+
+def test_a_jog_ends_when_another_takes_the_machine() -> None:
+    dialogue = begun(looks=10**6)
+    dialogue.say("$J=X100F1000\n")
+    dialogue.machine.pressed.clear()
+    dialogue.controller.bar("Ann")
+    assert dialogue.machine.pressed == ["abort"]
+    dialogue.controller.bar("Bob")
+    assert dialogue.look(40).split("\r\n")[:-1] == [
+        "[MSG:Ann has the machine in hand]",
+        "[MSG:Bob has the machine in hand]",
+    ]
+    assert dialogue.machine.pressed == ["abort"]
+
+
+def test_who_connects_while_another_has_the_machine_disturbs_nothing() -> None:
+    dialogue = GrblDialogue(HOMES, other="Ann")
+    told = "[MSG:Ann has the machine in hand]"
+    assert dialogue.look(4).split("\r\n")[:-1] == [told, *GREETING, told]
+    assert dialogue.machine.count == 0
+    dialogue.controller.bar("")
+    assert dialogue.say("G0X1\n") == ["error:9"]
+    assert dialogue.say("$X\nG0X1\n")[-1] == "ok"

@@ -48,6 +48,7 @@ def run_frames(text: str, folder: Path) -> Any:
         while not live["mcc.done"]:
             live.step()
             record.look()
+            assert not live["mcc.error"]
         return record.moved()
 
 
@@ -90,13 +91,17 @@ def outline(count: int) -> list[str]:
 
 @pytest.mark.parametrize("counting", [True, False], ids=["counting", "waiting"])
 @pytest.mark.parametrize(
-    "tolerance",
-    [pytest.param(0.0, marks=pytest.mark.more), pytest.param(0.02, marks=pytest.mark.long)],
+    ("count", "tolerance"),
+    [
+        pytest.param(300, 0.0, marks=pytest.mark.more),
+        (300, 0.02),
+        pytest.param(800, 0.02, marks=pytest.mark.more),
+    ],
 )
 def test_a_part_that_is_streamed_has_the_pulses_of_its_run(
-    counting: bool, tolerance: float, tmp_path: Path
+    counting: bool, count: int, tolerance: float, tmp_path: Path
 ) -> None:
-    lines = outline(300)
+    lines = outline(count)
     mode = f"G64P{tolerance}\n" if tolerance else "G61\n"
     expected = run_frames(mode + "\n".join(lines), tmp_path)
     answers, frames = streamed_frames(lines, f"$11={tolerance}\n", counting)

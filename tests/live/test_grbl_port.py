@@ -1,9 +1,13 @@
 """The port and the pseudo-terminal at which a machine is a Grbl, with the machine's own process."""
 
 import asyncio
+import contextlib
 import os
 import re
+import select
+import signal
 import socket
+import subprocess
 import sys
 from collections.abc import Awaitable, Callable, Coroutine
 from typing import Any
@@ -12,18 +16,20 @@ import pytest
 
 from motionfmu.base.errors import InputError
 from motionfmu.live.serving import GrblPort, MachineLink, MachineStart
+from motionfmu.live.serving.grbl_session import GrblSession
+from motionfmu.live.serving.hand import Holder
 
 PATIENCE = 60.0  # [s] on the wall for an answer
 LOCKED = b"[MSG:'$H'|'$X' to unlock]\r\n"
 
 
-def at_machine(where: str, work: Callable[[GrblPort], Awaitable[None]]) -> None:
+def at_machine(where: str, work: Callable[[GrblPort, MachineLink], Awaitable[None]]) -> None:
     """Do something at a port of a mill that goes as fast as it can."""
 
     async def run() -> None:
         link = MachineLink(MachineStart("mill3", None, {}, None, True))
         async with link, GrblPort(link, where) as port:
-            await asyncio.wait_for(work(port), 4 * PATIENCE)
+            await asyncio.wait_for(work(port, link), 4 * PATIENCE)
 
     asyncio.run(run())
 
@@ -59,7 +65,7 @@ class TcpSender:
 
 
 def test_senders_one_after_the_other() -> None:
-    async def work(port: GrblPort) -> None:
+    async def work(port: GrblPort, link: MachineLink) -> None:
         async with TcpSender(port) as one:
             assert await one.until(LOCKED) == f"\r\nGrbl 1.1h ['$' for help]\r\n{LOCKED.decode()}"
             async with TcpSender(port) as other:
@@ -80,7 +86,7 @@ def test_senders_one_after_the_other() -> None:
 
 
 def test_a_web_page_is_sent_away() -> None:
-    async def work(port: GrblPort) -> None:
+    async def work(port: GrblPort, link: MachineLink) -> None:
         async with TcpSender(port) as page:
             await page.until(LOCKED)
             page.writer.write(b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n$X\nG0X10\n")
@@ -92,9 +98,119 @@ def test_a_web_page_is_sent_away() -> None:
     at_machine("0", work)
 
 
+def test_one_hand_at_the_page_or_at_the_sender() -> None:
+    async def work(port: GrblPort, link: MachineLink) -> None:
+        hand, ann = link.hand, Holder("Ann")
+        async with TcpSender(port) as sender:
+            await sender.until(LOCKED)
+            await sender.until(b">\r\n", b"?")
+            assert hand.holder is None, "it only looks"
+            await sender.until(b"ok\r\n", b"$X\n")
+            assert hand.holder is not None and hand.holder.name == "a sender of G-code"
+            with pytest.raises(InputError, match="a sender of G-code has the machine in hand"):
+                hand.needed(ann)
+            await sender.until(b"ok\r\n", b"$J=X200F6000\n")
+            await hand.take(ann)
+            await sender.until(b"[MSG:Ann has the machine in hand]\r\n")
+            found = re.search(r"MPos:([0-9.]+)", await sender.idle())
+            assert found and float(found[1]) < 200.0, "the jog has ended"
+            assert "error:9" in await sender.until(b"\r\n", b"G0X0\n")
+            await hand.drop(ann)
+            await sender.until(b"ok\r\n", b"G0X5\n")
+            assert "|MPos:5.000," in await sender.idle()
+            assert hand.holder is not None
+        while hand.holder is not None:
+            await asyncio.sleep(0.01)
+
+    at_machine("0", work)
+
+
+def test_a_session_ends_whatever_has_come_just_before() -> None:
+    async def work(port: GrblPort, link: MachineLink) -> None:
+        session = GrblSession(link)
+        for turns in range(8):
+            task = asyncio.ensure_future(session.run(lambda data: None))
+            while session.controller.eager or not session.controller.view.time:
+                await asyncio.sleep(0.01)
+            await asyncio.sleep(0.01)
+            session.receive(b"\n")
+            for _ in range(turns):
+                await asyncio.sleep(0)
+            task.cancel()
+            await asyncio.wait([task], timeout=5.0)
+            assert task.done()
+
+    at_machine("0", work)
+
+
+class LiveCommand:
+    """``motionfmu live`` in a process of its own, and a sender at it."""
+
+    def __init__(self, where: str) -> None:
+        command = [sys.executable, "-m", "motionfmu", "live", "mill3", "--port", "0"]
+        command += ["--pace", "inf", "--grbl", where]
+        pipe = subprocess.PIPE
+        self.process = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True)
+        assert self.process.stdout is not None
+        lines = iter(self.process.stdout.readline, "")
+        self.address = next(line.split()[1] for line in lines if line.startswith("grbl:"))
+
+    def open(self) -> int:
+        """A sender's connection."""
+        if not self.address.startswith("tcp://"):
+            return os.open(self.address, os.O_RDWR | os.O_NOCTTY)
+        host, port = self.address.removeprefix("tcp://").split(":")
+        return socket.create_connection((host, int(port))).detach()
+
+    def until(self, there: int, end: bytes, data: bytes = b"") -> str:
+        """Send something; what came up to an end."""
+        os.write(there, data)
+        text = b""
+        while not text.endswith(end):
+            assert select.select([there], [], [], PATIENCE)[0], text
+            byte = os.read(there, 1)
+            if not byte:
+                raise EOFError(text)
+            text += byte
+        return text.decode()
+
+    def reopen(self) -> int:
+        """A connection behind another one, whose end may not have been seen."""
+        while True:
+            there = self.open()
+            if not self.address.startswith("tcp://"):
+                return there
+            with contextlib.suppress(EOFError, ConnectionResetError):
+                self.until(there, b"help]\r\n")
+                return there
+            os.close(there)
+
+
+@pytest.mark.more
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudo-terminals")
+@pytest.mark.parametrize("where", ["0", "pty"])
+def test_the_command_is_a_grbl_until_it_is_stopped(where: str) -> None:
+    command = LiveCommand(where)
+    there = command.open()
+    greeted = command.until(there, LOCKED, b"\x18" if where == "pty" else b"")
+    assert "Grbl 1.1h ['$' for help]" in greeted
+    assert "error" not in command.until(there, b"ok\r\n", b"$H\n")
+    command.until(there, b"ok\r\nok\r\nok\r\n", b"G90G21\nG0X-3Z-2\nG4P0\n")
+    assert "<Idle|MPos:-3.000,0.000,-2.000|" in command.until(there, b">\r\n", b"?")
+    os.close(there)
+    again = command.reopen()
+    assert "|MPos:-3.000,0.000,-2.000|" in command.until(again, b">\r\n", b"?")
+    command.process.send_signal(signal.SIGINT)
+    said = command.process.communicate(timeout=PATIENCE)
+    assert (command.process.returncode, said[1]) == (130, "motionfmu: stopped\n")
+    with contextlib.suppress(OSError):  # a terminal whose other end is gone
+        assert not os.read(again, 4096)
+    os.close(again)
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudo-terminals")
 def test_a_pseudo_terminal_is_a_serial_port() -> None:
-    async def work(port: GrblPort) -> None:
+    async def work(port: GrblPort, link: MachineLink) -> None:
         there = os.open(port.address, os.O_RDWR | os.O_NOCTTY)
         try:
             text = b""

@@ -44,6 +44,20 @@ static bool homing(const struct mcc *m)
     return trajectory_ordered(&m->trajectory) && m->homing.state == HOMING_RUNS;
 }
 
+/* A smooth curve is within a tolerance of paths that are within the limits: so far out it may be.
+ * Of joints that are no coordinates the tolerance says nothing. */
+static struct mechanism limits_of(const struct mcc *m, const struct mechanism *machine)
+{
+    struct mechanism limits = *machine;
+    if (m->trajectory.motion == TRAJECTORY_CURVE && !machine->kinematics) {
+        for (int i = 0; i < AXES; i++) {
+            limits.joint[i].low -= m->curve_plan.widest;
+            limits.joint[i].high += m->curve_plan.widest;
+        }
+    }
+    return limits;
+}
+
 /* True if software limits and limit switches allow a point; else *error is as in reaction_point. */
 static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
                    const struct point *p, int32_t *error)
@@ -53,11 +67,12 @@ static bool within(struct mcc *m, const struct mechanism *machine, bool ramping,
     int axis = -1;
 
     if (mechanism_bounded(machine)) {
-        axis = mechanism_outside(machine, m->trajectory.pulses, p->pulses);
+        const struct mechanism limits = limits_of(m, machine);
         const struct trajectory_beside beside = mcc_beside(m);
+        axis = mechanism_outside(&limits, m->trajectory.pulses, p->pulses);
         axis = axis >= 0
                    ? axis
-                   : reach_beyond(&m->trajectory, &beside, machine, machine_dda_time(&m->machine));
+                   : reach_beyond(&m->trajectory, &beside, &limits, machine_dda_time(&m->machine));
     }
     *error = MCC_ERROR_TRAVEL + axis;
     if (axis < 0 && !ramping) {

@@ -26,7 +26,7 @@ void curve_start(struct curve *c, struct curve_plan *m, const struct ring *r)
     shape_start(&m->shape, first->merge);
     speed_profile_start(&m->profile, &m->limits);
     m->joined = 0;
-    m->joined_way = m->part = m->start = 0.0;
+    m->joined_way = m->part = m->start = m->widest = 0.0;
     c->goal = INFINITY;
     c->place = m->profile.at;
 }
@@ -100,6 +100,7 @@ static bool take(struct curve *c, struct curve_plan *m, struct ring *r)
             break;
         }
         memcpy(m->end, next->path.end, sizeof m->end);
+        m->widest = el_max(m->widest, next->tolerance);
         ring_pop(r);
         c->idle = 0;
         any = true;

@@ -19,6 +19,7 @@ struct curve_plan {
     struct speed_limits limits; /* limits of chains from now on */
     bool last;                  /* no more commands come for now: none is waited for */
     double end[AXES];           /* [mm] end of the latest command taken */
+    double widest;              /* [mm] highest tolerance of the commands of the chain */
     int32_t joined;    /* number of finished segments of the shape that the speed profile has */
     double joined_way; /* [mm] their end on the chain */
     double part;       /* [mm] length of the next one that the speed profile has, too */

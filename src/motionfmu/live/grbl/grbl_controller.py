@@ -25,8 +25,12 @@ SETTLED = 0.02  # [s] of simulated time in which the library has seen what it wa
 CLEARED = 1.0  # [s] in which an error goes that can go
 # Lines that come while the machine rests are held back until the sender pauses, or so many are
 # there, as Grbl fills its planner before it begins: so the first ones are planned with the others.
+# What fills the library's own planner is read under a hold, before anything moves.
 PAUSE = 0.02  # [s] of simulated time
-PLAN_LINES, PLAN_BYTES = 200, 6000
+PLAN_LINES, PLAN_BYTES = (
+    700,
+    12000,
+)  # as many as the library has room for: 256 commands, a text of 8192
 TEXT = 1000  # [byte] of lines that are given at once; a text variable has 1023
 EXACT_STOP = "G61"
 _NUMBER = re.compile(r"N[+-]?[0-9.]+")
@@ -37,6 +41,7 @@ class _Fence:
     """An order, and when it was first seen to have been carried out."""
 
     count: int
+    clears: bool = True  # an error that is there then, too
     seen: float | None = None
 
     def age(self, view: MachineView) -> float:
@@ -44,6 +49,24 @@ class _Fence:
         if self.seen is None and view.orders >= self.count:
             self.seen = view.time
         return -1.0 if self.seen is None else view.time - self.seen
+
+
+@dataclass
+class _Reading:
+    """Lines that the library reads under a hold: the number of the last one, and what it has read.
+
+    It is full when it reads no further.
+    """
+
+    until: int
+    lines: int = -1
+    since: float = 0.0
+
+    def ended(self, view: MachineView) -> bool:
+        """Whether all are read, or as many as there is room for."""
+        if view.lines > self.lines:
+            self.lines, self.since = view.lines, view.time
+        return view.lines >= self.until or view.time >= self.since + SETTLED
 
 
 @dataclass
@@ -89,6 +112,7 @@ class GrblController:
         self._kept_line: tuple[str, int] | None = None  # it waits for those before it
         self._given = self._moves = 0  # lines given; number of the last one that moves
         self._plan: list[str] = []  # lines that are held back
+        self._reads: _Reading | None = None  # the library reads them under a hold
         self._early: set[int] = set()  # numbers of lines that were answered before they were read
         self._heard, self._fresh = 0.0, False  # time of the latest bytes
         self._names: dict[int, int] = {}  # N of a line by its number
@@ -105,11 +129,15 @@ class GrblController:
         self._stopped = False  # the spindle, by hand
         self._flipped = self._switched = 0  # coolant by hand; number of a later line that says it
         self._first = True
+        self._barred = ""  # who else has the machine in hand
 
     # -- what the transport calls ---------------------------------------------------------------
 
     def connect(self) -> None:
         """Begin anew for somebody who has opened the port."""
+        if self._barred:
+            self._restart_barred()
+            return
         self._restart(self.settings.homes and not self.view.homed if self._first else self.alarm)
         self._first = False
 
@@ -118,6 +146,25 @@ class GrblController:
         self.input.clear()
         if self._jogging:
             self._cancel_jog()
+
+    def bar(self, who: str) -> None:
+        """Somebody else has the machine in hand; or nobody, by an empty name.
+
+        What has been answered is done, a jog ends; further lines are refused.
+        """
+        if who == self._barred:
+            return
+        if who:
+            self._message(f"{who} has the machine in hand")
+            if self._jogging:
+                self._cancel_jog()
+            self._send_plan()
+        else:
+            if self._first:
+                self._first, self.alarm = False, self.settings.homes and not self.view.homed
+            self._foreign = True
+            self._raise_fence(clears=False)
+        self._barred = who
 
     def receive(self, data: bytes) -> None:
         """Take bytes."""
@@ -141,6 +188,7 @@ class GrblController:
             self._answer()
             self._pull()
             self._begin()
+            self._go_on()
         if self._asked_status and not self._critical:
             self._asked_status = False
             self._out.append(self.report.text(self._facts()))
@@ -154,7 +202,7 @@ class GrblController:
     def eager(self) -> bool:
         """Whether it wants to look at the machine as soon as can be."""
         asked = self._asked or self._asked_status or self._kept_line
-        return bool(asked or self._fence or self._plan or self._homing)
+        return bool(asked or self._fence or self._plan or self._reads or self._homing)
 
     def _tell(self, text: str) -> None:
         self._out.append(text)
@@ -177,7 +225,7 @@ class GrblController:
     @property
     def waits(self) -> bool:
         """Whether the library has stopped at M0."""
-        return self.view.status == RESTS and not self._hold
+        return self.view.status == RESTS and not (self._hold or self._reads)
 
     @property
     def name(self) -> str:
@@ -227,12 +275,16 @@ class GrblController:
     # -- real-time bytes ------------------------------------------------------------------------
 
     def _real_time(self, byte: int) -> None:
-        if byte == line_input.RESET:
+        if byte == line_input.RESET and self._barred:
+            self._restart_barred()
+        elif byte == line_input.RESET:
             self._reset()
         elif self._critical:
             return
         elif byte == line_input.STATUS:
             self._asked_status = True
+        elif self._barred:
+            return
         elif byte in _KEYS:
             _KEYS[byte](self)
         elif self.overrides.byte(byte):
@@ -265,7 +317,7 @@ class GrblController:
             if self._stopped:
                 self._by_hand(False, self._flipped)
             self._hold = ""
-            self.orders.set("hold", False)
+            self.orders.set("hold", self._reads is not None)
 
     def _by_hand(self, stopped: bool, flipped: int) -> None:
         """Stop the spindle or not; coolant other than the program has it: 1 mist, 2 flood."""
@@ -322,9 +374,11 @@ class GrblController:
 
     def _restart(self, locked: bool) -> None:
         """Drop everything; when the machine rests, greet."""
+        held = self._hold or self._reads
         self.input.clear()
         self._asked.clear()
         self._plan.clear()
+        self._reads = None
         self._kept_line = None
         self._asked_status = self._critical = self._asleep = self._check = False
         self._homing, self._jogging = None, False
@@ -334,15 +388,25 @@ class GrblController:
         self._flipped = 0
         self._by_hand(False, 0)
         self.orders.press("abort")
-        if self._hold:
+        if held:
             self.orders.set("hold", False)
         self._hold = ""
         self._restarts = True
         self._raise_fence()
 
-    def _raise_fence(self) -> None:
+    def _restart_barred(self) -> None:
+        """Drop what has not been given to the machine, whose orders are another's; greet."""
+        self.input.clear()
+        self._asked.clear()
+        self._kept_line = None
+        self._asked_status = False
+        self.report.renew()
+        self._tell(grbl_codes.GREETING)
+        self._message(f"{self._barred} has the machine in hand")
+
+    def _raise_fence(self, clears: bool = True) -> None:
         """Look at nothing before the library has seen what it was told and rests."""
-        self._fence = _Fence(self.orders.count)
+        self._fence = _Fence(self.orders.count, clears)
 
     def _pass_fence(self) -> None:
         if self._fence is None:
@@ -351,10 +415,10 @@ class GrblController:
         age = self._fence.age(view)
         if age < 0:
             return
-        if new and view.error:
+        if new and view.error and self._fence.clears:
             self.orders.press("clear_error")
         settled = age >= SETTLED and view.feed == 0 and view.lines == view.done
-        if not settled or (view.error and age < CLEARED):
+        if not settled or (view.error and self._fence.clears and age < CLEARED):
             return
         self._fence = None
         self._given = self._moves = view.lines
@@ -551,6 +615,7 @@ class GrblController:
         try:
             if text is None:
                 raise GrblRefusal(GrblError.OVERFLOW)
+            refuse(GrblError.LOCKED, bool(self._barred and text) and text not in _TOLD)
             if text.startswith("$"):
                 self._command(text, asked)
             elif text:
@@ -588,8 +653,17 @@ class GrblController:
         if self._plan and not self._hold and (enough or paused):
             self._send_plan()
 
+    def _go_on(self) -> None:
+        """Let the axes move when the lines that were held back have been read."""
+        if self._reads is not None and self._reads.ended(self.view):
+            self._reads = None
+            self.orders.set("hold", bool(self._hold))
+
     def _send_plan(self) -> None:
         lines, self._plan = self._plan, []
+        if sum(map(len, lines)) + len(lines) > TEXT and not self._hold:
+            self._reads = _Reading(self._given)
+            self.orders.set("hold", True)
         while lines:
             size, count = 0, 0
             while count < len(lines) and size + len(lines[count]) < TEXT:
@@ -754,6 +828,7 @@ def _reply(answer: str) -> str:
     return "ok\r\n" if answer == "ok" else f"error:{answer}\r\n"
 
 
+_TOLD = frozenset(("$", "$$", "$G", "$#", "$I", "$N"))  # commands that only tell something
 _ANY_STATE: dict[str, Callable[[GrblController], None]] = {
     "$": GrblController._show_settings,
     "G": GrblController._show_modes,

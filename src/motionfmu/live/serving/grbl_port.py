@@ -41,7 +41,8 @@ class GrblPort:
     """
 
     def __init__(self, link: MachineLink, where: str) -> None:
-        self._link, self._busy = link, False
+        self._link = link
+        self._served: tuple[asyncio.StreamWriter, asyncio.Event] | None = None  # a sender; its end
         self._tasks: set[asyncio.Task[None]] = set()
         self._socket: socket.socket | None = None
         self._terminal: tuple[int, int] | None = None  # our end, and the sender's
@@ -87,6 +88,10 @@ class GrblPort:
     ) -> None:
         if self._socket is not None:
             self._server.close()
+        if self._served is not None:  # cancelled, its task would be reported as a failure
+            writer, ended = self._served
+            writer.transport.abort()
+            await ended.wait()
         for task in self._tasks:
             task.cancel()
         await asyncio.gather(*self._tasks, return_exceptions=True)
@@ -102,10 +107,11 @@ class GrblPort:
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """Serve a sender until it goes; a second one is sent away."""
-        if self._busy:
+        if self._served is not None:
             writer.close()
             return
-        self._busy = True
+        ended = asyncio.Event()
+        self._served = writer, ended
 
         def write(data: bytes) -> None:
             if writer.transport.get_write_buffer_size() < BACKLOG:
@@ -129,8 +135,9 @@ class GrblPort:
             await asyncio.gather(task, return_exceptions=True)
             self._tasks.discard(task)
             await self._session.end()
-            self._busy = False
+            self._served = None
             writer.close()
+            ended.set()
 
     async def _serve_terminal(self, ours: int) -> None:
         """As a serial port is: it is there whether somebody has it open or not."""

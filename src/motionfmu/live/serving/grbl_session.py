@@ -7,8 +7,10 @@ from typing import Any
 
 from motionfmu.base.errors import InputError
 from motionfmu.live.grbl.grbl_binding import GrblBinding
+from motionfmu.live.serving.hand import Holder
 from motionfmu.live.serving.machine_link import MachineLink
 
+NAME = "a sender of G-code"
 IDLE = 0.02  # [s] between two looks while nothing is asked
 
 
@@ -45,15 +47,26 @@ class GrblSession:
         self._orders = _LinkOrders(link, self._binding)
         self.controller = self._binding.controller(self._orders)
         self._wakened = asyncio.Event()
+        self._who = Holder(NAME)
 
     def receive(self, data: bytes) -> None:
-        """Take bytes of the sender."""
+        """Take bytes of the sender; who asks for more than a report works the machine."""
+        hand = self._link.hand
+        if hand.holder is None and data.strip(b"?"):
+            hand.needed(self._who)
+        self._look_for_hand()
         self.controller.receive(data)
         self._wakened.set()
+
+    def _look_for_hand(self) -> None:
+        holder = self._link.hand.holder
+        other = holder not in (None, self._who)
+        self.controller.bar((holder.name or "somebody else") if holder and other else "")
 
     async def run(self, write: Callable[[bytes], None]) -> None:
         """Go on with a sender, who gets bytes by a function, until the machine ends."""
         self._write = write
+        self._look_for_hand()
         self.controller.connect()
         with contextlib.suppress(InputError):
             while True:
@@ -61,7 +74,8 @@ class GrblSession:
                 if self.controller.eager or self._orders.waiting:
                     continue
                 with contextlib.suppress(TimeoutError):
-                    await asyncio.wait_for(self._wakened.wait(), IDLE)
+                    async with asyncio.timeout(IDLE):  # wait_for of 3.11 may lose a cancellation
+                        await self._wakened.wait()
                 self._wakened.clear()
 
     async def end(self) -> None:
@@ -70,9 +84,11 @@ class GrblSession:
         self.controller.disconnect()
         with contextlib.suppress(InputError):
             await self._turn()
+        await self._link.hand.drop(self._who)
 
     async def _turn(self) -> None:
         """Carry out what is ordered; look."""
+        self._look_for_hand()
         count, orders, self._orders.waiting = self._orders.count, self._orders.waiting, []
         looks = self._link.ask("frame", names=self._binding.names)
         *done, frame = await asyncio.gather(*orders, looks, return_exceptions=True)

@@ -1,6 +1,7 @@
 """The server's side of a machine's process: requests that are awaited."""
 
 import asyncio
+import contextlib
 import itertools
 import json
 import signal
@@ -15,6 +16,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.live import machine_process
 from motionfmu.live.exchange import ExchangePlan
 from motionfmu.live.machine_process import HEAD, packed
+from motionfmu.live.serving.hand import Hand
 
 # Of a machine that does not end by itself [s]: what was done may have to be saved.
 _PATIENCE = 60.0
@@ -76,6 +78,8 @@ class MachineLink:
         As `told`.
     ended : asyncio.Event
         The process has ended; `why` says how.
+    hand : Hand
+        Who works the machine: a page, a program, a Grbl's sender.
 
     Raises
     ------
@@ -90,6 +94,11 @@ class MachineLink:
         self._waiting: dict[int, asyncio.Future[tuple[Any, bytes]]] = {}
         self.ended = asyncio.Event()
         self.why = ""
+        self.hand = Hand(self._let_go)
+
+    async def _let_go(self) -> None:
+        with contextlib.suppress(InputError):  # the machine has ended
+            await self.ask("release")
 
     async def __aenter__(self) -> "MachineLink":
         command, options = child(f"from {machine_process.__name__} import main; main()")

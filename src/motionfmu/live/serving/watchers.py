@@ -13,7 +13,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import same
-from motionfmu.live.serving.hand import Hand, Holder
+from motionfmu.live.serving.hand import Holder
 from motionfmu.live.serving.machine_link import MachineLink
 from motionfmu.live.serving.request_table import CheckedRequest, checked, parsed
 
@@ -69,12 +69,8 @@ class Watchers:
         self._strangers = 0
         self._programs: dict[str, Holder] = {}
         self._telling: asyncio.Task[None] | None = None
-        self.hand = Hand(self._let_go)
+        self.hand = link.hand
         link.listeners.append(self._told)
-
-    async def _let_go(self) -> None:
-        with contextlib.suppress(InputError):  # the machine has ended
-            await self._link.ask("release")
 
     async def serve(self, socket: WebSocket) -> None:
         """Tell a page of the machine; do what it asks; its first message is the token."""
