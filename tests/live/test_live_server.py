@@ -480,3 +480,27 @@ def test_only_the_machine_runs_before_others() -> None:
     assert {os.sched_getscheduler(int(t)) for t in threads} == {os.SCHED_FIFO}
     assert len(threads) > 2 and os.sched_getscheduler(server.process.pid) == os.SCHED_OTHER
     server.end()
+
+
+@pytest.mark.more
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_refused_requests_leave_no_memory(served: Served) -> None:
+    """A wrong request leaves cycles of objects, with all of its text."""
+
+    def held() -> float:
+        text = Path(f"/proc/{served.process.pid}/status").read_text()
+        found = re.search(r"VmRSS:\s+(\d+) kB", text)
+        assert found
+        return int(found[1]) / 1024
+
+    def knock() -> None:
+        with socket.create_connection(("127.0.0.1", served.port)) as s:
+            s.sendall(b"GET /" + b"a" * 60_000 + b" HTTP/1.1\r\n\r\n")
+            assert s.recv(12) == b"HTTP/1.1 400"
+
+    for _ in range(100):
+        knock()
+    before = held()
+    for _ in range(400):
+        knock()
+    assert held() < before + 20.0  # [MB]

@@ -1,6 +1,7 @@
 """A page that a command serves, on a port of this machine."""
 
 import asyncio
+import gc
 import os
 import socket
 from pathlib import Path
@@ -20,6 +21,7 @@ MESSAGE_MAX = 4096  # [byte] of a page to the server: it says its token
 CLOSING = 1.0  # [s] for pages that are open when it ends
 CONNECTIONS = 256  # at once; with one more, the oldest that asks for nothing is cut off
 ASKING = 10.0  # [s] for a connection's first request
+OFTEN = 500, 5, 2  # objects, collections of those, of these: the last is of all, a few thousand
 SENDING = 1 << 18  # [byte] that the system keeps for a page that does not read them
 
 
@@ -117,6 +119,10 @@ class PageServer:
         )
 
     async def __aenter__(self) -> int:
+        # Of what refused connections leave, the collector then looks at that alone, and so often.
+        gc.collect()
+        gc.freeze()
+        gc.set_threshold(*OFTEN)
         self._task = asyncio.create_task(self._server.serve([self._socket]))
         return int(self._socket.getsockname()[1])
 
