@@ -263,7 +263,7 @@ def test_types_of_files_and_numbers(fmi: int) -> None:
     assert "resource:NAME" in types["InputFile"] and "file:///PATH" in types["OutputFile"]
     assert types["Error"].startswith("0 none, 61698 emergency stop")
     assert {p.name for p in ports("mcc").values() if p.file == "read"} == {
-        "program", "comp_file", "tool_table"
+        "program", "comp_file", "tool_table", "begin_state"
     }  # fmt: skip
     assert [p.name for p in ports("mcc").values() if p.file == "written"] == [
         "path_file",

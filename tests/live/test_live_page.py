@@ -132,9 +132,10 @@ def test_a_refused_gamepad_asks_once_and_not_at_every_picture(
         other.evaluate(GAMEPAD)
         other.evaluate("() => { pad.buttons[4].pressed = true; pad.axes[0] = 1; }")
         expect(other.locator("#told")).to_contain_text("take it first")
+        sent.append(other.evaluate("() => asked"))
         rests(other, 1)
         sent.append(other.evaluate("() => asked"))
-        assert 1 <= sent[0] <= 5
+        assert 1 <= sent[0] == sent[1]
         other.evaluate("() => { pad.axes[0] = 0; }")
 
 
@@ -446,6 +447,7 @@ def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
         expect(other.locator("#hand")).to_contain_text("in hand")
         expect(other.locator("body")).to_have_class("watching")
         expect(tab.locator("#hand")).to_contain_text("1 more page watches")
+        rests(other, 2)  # what was done before has come to an end
         before = position(other, 2)
         other.locator(".jog-pad").focus()
         other.keyboard.down("ArrowUp")

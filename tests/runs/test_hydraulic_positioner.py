@@ -237,7 +237,8 @@ def faulty(button: str, more: str, **values: Any) -> motionfmu.Result:
     """The axis of the load scenario with a button pressed at 0.1 s; the rest is as given."""
     drives = FAULTS.format(button=button, more=more)
     scenario = driven(drives, leave=["*.force"], record=["controller.*"])
-    return scenario.run(set={f"controller.{k}": v for k, v in values.items()}, stop=1.0)
+    given = {k if "." in k else f"controller.{k}": v for k, v in values.items()}
+    return scenario.run(set=given, stop=1.0)
 
 
 def stopped(r: motionfmu.Result, code: int) -> float:
@@ -310,7 +311,8 @@ def test_a_blocked_axis_is_the_same_to_the_controller() -> None:
 
 @pytest.mark.parametrize(("home", "code", "way"), [(True, 5, 1), (False, 6, -1)])
 def test_home_switch_stuck_or_never_found(home: bool, code: int, way: int) -> None:
-    r = faulty("pb1", "", start_homed=False, home=home, home_search=1500)
+    switch = {"axis.home_position": 1.0 if home else -1.0}  # beyond both ends of the travel
+    r = faulty("pb1", "", start_homed=False, home_search=1500, **switch)
     stopped(r, code)
     assert not r["controller.homed"].any()
     assert 1490 < way * r["controller.edges"][-1] < 1560

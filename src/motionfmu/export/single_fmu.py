@@ -10,6 +10,7 @@ from motionfmu.export.export_choice import check_version
 from motionfmu.export.program_check import check_alone
 from motionfmu.export.resources import Resources
 from motionfmu.fmu import places
+from motionfmu.fmu.describe import BEGIN
 from motionfmu.fmu.pack import repacked
 from motionfmu.fmu.start_values import texts
 from motionfmu.scenarios import fmus
@@ -51,7 +52,7 @@ def packed(name: str, target: Path, fmi: int, given: Mapping[str, Any]) -> tuple
 
 def program_of(name: str) -> str:
     """The one parameter that names a part program; else an InputError tells which there are."""
-    reads = [port.name for port in fmus.ports(name).values() if port.file == "read"]
+    reads = [p.name for p in fmus.ports(name).values() if p.file == "read" and p.name != BEGIN]
     if "program" in reads:
         return "program"
     which = ", ".join(f"--set {n}=FILE" for n in reads) or "it reads no file"

@@ -52,7 +52,7 @@ class _Fence:
 
 
 @dataclass
-class _Reading:
+class _LinesRead:
     """Lines that the library reads under a hold: the number of the last one, and what it has read.
 
     It is full when it reads no further.
@@ -112,7 +112,7 @@ class GrblController:
         self._kept_line: tuple[str, int] | None = None  # it waits for those before it
         self._given = self._moves = 0  # lines given; number of the last one that moves
         self._plan: list[str] = []  # lines that are held back
-        self._reads: _Reading | None = None  # the library reads them under a hold
+        self._reads: _LinesRead | None = None  # the library reads them under a hold
         self._early: set[int] = set()  # numbers of lines that were answered before they were read
         self._heard, self._fresh = 0.0, False  # time of the latest bytes
         self._names: dict[int, int] = {}  # N of a line by its number
@@ -662,7 +662,7 @@ class GrblController:
     def _send_plan(self) -> None:
         lines, self._plan = self._plan, []
         if sum(map(len, lines)) + len(lines) > TEXT and not self._hold:
-            self._reads = _Reading(self._given)
+            self._reads = _LinesRead(self._given)
             self.orders.set("hold", True)
         while lines:
             size, count = 0, 0
