@@ -76,8 +76,8 @@ static int sample(struct fmu *f)
         if (!v->active[i])
             continue;
         struct drive_config c = config(v, i);
-        struct drive_input in = { v->enable[i], v->alarm_reset[i], v->dac[i], v->pulse_count[i],
-                                  v->phase[i], v->encoder_unplugged[i] };
+        struct drive_input in = { v->enable[i],      v->alarm_reset[i], v->dac[i],
+                                  v->pulse_count[i], v->phase[i],       v->encoder_unplugged[i] };
         int32_t alarm = m->drive[i].alarm;
         if (drive_tick(&c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
             return fmu_fail(f, "phase[%d] = %g: more counts than a number can hold exactly", i + 1,
