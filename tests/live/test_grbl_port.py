@@ -73,7 +73,7 @@ def test_senders_one_after_the_other() -> None:
             assert (await one.until(b"ok\r\n", b"$X\n")).endswith("ok\r\n")
             await one.until(b"ok\r\n", b"G10L2P1X1\nG0X5\n")
             assert "|MPos:6.000,0.000,0.000|" in await one.idle()
-            await one.until(b"ok\r\n", b"$J=X200F6000\n")
+            await one.until(b"ok\r\n", b"$J=X200F300\n")
         await asyncio.sleep(0.1)
         async with TcpSender(port) as two:
             assert "for help" in await two.until(b"help]\r\n"), "origins outlive a connection"
@@ -109,7 +109,7 @@ def test_one_hand_at_the_page_or_at_the_sender() -> None:
             assert hand.holder is not None and hand.holder.name == "a sender of G-code"
             with pytest.raises(InputError, match="a sender of G-code has the machine in hand"):
                 hand.needed(ann)
-            await sender.until(b"ok\r\n", b"$J=X200F6000\n")
+            await sender.until(b"ok\r\n", b"$J=X200F300\n")
             await hand.take(ann)
             await sender.until(b"[MSG:Ann has the machine in hand]\r\n")
             found = re.search(r"MPos:([0-9.]+)", await sender.idle())

@@ -7,7 +7,7 @@ import { figures } from "./words.js";
 const AGAIN = 400; // [ms] between two looks at the values
 const OPEN_MOST = 12; // elements of an array that have a field each
 const ROWS = 6; // elements of an array that has one for each axis
-let groups = [], items = [], changed = {}, shownAt = 0;
+let groups = [], items = [], changed = {}, shownAt = 0, sets = 0; // `sets`: how often a value was set here
 
 export function valuesOf() {
   changed = {};
@@ -42,7 +42,7 @@ function itemOf(name, label) {
 // One value for all elements of a long array.
 function allOf(name, own, count) {
   const field = made("input", "", { type: "number", step: "any", placeholder: `all ${count}`, "aria-label": `${name}, all elements` });
-  field.addEventListener("change", () => { if (field.value !== "") act("set", { name, value: given(own, field.value) }); });
+  field.addEventListener("change", () => { if (field.value !== "") { sets++; act("set", { name, value: given(own, field.value) }); } });
   return field;
 }
 
@@ -63,7 +63,7 @@ const given = (own, text) => (own.type === "Boolean" ? text === "true" || text =
 
 function fieldOf(name, own, id, label) {
   const index = own.shape.length ? indexOf(name, own) : "";
-  const set = (value) => act("set", { name, value });
+  const set = (value) => { sets++; return act("set", { name, value }); };
   if (own.type === "Boolean") {
     const box = made("input", "", { type: "checkbox", id, role: "switch", "aria-label": label });
     box.addEventListener("change", () => set(box.checked));
@@ -103,9 +103,10 @@ part("values-changed").addEventListener("change", filter);
 export async function showValues(now) {
   if (now - shownAt < AGAIN || !items.length) return;
   shownAt = now;
-  const names = items.filter((i) => !i.box.hidden && i.fields.length).map((i) => i.name);
+  const names = items.filter((i) => !i.box.hidden && i.fields.length).map((i) => i.name), before = sets;
   try {
     const [values, differ] = await Promise.all([ask("values", { names }), ask("changed")]);
+    if (sets !== before) return; // what was set in the meantime is in the next answer
     changed = differ;
     for (const item of items) {
       const differs = item.name in changed, own = values[item.name];
