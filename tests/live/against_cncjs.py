@@ -228,6 +228,7 @@ async def _work(folder: Path) -> None:
     live = ("-m", "motionfmu", "live", "mill3", "--port", "0", "--grbl", "pty", "--pace", f"{PACE}")
     async with _running(sys.executable, *live) as machine:
         device = await _printed(machine, r"grbl: (\S+)")
+        folder.mkdir(parents=True, exist_ok=True)
         config = folder / "cncrc"
         config.write_text(json.dumps({"ports": [{"path": device, "manufacturer": ""}]}))
         options = ("--port", "0", "--host", "127.0.0.1", "--config", str(config))
