@@ -22,6 +22,8 @@ from playwright.async_api import async_playwright
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
+import motionfmu
+
 CHROMIUM = "/usr/bin/chromium"
 MACHINE = "mill3"
 SHARES = (0.5, 0.99, 0.999, 1.0)
@@ -71,7 +73,7 @@ async def knock(port: int, request: bytes, wait: float) -> None:
         writer.close()
 
 
-async def broken(port: int, token: str, first: str | bytes, then: str | bytes) -> None:
+async def broken(port: int, first: str | bytes, then: str | bytes) -> None:
     """A WebSocket that says something wrong."""
     with contextlib.suppress(OSError, ConnectionClosed, InvalidHandshake, TimeoutError):
         async with connect(f"ws://127.0.0.1:{port}/live", max_size=None) as ws:
@@ -97,10 +99,10 @@ async def attack(port: int, token: str, until: float) -> int:
         silent = [knock(port, b"", 2.0) for _ in range(500)]
         asked = [knock(port, r, 2.0) for r in REQUESTS for _ in range(20)]
         wrong = [
-            broken(port, token, "no token", "x"),
-            broken(port, token, "a" * 10_000_000, "x"),
-            broken(port, token, token, "{" * 100_000),
-            broken(port, token, token, b"\xff" * 5000),
+            broken(port, "no token", "x"),
+            broken(port, "a" * 10_000_000, "x"),
+            broken(port, token, "{" * 100_000),
+            broken(port, token, b"\xff" * 5000),
         ]
         pages = [deaf(port, token) for _ in range(5)]
         await asyncio.gather(*silent, *asked, *wrong, *pages)
@@ -108,14 +110,11 @@ async def attack(port: int, token: str, until: float) -> int:
     return count
 
 
-async def counts(port: int, token: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Ends of the histogram's classes [s], and wake-ups in them, as a new page is told."""
-    async with connect(f"ws://127.0.0.1:{port}/live", max_size=None) as ws:
-        await ws.send(token)
-        await ws.send(json.dumps({"id": 1, "do": "lateness", "with": {}}))
-        while (found := json.loads(await ws.recv())).get("id") != 1:
-            pass
-        return np.array(found["value"]["ends"]), np.array(found["value"]["counts"])
+def counts(url: str) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Ends of the histogram's classes [s], and wake-ups in them."""
+    with motionfmu.connect(url) as client:
+        found = client.ask("lateness")
+    return np.array(found["ends"]), np.array(found["counts"])
 
 
 def quantile(ends: NDArray[np.float64], counts: NDArray[np.int64], share: float) -> float:
@@ -131,14 +130,14 @@ async def watch(minutes: int, attacked: bool, *options: str) -> None:
             browser = await play.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
             page = await browser.new_page(viewport={"width": 1400, "height": 900})
             await page.goto(url)
-            before = (await counts(port, token))[1]
+            before = (await asyncio.to_thread(counts, url))[1]
             begun = before
             for minute in range(1, minutes + 1):
                 until, strangers = time.monotonic() + 60.0, 0
                 if attacked and minute % 2 == 0:
                     strangers = await attack(port, token, until)
                 await asyncio.sleep(max(0.0, until - time.monotonic()))
-                ends, now = await counts(port, token)
+                ends, now = await asyncio.to_thread(counts, url)
                 late = " ".join(f"{quantile(ends, now - before, s):8.3f}" for s in SHARES)
                 held = " ".join(f"{m:6.1f}" for m in memory(pid))
                 told = f"{minute:4} min {int((now - before).sum()):7} wake-ups, late by {late}"

@@ -3,7 +3,7 @@
 import json
 import re
 import urllib.request
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -101,6 +101,18 @@ class Session:
             touch.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
             touch.send("Emulation.setTouchEmulationEnabled", {"enabled": False})
             touch.detach()
+
+    def hold_and_slow(self, dial: str, goes_on: Callable[[], None]) -> None:
+        """Hold the program that runs, halve it by a dial, and let it go on."""
+        from playwright.sync_api import expect
+
+        self.click("Hold")
+        self.state("^Hold$")
+        expect(self.page.locator("#readout")).to_contain_text("Feed0 mm/min")
+        self.page.get_by_label(dial, exact=True).fill("0.5")
+        self.click("Hold")
+        goes_on()
+        until(self.page, f"() => ({COLOURS})('#path') > 12")
 
     def mdi(self, line: str) -> None:
         """Type a line."""

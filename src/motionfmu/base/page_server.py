@@ -39,7 +39,7 @@ class _PageConnection(AutoHTTPProtocol):  # type: ignore[misc,valid-type]  # cho
 
     @property
     def silent(self) -> bool:
-        """Whether no whole request came yet."""
+        """Whether this connection has not sent a whole request yet."""
         return self.cycle is None
 
     def _asked(self, transport: asyncio.Transport) -> None:

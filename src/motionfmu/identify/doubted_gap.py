@@ -40,7 +40,7 @@ def doubted_gap(
     looked: dict[float, tuple[float, Array]] = {0.0: (left, fit.guess.free)}
 
     def leaves(octaves: float) -> float:
-        """Of a gap so many octaves wider."""
+        """Misfit of the span, in times of noise, with a gap so many octaves wider."""
         if octaves not in looked:
             near = min(looked, key=lambda k: abs(k - octaves))
             there = made({full: given * 2.0**octaves})

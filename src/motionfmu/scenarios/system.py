@@ -98,8 +98,12 @@ class System:
         return self.step_ns * self.every
 
     def rows(self, steps: int) -> int:
-        """Number of rows that the recording has if it ends behind so many steps."""
+        """Rows of the recording of a run that ends after so many steps, counted from time 0."""
         return -(-steps // self.every) - self.begin // self.every
+
+    def share(self, steps: int) -> float:
+        """Share of the run that is done after so many steps, counted from time 0."""
+        return (steps - self.begin) / (self.steps - self.begin)
 
     @property
     def begin_time(self) -> float:

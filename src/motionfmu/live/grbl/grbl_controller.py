@@ -25,12 +25,9 @@ SETTLED = 0.02  # [s] of simulated time in which the library has seen what it wa
 CLEARED = 1.0  # [s] in which an error goes that can go
 # Lines that come while the machine rests are held back until the sender pauses, or so many are
 # there, as Grbl fills its planner before it begins: so the first ones are planned with the others.
-# What fills the library's own planner is read under a hold, before anything moves.
+# What fills the library's own planner of 256 commands is read under a hold, before anything moves.
 PAUSE = 0.02  # [s] of simulated time
-PLAN_LINES, PLAN_BYTES = (
-    700,
-    12000,
-)  # as many as the library has room for: 256 commands, a text of 8192
+PLAN_LINES, PLAN_BYTES = 700, 12000
 TEXT = 1000  # [byte] of lines that are given at once; a text variable has 1023
 EXACT_STOP = "G61"
 _NUMBER = re.compile(r"N[+-]?[0-9.]+")

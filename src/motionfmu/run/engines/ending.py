@@ -51,6 +51,6 @@ class Ending:
                     self.steps = min(self.steps, k + 1 + self._until.settle)
             yield k
             if k % part == 0:
-                progress((k - begin) / (self._system.steps - begin))
+                progress(self._system.share(k))
             k += 1
         progress(1.0)

@@ -82,7 +82,7 @@ class Fused:
         for k, following in shares(system, due, STEPS_MAX):
             self._library.set((self._variables[s.end.name], s.values) for s in due.get(k, ()))
             self._library.step(k * system.step_ns * 1e-9, (following - k) * step)
-            progress((following - system.begin) / (system.steps - system.begin))
+            progress(system.share(following))
             if system.until is not None and signal is None:
                 (at,) = self._library.get(self._variables[SIGNAL])
                 if at >= 0:

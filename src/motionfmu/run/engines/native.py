@@ -132,7 +132,7 @@ class Container:
             for now in due.get(k, ()):
                 self._give(system, now)
             slave.step(k * system.step_ns * 1e-9, (following - k) * system.step_ns * 1e-9)
-            progress((following - system.begin) / (system.steps - system.begin))
+            progress(system.share(following))
 
     def close(self) -> None:
         """Free the instance, the library and its files."""
