@@ -155,8 +155,10 @@ def test_a_session_at_the_robot(browser: Any, tmp_path: Path) -> None:
         at.key("ArrowDown", 2, -5.0)
         rests(page, 2)
         far = position(page, 2)
+        at.pace("0.1 \N{MULTIPLICATION SIGN}")  # it turns there in some 40 ms
         at.click("Replay")
         until(page, MOVED, [2, far, 1, first - far - 0.1])  # it has been at the first one
+        at.pace("1 \N{MULTIPLICATION SIGN}")
         rests(page, 2)
         assert position(page, 2) == pytest.approx(second, abs=0.01)
         # The program.
