@@ -16,6 +16,12 @@ struct model {
 #include "fmi_model.h"
 #include "fmu_period.h"
 
+/* The nearest number of samples to the time of the command's moving mean. */
+static int32_t mean_samples(const struct vars *v, int i)
+{
+    return (int32_t)lround(v->command_mean_time[i] / v->period);
+}
+
 static struct drive_config config(const struct vars *v, int i)
 {
     return (struct drive_config){
@@ -36,6 +42,15 @@ static struct drive_config config(const struct vars *v, int i)
         .error_limit = v->error_limit[i],
         .overload_time = v->overload_time[i],
         .brake_torque = v->brake_torque[i],
+        .command_mean = mean_samples(v, i),
+        .command_time = v->command_time[i],
+        .rated_torque = v->rated_torque[i],
+        .thermal_time = v->thermal_time[i],
+        .thermal_limit = v->thermal_limit[i],
+        .brake_close_time = v->brake_close_time[i],
+        .brake_hold_time = v->brake_hold_time[i],
+        .brake_run_time = v->brake_run_time[i],
+        .brake_speed = v->brake_speed[i],
     };
 }
 
@@ -50,6 +65,7 @@ static void publish(struct vars *v, const struct model *m, bool all)
         v->speed[i] = o->speed;
         v->speed_command[i] = o->speed_command;
         v->following_error[i] = o->following_error;
+        v->load_ratio[i] = o->load_ratio;
         v->ready[i] = o->ready;
         v->saturated[i] = o->saturated;
         v->alarm[i] = o->alarm;
@@ -63,6 +79,10 @@ static int model_start(struct fmu *f)
     double ticks = v->period * (1e9 / FMU_TICK_NS);
     if (!fmu_is_period(ticks))
         return fmu_fail(f, "period = %.17g s: not a whole number of %d ns", v->period, FMU_TICK_NS);
+    for (int i = 0; i < CHANNELS; i++)
+        if (v->command_mean_time[i] / v->period >= DRIVE_MEAN_MOST + 0.5)
+            return fmu_fail(f, "command_mean_time[%d] = %.17g s: at most %d samples of %g s", i + 1,
+                            v->command_mean_time[i], DRIVE_MEAN_MOST, v->period);
     *m = (struct model){ .period = (int64_t)round(ticks) * FMU_TICK_NS };
     publish(v, m, true);
     return 0;
@@ -82,7 +102,15 @@ static int sample(struct fmu *f)
         if (drive_tick(&c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
             return fmu_fail(f, "phase[%d] = %g: more counts than a number can hold exactly", i + 1,
                             v->phase[i]);
-        if (m->next[i].alarm == DRIVE_OVERLOAD && alarm != DRIVE_OVERLOAD)
+        const bool overload = m->next[i].alarm == DRIVE_OVERLOAD && alarm != DRIVE_OVERLOAD;
+        if (overload && v->rated_torque[i] > 0.0 && m->next[i].load_ratio > v->thermal_limit[i])
+            fmu_warn(
+                f,
+                "axis %d: overload at %.9f s: its RMS torque over thermal_time = %g s was more "
+                "than thermal_limit = %g of rated_torque = %g N.m",
+                i + 1, (double)m->instant * 1e-9, v->thermal_time[i], v->thermal_limit[i],
+                v->rated_torque[i]);
+        else if (overload)
             fmu_warn(f,
                      "axis %d: overload at %.9f s: its torque was at its limit of %g N.m for "
                      "more than overload_time = %g s",

@@ -26,6 +26,7 @@ def used(said: law.Law) -> set[str]:
     tables = (said.let, said.state, said.output, said.early, said.direct, said.constant, said.grain)
     texts = [said.period, said.cycle, said.prompt, *said.refuse, *said.worst]
     texts += [t for table in (*tables, said.speed) for t in table.values()]
+    texts += [t for mean in said.mean.values() for t in (mean.of, mean.samples)]
     return names_in(texts)
 
 
@@ -43,6 +44,8 @@ def draw(port: fmus.Port, rng: random.Random) -> Any:
         if port.high - port.low <= 16:
             return rng.randint(int(port.low), int(port.high))
         return round(min(max(start * rng.choice([0.5, 1.0, 1.25, 2.0]), port.low), port.high))
+    if start == 0.0 and port.unit == "s":
+        return rng.choice([0.0, 0.0, 0.4e-3, 2.3e-3])
     return min(max(start * rng.choice([0.5, 1.0, 1.7]), port.low), port.high)
 
 

@@ -29,6 +29,13 @@ def test_any_split_into_steps_gives_the_same_bits(period: float) -> None:
         "mode": [0, 1, 0, 1, 0, 1],
         "period": period,
         "error_limit": 0.02,
+        "command_mean_time": [0.0, 4 * period, 0.0, 0.0, 0.0, 9 * period],
+        "command_time": [0.0, 0.0, 0.0, 3e-3, 0.0, 3e-3],
+        "rated_torque": [0.0, 0.0, 4.0, 0.0, 0.0, 0.0],
+        "thermal_time": 1e-3,
+        "brake_torque": [0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+        "brake_close_time": 3 * period,
+        "brake_hold_time": 2 * period,
         "active": [True, True, True, True, True, False],
     }
     whole, split = drives(**values), drives(**values)
@@ -53,7 +60,7 @@ def test_any_split_into_steps_gives_the_same_bits(period: float) -> None:
             to_tick(split, cut)
         seen = whole.outputs()
         assert repr(seen) == repr(split.outputs()), f"instant {k}"
-        assert [x[5] for x in seen.values()] == [0.0, 0.0, 0.0, 0.0, False, False, 0]
+        assert [x[5] for x in seen.values()] == [0.0, 0.0, 0.0, 0.0, 0.0, False, False, 0]
         alarms += sum(seen["alarm"])
     assert alarms > 0
     whole.free()
@@ -109,4 +116,27 @@ def test_a_phase_beyond_all_counts_is_named() -> None:
     fmu.set("phase", [0, 0, 0, -1e16, 0, 0])
     assert fmu.step(1e-4) == ERROR
     assert any("phase[4] = -1e+16" in text for _, _, text in fmu.messages), fmu.messages
+    fmu.free()
+
+
+def test_a_mean_over_too_many_samples_is_named() -> None:
+    fmu = Instance("servo_drives", 3)
+    assert fmu.set("command_mean_time", [0.0, 0.1, 0.1001, 0.0, 0.0, 0.0]) == OK
+    fmu.enter()
+    assert fmu.call("ExitInitializationMode") == ERROR
+    said = "command_mean_time[3] = 0.1001 s: at most 1000 samples of 0.0001 s"
+    assert any(said in text.replace("0.10009999999999999", "0.1001") for _, _, text in fmu.messages)
+    fmu.free()
+
+
+def test_a_motor_that_is_too_hot_trips() -> None:
+    """300 % of the rated torque from cold, for -T ln(1 - (1.15/3)^2) = 0.1589 T."""
+    fmu = drives(velocity_time=0.0, velocity_gain=0.1, rated_torque=1.0, thermal_time=1.0)
+    volts = 3.0 / (0.1 * 300 * 3.141592653589793 / 30)
+    fmu.set("dac", [0.0, volts, 0.0, 0.0, 0.0, 0.0])
+    to_tick(fmu, 1580 * PERIOD)
+    assert fmu.get("alarm") == [0] * 6
+    assert fmu.get("load_ratio")[1] == pytest.approx(1.147, abs=1e-3)
+    to_tick(fmu, 1600 * PERIOD)
+    assert fmu.get("alarm") == [0, 3, 0, 0, 0, 0]
     fmu.free()

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 import motionfmu
 
@@ -47,3 +48,38 @@ def test_an_arm_in_the_hands_of_drives_stands(tmp_path: Path) -> None:
     print("largest way after 10 s [counts]", np.ptp(late, axis=0).max(), "before", sunk)
     assert sunk > 1000, "no torque at the start: it sinks"
     assert np.ptp(late, axis=0).max() < 1.0
+
+
+# Joint 2 of the arm at power-off: brake, its time to close, how long the loops hold it [s]; least
+# and most way [deg].
+@pytest.mark.parametrize(
+    ("brake", "close", "hold", "ways"),
+    [
+        (0.0, 0.0, 0.0, (10.0, 90.0)),
+        (10.0, 0.0, 0.0, (0.0, 0.05)),
+        (10.0, 0.05, 0.08, (0.0, 0.05)),
+        (10.0, 0.05, 0.0, (0.1, 1.5)),
+        (0.5, 0.0, 0.0, (1.0, 90.0)),
+    ],
+)
+def test_at_power_off_an_arm_falls_or_its_brakes_hold_it(
+    tmp_path: Path, brake: float, close: float, hold: float, ways: tuple[float, float]
+) -> None:
+    text = SCENARIO.replace("stop = 60.0", "stop = 2.6").replace('"drives.enable", ', "")
+    text = text.replace(
+        "[record]",
+        f"""
+"drives.brake_torque" = {brake}
+"drives.brake_close_time" = {close}
+"drives.brake_hold_time" = {hold}
+
+[drive]
+"drives.enable" = {{ at = [2.0], value = [false] }}
+
+[record]""",
+    )
+    text = text.replace("arm.motor_angle[1]", "arm.motor_angle[6]").replace("0.1 }", "1e9 }")
+    (tmp_path / "scenario.toml").write_text(text)
+    motor = motionfmu.load(tmp_path).run()["arm.motor_angle"][:, 1]
+    way = float(np.degrees(np.abs(motor[20_000:] - motor[20_000]).max())) / 120.0
+    assert ways[0] <= way <= ways[1], way

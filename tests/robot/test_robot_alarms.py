@@ -27,6 +27,16 @@ def test_payload_beyond_a_joint_is_an_overload_that_stops() -> None:
     assert fallen > 1.0  # [rad]
 
 
+def test_a_motor_that_is_too_hot_is_told() -> None:
+    """Joint 2 bears more than 1 N.m where the line begins, five times what is called rated."""
+    line = motionfmu.load(ROOT / "scenarios/robot_line")
+    values = {"drives.rated_torque": 0.2, "drives.thermal_time": 0.5}
+    run = line.changed(record=["drives.load_ratio", "soft.status"]).run(set=values, stop=1.2)
+    told = [w for w in run.warnings if "overload" in w]
+    assert told and all("RMS torque over thermal_time = 0.5 s" in w for w in told)
+    assert run["drives.alarm"][-1, 1] == 3 and run["soft.status"][-1] == STOPPED
+
+
 def test_a_brake_holds_what_its_drive_could_not() -> None:
     run = overloaded(brake=80.0)
     alarm = run["drives.alarm"][:, 1]

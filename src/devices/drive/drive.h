@@ -1,6 +1,6 @@
-/* drive - digital servo drive of one motor: velocity or position mode, a PI velocity loop with
- * torque limit, alarms and holding brake. Call drive_tick() once per sampling period;
- * fmus/servo_drives/README.md has the equations. */
+/* drive - digital servo drive of one motor: velocity or position mode with a smoothed command, a PI
+ * velocity loop with torque limit, thermal model of the motor, alarms and holding brake. Call
+ * drive_tick() once per sampling period; fmus/servo_drives/README.md has the equations. */
 #ifndef DRIVE_H
 #define DRIVE_H
 
@@ -20,6 +20,9 @@ enum drive_status { DRIVE_OK = 0, DRIVE_BAD_PHASE = -1 };
 /* The overspeed alarm comes at this multiple of the speed limit: a usual factory setting, above the
  * overshoot of a velocity loop. */
 #define DRIVE_OVERSPEED_RATIO 1.2
+
+/* Most samples of the moving mean of the command: 100 ms at 100 us. */
+#define DRIVE_MEAN_MOST 1000
 
 /* Largest position whose counts are whole numbers in a double, 2^53 [counts]. */
 #define DRIVE_COUNTS_MAX 9007199254740992.0
@@ -42,6 +45,15 @@ struct drive_config {
     double error_limit;       /* [turns] following error that raises the alarm */
     double overload_time;     /* [s] with the torque at its limit that raises the alarm; 0: none */
     double brake_torque;      /* [N.m] holding torque of the motor's brake; 0: no brake */
+    int32_t command_mean;     /* [samples] of the command's moving mean, <= DRIVE_MEAN_MOST */
+    double command_time;      /* [s] time constant of the command's filter; 0: none */
+    double rated_torque;      /* [N.m] that the motor bears for ever; 0: no thermal model */
+    double thermal_time;      /* [s] time constant of the motor's heat */
+    double thermal_limit;     /* [rated torque] root of the heat that raises the alarm */
+    double brake_close_time;  /* [s] from the brake's signal until it bears */
+    double brake_hold_time;   /* [s] the loops go on behind the signal, switched off at rest */
+    double brake_run_time;    /* [s] most that the signal waits for a motor that turns */
+    double brake_speed;       /* [rpm] the motor rests below it */
 };
 
 struct drive_input {
@@ -65,6 +77,16 @@ struct drive_state {
     double integral; /* [N.m] integral part of the velocity loop */
     double forward;  /* [turns/s] command speed behind the feed-forward filter */
     int64_t load;    /* number of samples with the torque at its limit minus those without, >= 0 */
+    int64_t sum;     /* [pulses samples] of the mean: smoothed command times its samples */
+    int64_t window;  /* [pulses] in the samples of the mean */
+    double lag;      /* [pulses] that the command's filter is behind its input */
+    double heat;     /* square of the torque in units of the rated one, over the thermal time */
+    int64_t off; /* number of samples since the loops were switched off, while the brake is open */
+    int64_t signal; /* those since the brake was told to close */
+    bool released;  /* the brake is open */
+    bool holding;   /* switched off at rest: the loops go on while the brake closes */
+    int32_t place;  /* of the oldest sample in `past` */
+    int32_t past[DRIVE_MEAN_MOST]; /* [pulses] of the latest samples, while they are averaged */
 };
 
 struct drive_output {
@@ -73,6 +95,7 @@ struct drive_output {
     double speed_command;   /* [rpm] command of the velocity loop */
     double following_error; /* [turns] position mode */
     bool ready;             /* enabled and without alarm */
+    double load_ratio;      /* root of the heat [rated torque] */
     bool saturated;         /* torque at its limit */
     int32_t alarm;          /* enum drive_alarm */
 };

@@ -21,6 +21,14 @@ LAW = "linear.toml"
 _WHOLE = 1e-9
 
 
+class MovingMean(BaseModel):
+    """The mean of a quantity at the latest instants of the grid, this one among them."""
+
+    model_config = ConfigDict(extra="forbid", strict=True)
+    of: str
+    samples: str
+
+
 class Law(BaseModel):
     """The tables of a linear.toml: formulas by name, as in the README."""
 
@@ -31,6 +39,7 @@ class Law(BaseModel):
     prompt: str = "0"  # if it holds, outputs are early ones
     commands: list[str] = Field(default_factory=list)
     let: dict[str, str] = Field(default_factory=dict)
+    mean: dict[str, MovingMean] = Field(default_factory=dict)
     state: dict[str, str] = Field(default_factory=dict)
     output: dict[str, str] = Field(default_factory=dict)
     early: dict[str, str] = Field(default_factory=dict)
@@ -80,16 +89,36 @@ class _LawNames(Mapping[str, Any]):
 
     def __getitem__(self, name: str) -> Any:
         if name not in self._moving:
-            if name not in self._law.let:
+            if name in self._law.mean:
+                said = self._law.mean[name]
+                kept = [self[n] for n in _kept(name, said, self)]
+                self._moving[name] = sum(kept, evaluate(said.of, self)) / (len(kept) + 1.0)
+            elif name in self._law.let:
+                self._moving[name] = evaluate(self._law.let[name], self)
+            else:
                 return self._given[name]
-            self._moving[name] = evaluate(self._law.let[name], self)
         return self._moving[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter((*self._moving, *self._law.let, *self._given))
+        return iter((*self._moving, *self._law.mean, *self._law.let, *self._given))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
+
+
+def _kept(name: str, said: MovingMean, names: Mapping[str, Any]) -> list[str]:
+    """States of a moving mean: what it averages, at earlier instants, the latest of them first."""
+    count = float(evaluate(said.samples, names))  # type: ignore[arg-type]
+    return [f"{name}_{back}" for back in range(1, round(count))]
+
+
+def _states(law: Law, given: Mapping[str, Any]) -> dict[str, str]:
+    """The formula of each state's next value: of the law's own, then of its moving means."""
+    found, names = dict(law.state), _LawNames(law, given, {})
+    for name, said in law.mean.items():
+        kept = _kept(name, said, names)
+        found |= dict(zip(kept, [said.of, *kept], strict=False))
+    return found
 
 
 def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None = None) -> Sampled:
@@ -112,7 +141,7 @@ def block(law: Law, values: Mapping[str, Any], point: Mapping[str, float] | None
     return Sampled(
         inputs=tuple(law.inputs),
         commands=tuple(law.commands),
-        states=tuple(law.state),
+        states=tuple(_states(law, given)),
         outputs=tuple(law.output) if late else (),
         early=tuple(law.early) if late else (*law.output, *law.early),
         direct=tuple(law.direct),
@@ -128,12 +157,13 @@ def _instant(
     law: Law, given: Mapping[str, Any], place: tuple[int, int]
 ) -> tuple[np.ndarray[Any, np.dtype[np.float64]], np.ndarray[Any, np.dtype[np.float64]]]:
     """Matrices of the law at one instant of its cycle, and those of direct outputs."""
-    moving = [*law.state, *law.inputs, *law.commands]
+    states = _states(law, given)
+    moving = [*states, *law.inputs, *law.commands]
     known: dict[str, Quantity] = dict(zip(("instant", "instants"), place, strict=True))
     for name, unit in zip(moving, np.eye(len(moving)), strict=True):
         known[name] = Form(unit)
     names = _LawNames(law, given, known)
-    later = [*law.state.items(), *law.output.items(), *law.early.items()]
+    later = [*states.items(), *law.output.items(), *law.early.items()]
     rows = [_row(text, names, len(moving)) for _, text in later]
     now = [_row(text, names, len(moving)) for text in law.direct.values()]
     first = len(moving) - len(law.commands)
