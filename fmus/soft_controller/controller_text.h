@@ -15,8 +15,15 @@ struct controller_blob {
     bool has_job;
     struct robot_job_program job;
     struct robot_job_points points;
-    uint64_t text; /* digest of the jobs' text; 0 without jobs */
+    uint64_t text;              /* digest of the jobs' text; 0 without jobs */
+    char *file[ROBOT_JOB_JOBS]; /* names of the jobs' files: the program, then those beside it */
 };
+
+/* Name of the file that has a job. */
+static const char *job_file_of(const struct controller_blob *b, int32_t job)
+{
+    return b->has_job ? b->file[b->job.job[job].text] : "";
+}
 
 static struct orders_text text_of(const struct controller_blob *b)
 {
@@ -47,10 +54,10 @@ static char *read_text(struct fmu *f, const char *parameter, const char *name, i
     return text;
 }
 
-/* Digest of a text (FNV-1a); two different texts have the same in one of 2^64 cases. */
-static uint64_t digest_of(const char *text, int64_t length)
+/* Digest of a text behind another one (FNV-1a); two different texts have the same in one of 2^64
+ * cases. */
+static uint64_t digest_of(uint64_t sum, const char *text, int64_t length)
 {
-    uint64_t sum = 0xcbf29ce484222325u;
     for (int64_t i = 0; i < length; i++) {
         sum = (sum ^ (unsigned char)text[i]) * 0x100000001b3u;
     }
@@ -87,24 +94,83 @@ static int read_points(struct fmu *f, struct controller_blob *b)
     return code;
 }
 
-static int read_jobs(struct fmu *f, struct controller_blob *b)
+/* Read one text of jobs, and keep it until all are read: a report may be of any of them. */
+static int read_job_text(struct fmu *f, struct controller_blob *b, const char *name, char **text)
 {
-    const char *name = f->s.v.program, *job = f->s.v.job;
     struct robot_job_report r;
     int64_t length;
-    char *text = read_text(f, "program", name, &length);
+    const int32_t n = b->job.texts;
 
-    if (!text) {
+    text[n] = read_text(f, "program", name, &length);
+    b->file[n] = text[n] ? malloc(strlen(name) + 1) : NULL;
+    if (!b->file[n]) {
+        return text[n] ? fmu_fail(f, "out of memory") : -1;
+    }
+    memcpy(b->file[n], name, strlen(name) + 1);
+    b->text = digest_of(n ? b->text : 0xcbf29ce484222325u, text[n], length);
+    return robot_job_read_text(&b->job, &b->points, text[n], length, &r)
+               ? refuse_text(f, name, text[n], &r)
+               : 0;
+}
+
+/* The name of a job's file beside the program, which has the program's ending or a pendant's. False:
+ * there is none. */
+static bool file_beside(const struct fmu *f, const char *job, char *name, size_t size)
+{
+    const char *program = f->s.v.program;
+    int folder = 0; /* [byte] of the program's name before that of its file: a path, resource: */
+    for (int i = 0; program[i]; i++) {
+        folder = strchr("/\\:", program[i]) ? i + 1 : folder;
+    }
+    const char *dot = strrchr(program + folder, '.');
+    const char *endings[] = { dot ? dot : ".JBI", ".JBI", ".jbi", ".job" };
+
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        FILE *file;
+        const int length = snprintf(name, size, "%.*s%s%s", folder, program, job, endings[i]);
+        const struct fmu_path path = fmu_path(f, name, FMU_READ);
+        if (length > 0 && (size_t)length < size && path.good && !file_open(path.text, &file)) {
+            fclose(file);
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Read the program and, beside it, the jobs that are called and not in it. */
+static int read_all_jobs(struct fmu *f, struct controller_blob *b, char **text)
+{
+    struct robot_job_report r;
+    char name[FMU_PATH_MAX];
+
+    robot_job_begin_reading(&b->job);
+    if (read_job_text(f, b, f->s.v.program, text)) {
         return -1;
     }
-    int code = robot_job_read(&b->job, &b->points, text, length, &r);
-    code = code ? refuse_text(f, name, text, &r) : 0;
-    b->text = digest_of(text, length);
-    free(text);
+    for (int32_t i = 0; i < b->job.callees; i++) {
+        if (robot_job_wanted(&b->job, i) && b->job.texts < ROBOT_JOB_JOBS
+            && file_beside(f, b->job.callee[i].name, name, sizeof name)
+            && read_job_text(f, b, name, text)) {
+            return -1;
+        }
+    }
+    return robot_job_end_reading(&b->job, &r) ? refuse_text(f, b->file[r.text], text[r.text], &r)
+                                              : 0;
+}
+
+static int read_jobs(struct fmu *f, struct controller_blob *b)
+{
+    const char *job = f->s.v.job;
+    char *text[ROBOT_JOB_JOBS] = { NULL };
+
+    int code = read_all_jobs(f, b, text);
+    for (int32_t i = 0; i < ROBOT_JOB_JOBS; i++) {
+        free(text[i]);
+    }
     if (code == 0 && job[0]) {
         b->config.orders.start.job = robot_job_find(&b->job, job);
         code = b->config.orders.start.job < 0
-                   ? fmu_fail(f, "job = \"%s\": no such job in %s", job, name)
+                   ? fmu_fail(f, "job = \"%s\": no such job in %s", job, f->s.v.program)
                    : 0;
     }
     b->has_job = code == 0;
@@ -118,7 +184,9 @@ static int language_of(struct fmu *f, bool *gcode)
     const char *dot = strrchr(v->program, '.');
 
     if (strcmp(v->language, "auto") == 0) {
-        *gcode = !dot || (strcmp(dot, ".job") != 0 && strcmp(dot, ".jbi") != 0);
+        *gcode = !dot
+                 || (strcmp(dot, ".job") != 0 && strcmp(dot, ".jbi") != 0
+                     && strcmp(dot, ".JOB") != 0 && strcmp(dot, ".JBI") != 0);
         return 0;
     }
     *gcode = strcmp(v->language, "gcode") == 0;

@@ -59,6 +59,9 @@ static void model_close(struct fmu *f)
 
     if (b) {
         program_close(b->gcode);
+        for (int32_t i = 0; i < ROBOT_JOB_JOBS; i++) {
+            free(b->file[i]);
+        }
         free(b);
     }
 }
@@ -168,7 +171,8 @@ static void publish(struct fmu *f)
         controller_words(&s->trouble, words);
         f->s.m.told = v->error;
         if (v->error) {
-            fmu_warn(f, "%s: line %d: %s", v->program, (int)v->error_line, words);
+            fmu_warn(f, "%s: line %d: %s", b->has_job ? job_file_of(b, s->trouble.job) : v->program,
+                     (int)v->error_line, words);
         }
     }
 }

@@ -55,17 +55,26 @@ static void write_points(void)
 static void check_request(const struct robot_job_request *r, const struct robot_job_run *run,
                           int64_t moves)
 {
-    HOLDS(r->line > 0 && r->after == run->moves);
+    HOLDS(r->line > 0 && r->job >= 0 && r->job < program.jobs);
+    HOLDS(r->after == run->moves
+          || (run->early && r->after == run->moves - 1
+              && (r->answer == ROBOT_JOB_DOUT || r->answer == ROBOT_JOB_AOUT
+                  || r->answer == ROBOT_JOB_FAULT)));
     HOLDS(run->moves == moves + (r->answer == ROBOT_JOB_MOVE));
     if (r->answer == ROBOT_JOB_MOVE) {
-        HOLDS(points.point[r->point].kind != ROBOT_JOB_NO_POINT);
-        HOLDS(r->path != ROBOT_JOB_CIRCLE || points.point[r->via].kind != ROBOT_JOB_NO_POINT);
+        HOLDS(robot_job_point(&program, &points, r->point)->kind != ROBOT_JOB_NO_POINT);
+        HOLDS(r->path != ROBOT_JOB_CIRCLE
+              || robot_job_point(&program, &points, r->via)->kind != ROBOT_JOB_NO_POINT);
+        HOLDS(r->shift < 0 || robot_job_point(&program, &points, r->shift)->kind == ROBOT_JOB_POSE);
+        HOLDS(points.user[r->shift_user].defined);
         HOLDS((r->tag == ROBOT_JOB_VJ) == (r->path == ROBOT_JOB_JOINT) && r->speed > 0.0);
         HOLDS(r->level >= 0 && r->level <= ROBOT_JOB_LEVELS && r->corner >= 0.0);
         HOLDS(points.tool[r->tool].defined && points.user[r->user].defined);
     } else if (r->answer == ROBOT_JOB_DOUT) {
-        HOLDS(r->index >= 0 && r->index < ROBOT_JOB_SIGNALS && (r->on == 0 || r->on == 1));
-        HOLDS((run->out >> r->index & 1u) == (uint32_t)r->on);
+        const uint32_t all = (1u << r->count) - 1u;
+        HOLDS(r->index >= 0 && r->index + r->count <= ROBOT_JOB_SIGNALS);
+        HOLDS((r->count == 1 || r->count == ROBOT_JOB_GROUP) && ((uint32_t)r->on & ~all) == 0);
+        HOLDS((run->out >> r->index & all) == (uint32_t)r->on);
     } else if (r->answer == ROBOT_JOB_AOUT) {
         HOLDS(r->index >= 0 && r->index < ROBOT_JOB_ANALOGS && fabs(r->volt) <= ROBOT_JOB_VOLT_MAX);
     } else if (r->answer == ROBOT_JOB_FAULT) {

@@ -7,7 +7,13 @@ from fractions import Fraction
 
 NS = 1_000_000_000
 LIMITS = {"B": (0, 255), "I": (-(2**15), 2**15 - 1), "D": (-(2**31), 2**31 - 1)}
-OPENING = {"ENDIF": "IF", "ENDLOOP": "LOOP", "ENDWHILE": "WHILE"}
+OPENING = {
+    "ENDIF": "IF",
+    "ENDLOOP": "LOOP",
+    "ENDWHILE": "WHILE",
+    "NEXT": "FOR",
+    "ENDSWITCH": "SWITCH",
+}
 CALLS = 12
 Number = int | float
 
@@ -35,6 +41,8 @@ class Frame:
     job: str
     at: int = 0
     left: dict[int, int | None] = field(default_factory=dict)  # rounds of the LOOP at a line
+    own: dict[str, Number] = field(default_factory=dict)  # LB LI LD LR
+    arguments: list[Number] = field(default_factory=list)
 
 
 class Brute:
@@ -59,33 +67,40 @@ class Brute:
         self.speed = {"VJ": 10.0, "V": 100.0, "VR": 20.0}
         self.usual, self.level, self.tool, self.user = "V", 0, 0, 0
         self.variables: dict[str, Number] = {}
+        self.shift = (-1, 0)  # point, user frame
+        self.early = 0  # the latest move is NWAIT
 
     # -- values
 
+    def kept(self, name: str) -> dict[str, Number]:
+        return self.stack[-1].own if name[0] == "L" else self.variables
+
     def value(self, text: str) -> Number:
-        if m := re.fullmatch(r"(IN|OT|AI)#\((\d+)\)", text):
+        if m := re.fullmatch(r"(IN|OT|AI|IG|OG)#\((\d+)\)", text):
             n = int(m[2]) - 1
             if m[1] == "AI":
                 return self.world.ai[n]
+            if m[1] in ("IG", "OG"):
+                return (self.world.di if m[1] == "IG" else self.out) // 256**n % 256
             return (self.world.di if m[1] == "IN" else self.out) >> n & 1
         if text in ("ON", "OFF"):
             return int(text == "ON")
-        if re.fullmatch(r"[BID]\d+", text):
-            return self.variables.get(text, 0)
-        if re.fullmatch(r"R\d+", text):
-            return self.variables.get(text, 0.0)
+        if re.fullmatch(r"L?[BID]\d+", text):
+            return self.kept(text).get(text, 0)
+        if re.fullmatch(r"L?R\d+", text):
+            return self.kept(text).get(text, 0.0)
         return int(text) if re.fullmatch(r"-?\d+", text) else float(text)
 
     def store(self, name: str, x: Number | Fraction) -> None:
-        if name[0] == "R":
+        if "R" in name:
             if abs(x) == float("inf") or x != x:
                 raise Stop("result out of range")
-            self.variables[name] = float(x)
+            self.kept(name)[name] = float(x)
             return
-        low, high = LIMITS[name[0]]
+        low, high = LIMITS[name.lstrip("L")[0]]
         if abs(x) == float("inf") or not low <= int(x) <= high:
             raise Stop("result out of range")
-        self.variables[name] = int(x)
+        self.kept(name)[name] = int(x)
 
     def calculate(self, word: str, name: str, operand: str) -> None:
         a: Number | Fraction = self.value(name)
@@ -95,7 +110,7 @@ class Brute:
             return
         if word == "DIV" and b == 0:
             raise Stop("division by zero")
-        if isinstance(a, int) and isinstance(b, int) and name[0] != "R":
+        if isinstance(a, int) and isinstance(b, int) and "R" not in name:
             a, b = Fraction(a), Fraction(b)
         else:
             a, b = float(a), float(b)
@@ -103,7 +118,15 @@ class Brute:
         self.store(name, done.get(word, lambda: a / b)())
 
     def holds(self, condition: str) -> bool:
-        m = re.fullmatch(r"(\S+?)(<=|>=|<>|=|<|>)(\S+)", condition.strip("()"))
+        bare = re.sub(r"(?<!#)\(|(?<!\d)\)|(?<=\))\)", "", condition)
+        bare = re.sub(r"(?<!\()(\b[\w.-]+)\)", r"\1", bare)  # a number before the bracket's end
+        for word, enough in ((" AND ", all), (" OR ", any)):
+            if word in bare:
+                return enough([self.comparison(part) for part in bare.split(word)])
+        return self.comparison(bare)
+
+    def comparison(self, condition: str) -> bool:
+        m = re.fullmatch(r"(\S+?)(<=|>=|<>|=|<|>)(\S+)", condition.strip())
         assert m, condition
         a, b = self.value(m[1]), self.value(m[3])
         return {
@@ -144,6 +167,7 @@ class Brute:
     def reach(self, line: int) -> Iterator[tuple]:
         while self.world.reached < self.moves:
             yield "reach", line, self.moves
+        self.early = 0
 
     def run(self) -> Iterator[tuple]:
         line = 0
@@ -179,13 +203,17 @@ class Brute:
         word = self.first(frame.at)
         condition = ""
         if word in ("JUMP", "CALL", "RET", "PAUSE") and "IF" in words:
-            condition = words[words.index("IF") + 1]
+            condition = text.split(" IF ")[1]
         elif word in ("IF", "ELSEIF", "WHILE", "WAIT"):
-            condition = words[1]
-        if word == "ELSEIF" or word == "ELSE":  # the branch before has been done
-            frame.at = self.scan(frame.at, 1, {"ENDIF"}) + 1
+            condition = text.split(" T=")[0].split(" ", 1)[1]
+        if word in ("ELSEIF", "ELSE", "CASE", "DEFAULT"):  # the branch before has been done
+            ends = {"ENDIF"} if word in ("ELSEIF", "ELSE") else {"ENDSWITCH"}
+            frame.at = self.scan(frame.at, 1, ends) + 1
             return
-        if "IN#" in text or "AI#" in text or word in ("WAIT", "TIMER"):
+        if word == "SWITCH":
+            yield from self.choose(words[1])
+            return
+        if self.looks(text) or word in ("WAIT", "TIMER", "CWAIT"):
             yield from self.reach(line)
         frame.at += 1
         if word == "IF":
@@ -194,14 +222,23 @@ class Brute:
                 there = self.jobs[frame.job][frame.at - 1][1]
                 if not there.startswith("ELSEIF"):
                     return
-                condition = there.split()[1]
-                if "IN#" in there or "AI#" in there:
+                condition = there.split(" ", 1)[1]
+                if self.looks(there):
                     yield from self.reach(self.jobs[frame.job][frame.at - 1][0])
         elif word == "WHILE":
             if not self.holds(condition):
                 frame.at = self.scan(frame.at - 1, 1, {"ENDWHILE"}) + 1
         elif word == "ENDWHILE":
             frame.at = self.scan(frame.at - 1, -1, {"WHILE"})
+        elif word == "FOR":
+            _, name, start, end, step = self.counted(text)
+            self.store(name, self.value(start))
+            self.count(frame.at - 1, name, end, step)
+        elif word == "NEXT":
+            start_at = self.scan(frame.at - 1, -1, {"FOR"})
+            _, name, _, end, step = self.counted(self.jobs[frame.job][start_at][1])
+            self.calculate("ADD", name, str(step))
+            self.count(start_at, name, end, step)
         elif word == "LOOP":
             count = int(self.value(words[1])) if len(words) > 1 else None
             frame.left[frame.at - 1] = count
@@ -222,8 +259,41 @@ class Brute:
                 if until is not None and self.world.now >= until:
                     break
                 yield "wait", line, self.moves
-        elif word not in ("NOP", "ENDIF", "LABEL") and not word.startswith("*"):
+        elif word not in (
+            *("NOP", "ENDIF", "LABEL", "ENDSWITCH", "CWAIT", "MSG"),
+        ) and not word.startswith("*"):
             yield from self.simple(line, words)
+
+    @staticmethod
+    def looks(text: str) -> bool:
+        return any(word in text for word in ("IN#", "AI#", "IG#"))
+
+    @staticmethod
+    def counted(text: str) -> tuple[str, str, str, str, int]:
+        m = re.fullmatch(r"FOR (\w+) ?= ?(\S+) TO (\S+)( STEP (\S+))?", text)
+        assert m, text
+        return "FOR", m[1], m[2], m[3], int(m[5] or 1)
+
+    def count(self, at: int, name: str, end: str, step: int) -> None:
+        """Go on in a FOR, or behind its NEXT."""
+        here, last = self.value(name), self.value(end)
+        on = here >= last if step < 0 else here <= last
+        self.stack[-1].at = (at if on else self.scan(at, 1, {"NEXT"})) + 1
+
+    def choose(self, looked_at: str) -> Iterator[tuple]:
+        """Go to the CASE of a SWITCH whose value it is, to DEFAULT or to the end."""
+        frame = self.stack[-1]
+        at = frame.at
+        while True:
+            at = self.scan(at, 1, {"CASE", "DEFAULT", "ENDSWITCH"})
+            line, text = self.jobs[frame.job][at]
+            if not text.startswith("CASE"):
+                break
+            if self.looks(looked_at):
+                yield from self.reach(line)
+            if self.value(looked_at) in [self.value(x) for x in text[5:].split(",")]:
+                break
+        frame.at = at + 1
 
     def go(self, line: int, words: list[str], condition: str) -> Iterator[tuple]:
         if condition and not self.holds(condition):
@@ -241,9 +311,10 @@ class Brute:
         elif words[0] == "CALL":
             if len(self.stack) > CALLS:
                 raise Stop("CALL inside too many others")
-            self.stack.append(Frame(words[1][4:]))
+            given = [self.value(w[4:]) for w in words[2:] if w.startswith("ARGF")]
+            self.stack.append(Frame(words[1][4:], arguments=given))
         elif words[1].startswith("JOB:"):
-            self.stack[-1] = Frame(words[1][4:])
+            self.stack[-1] = Frame(words[1][4:], own=frame.own, arguments=frame.arguments)
         else:
             frame.at = self.label(words[1].lstrip("*"))
 
@@ -257,15 +328,29 @@ class Brute:
                 self.usual = self.usual if tag == "VJ" else tag
         elif word in ("PL", "TOOL", "USER"):
             setattr(self, {"PL": "level"}.get(word, word.lower()), int(words[1]))
+        elif word == "GETARG":
+            n = int(words[2][6:-1]) - 1
+            if n >= len(self.stack[-1].arguments):
+                raise Stop("an argument it was not called with")
+            self.store(words[1], self.stack[-1].arguments[n])
+        elif word in ("SFTON", "SFTOF"):
+            user = int(words[2][4:-1]) if len(words) > 2 and words[2][:2] == "UF" else 0
+            self.shift = (int(words[1][1:]), user) if word == "SFTON" else (-1, 0)
+        elif word == "DOUT" and words[1].startswith("OG"):
+            n, value = 8 * (int(words[1][4:-1]) - 1), self.value(words[2])
+            if not 0 <= value <= 255:
+                raise Stop("result out of range")
+            self.out = self.out & ~(255 << n) | int(value) << n
+            yield "dout", line, self.moves - self.early, n, 8, int(value)
         elif word == "DOUT":
             n = int(words[1][4:-1]) - 1
             self.out = self.out & ~(1 << n) | (words[2] == "ON") << n
-            yield "dout", line, self.moves, n, int(words[2] == "ON")
+            yield "dout", line, self.moves - self.early, n, 1, int(words[2] == "ON")
         elif word == "AOUT":
             volt = self.value(words[2])
             if not -10 <= volt <= 10:
                 raise Stop("result out of range")
-            yield "aout", line, self.moves, int(words[1][4:-1]) - 1, float(volt)
+            yield "aout", line, self.moves - self.early, int(words[1][4:-1]) - 1, float(volt)
         elif word in ("INC", "DEC"):
             self.calculate({"INC": "ADD", "DEC": "SUB"}[word], words[1], "1")
         else:
@@ -296,6 +381,7 @@ class Brute:
         tag = tag or ("VJ" if path == 0 else self.usual)
         tool, user = self.frames[points[-1]]
         self.moves += 1
+        self.early = int("NWAIT" in words)
         yield (
             "move",
             line,
@@ -309,4 +395,5 @@ class Brute:
             float(tags.get("CR", 0)),
             self.tool if tool < 0 else tool,
             self.user if user < 0 else user,
+            *self.shift,
         )

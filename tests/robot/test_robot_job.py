@@ -19,6 +19,7 @@ P001 X=900 Y=0 Z=350 A=180 B=0 C=0 TOOL=1
 P002 X=1000 Y=100 Z=350 A=180 B=0 C=0
 P003 X=1100 Y=0 Z=350 A=180 B=0 C=0
 P004 X=0 Y=0 Z=0 A=180 B=0 C=0 USER=2 TOOL=0
+P005 X=0 Y=10 Z=-5 A=0 B=0 C=0
 """
 FRAMES = {0: (-1, -1), 1: (1, -1), 2: (-1, -1), 3: (-1, -1), 4: (0, 2)}  # tool, user
 PATIENCE = 2000  # lines that nobody sees, before a program is taken for endless
@@ -33,18 +34,29 @@ def picked(*values: object) -> st.SearchStrategy[str]:
     return st.sampled_from([str(v) for v in values])
 
 
-WHOLE = picked("B000", "B1", "I000", "I001", "D000", "D1")
-REAL = picked("R000", "R001")
+WHOLE = picked("B000", "B1", "I000", "I001", "D000", "D1", "LB000", "LD009")
+REAL = picked("R000", "R001", "LR000")
 VARIABLE = WHOLE | REAL
 CONSTANT = picked(0, 1, 2, 3, -1, 100, -7)
 OUTPUT = picked("OT#(1)", "OT#(2)", "OT#(32)")
 INPUT = picked("IN#(1)", "IN#(2)", "IN#(32)")
+GROUP = picked("IG#(1)", "IG#(4)", "OG#(1)", "OG#(4)")
 COMPARED = st.builds(
-    "{}{}{}".format, VARIABLE, picked("=", "<>", "<", ">", "<=", ">="), CONSTANT | VARIABLE
+    "{}{}{}".format, VARIABLE | GROUP, picked("=", "<>", "<", ">", "<=", ">="), CONSTANT | VARIABLE
 )
 SIGNAL = st.builds("{}{}{}".format, INPUT | OUTPUT, picked("=", "<>"), picked("ON", "OFF"))
 ANALOG = st.builds("AI#({}){}{}".format, picked(1, 8), picked("<", ">="), picked(0, 0.5, "R000"))
-CONDITION = COMPARED | SIGNAL | ANALOG | st.builds("({})".format, COMPARED | SIGNAL)
+ONE = COMPARED | SIGNAL | ANALOG | st.builds("({})".format, COMPARED | SIGNAL)
+PLAIN = COMPARED | SIGNAL | ANALOG
+CONDITION = (
+    ONE
+    | st.builds(
+        lambda word, parts: f" {word} ".join(parts),
+        picked("AND", "OR"),
+        st.lists(ONE, min_size=2, max_size=3),
+    )
+    | st.builds("({} {} {})".format, PLAIN, picked("AND", "OR"), PLAIN)
+)
 MAYBE_IF = st.just("") | st.builds(" IF {}".format, CONDITION)
 SECONDS = picked("0.00", "0.0001", "0.00025", "0.001")
 ZONE = picked("", " PL=0", " PL=3", " CR=2.5")
@@ -55,9 +67,17 @@ ARC = st.builds(
     TAGS,
     picked("NOP", "DOUT OT#(4) ON"),
 )
+NWAIT = picked("", "", " NWAIT")
+ARGUMENTS = st.builds(
+    "".join, st.lists(st.builds(" ARGF{}".format, CONSTANT | VARIABLE), max_size=2)
+)
 SIMPLE = st.one_of(
-    st.builds("MOVJ P00{}{}{}".format, picked(0, 1, 4), picked("", " VJ=50.00"), ZONE),
-    st.builds("MOVL P00{}{}".format, picked(0, 1, 2, 4), TAGS),
+    st.builds("MOVJ P00{}{}{}{}".format, picked(0, 1, 4), picked("", " VJ=50.00"), ZONE, NWAIT),
+    st.builds("MOVL P00{}{}{}".format, picked(0, 1, 2, 4), TAGS, NWAIT),
+    picked("CWAIT", "SFTON P005", "SFTON P005 UF#(2)", "SFTON P005 BF", "SFTOF", 'MSG "words"'),
+    st.builds("DOUT {} {}".format, picked("OG#(1)", "OG#(4)"), picked(0, 1, 255) | WHOLE),
+    st.builds("DIN {} {}".format, WHOLE, GROUP),
+    st.builds("GETARG {} IARG#({})".format, VARIABLE, picked(1, 2)),
     st.builds("MOVC P002 P003{}\nNOP".format, TAGS),
     ARC,
     picked("SPEED VJ=20", "SPEED V=50 VR=5", "SPEED VR=3 VJ=30", "SPEED V=77"),
@@ -75,7 +95,7 @@ SIMPLE = st.one_of(
     st.builds("TIMER T={}".format, SECONDS),
     st.builds("PAUSE{}".format, MAYBE_IF),
     st.builds("RET IF {}".format, CONDITION),
-    st.builds("CALL JOB:{}{}".format, picked(*JOBS), MAYBE_IF),
+    st.builds("CALL JOB:{}{}{}".format, picked(*JOBS), ARGUMENTS, MAYBE_IF),
     st.builds("JUMP JOB:{} IF {}".format, picked(*JOBS), CONDITION),
 )
 
@@ -91,7 +111,8 @@ class Writer:
 
     def block(self, depth: int, scopes: list[list[str]]) -> None:
         for _ in range(self.draw(st.integers(1, 5))):
-            kinds = ("simple",) * 6 + ("label", "jump") + ("if", "loop", "while") * (depth < 3)
+            blocks = ("if", "loop", "while", "for", "switch") * (depth < 3)
+            kinds = ("simple",) * 6 + ("label", "jump") + blocks
             getattr(self, self.draw(st.sampled_from(kinds)) + "_")(depth, scopes)
 
     def simple_(self, depth: int, scopes: list[list[str]]) -> None:
@@ -122,6 +143,24 @@ class Writer:
         self.lines.append("LOOP" + self.draw(picked("", " 0", " 1", " 2", " 5", " I000", " B000")))
         self.block(depth + 1, [*scopes, []])
         self.lines.append("ENDLOOP")
+
+    def for_(self, depth: int, scopes: list[list[str]]) -> None:
+        name = self.draw(WHOLE)
+        begin, end = self.draw(picked(0, 1, 3) | WHOLE), self.draw(picked(0, 2, 4) | WHOLE)
+        step = self.draw(picked("", " STEP 2", " STEP -1"))
+        self.lines.append(f"FOR {name}{self.draw(picked('=', ' = '))}{begin} TO {end}{step}")
+        self.block(depth + 1, scopes)
+        self.lines.append(f"NEXT {name}")
+
+    def switch_(self, depth: int, scopes: list[list[str]]) -> None:
+        self.lines.append("SWITCH " + self.draw(WHOLE | GROUP))
+        for _ in range(self.draw(st.integers(0, 2))):
+            self.lines.append("CASE " + self.draw(picked(0, 1, "0,5", "B000,3") | WHOLE))
+            self.block(depth + 1, scopes)
+        if self.draw(st.booleans()):
+            self.lines.append("DEFAULT")
+            self.block(depth + 1, scopes)
+        self.lines.append("ENDSWITCH")
 
     def while_(self, depth: int, scopes: list[list[str]]) -> None:
         self.lines.append("WHILE " + self.draw(CONDITION))
@@ -156,7 +195,7 @@ class Core:
     def next(self, brute: Brute) -> tuple[object, ...]:
         """The next request, in the terms of the other one."""
         w = brute.world
-        r = (ctypes.c_double * 16)()
+        r = (ctypes.c_double * 19)()
         LIBRARY.robot_job_steps_next(
             ctypes.c_int64(w.now),
             ctypes.c_int64(w.reached),
@@ -167,9 +206,11 @@ class Core:
         )
         kind, head = ANSWERS[int(r[0])], (ANSWERS[int(r[0])], int(r[1]), int(r[2]))
         if kind == "move":
-            return (*head, *r[3:12])
-        if kind in ("dout", "aout"):
-            return (*head, r[12], r[13 if kind == "dout" else 14])
+            return (*head, *r[3:12], r[16], r[17])
+        if kind == "dout":
+            return (*head, r[12], r[18], r[13])
+        if kind == "aout":
+            return (*head, r[12], r[14])
         if kind == "fault":
             return (*head, LIBRARY.robot_job_steps_fault(int(r[15])).decode())
         return head

@@ -87,6 +87,7 @@ enum controller_error {
 struct controller_trouble {
     enum controller_error error;
     int32_t line;
+    int32_t job; /* number of the job that has it */
     enum robot_status status;
     struct robot_refusal refusal;
     enum robot_job_fault fault;

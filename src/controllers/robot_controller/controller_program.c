@@ -30,6 +30,7 @@ static bool fail(struct controller *s, enum controller_error error, const struct
 {
     s->trouble.error = error;
     s->trouble.line = order->line;
+    s->trouble.job = order->job;
     s->trouble.fault = s->orders.job.fault;
     controller_program_drop(s);
     return true;
@@ -64,24 +65,72 @@ enum robot_status controller_program_give(struct controller *s, const struct con
     return status;
 }
 
+/* A target by joints that is shifted becomes the pose of its tip, in the same branch and turns. */
+static void shift_target(const struct manipulator *arm, struct robot_target *t,
+                         const double shift[3])
+{
+    static const double TURN = 6.283185307179586;
+    if (shift[0] == 0.0 && shift[1] == 0.0 && shift[2] == 0.0) {
+        return;
+    }
+    if (t->by_joints) {
+        t->by_joints = false;
+        t->pose = manipulator_pose(arm, t->joint);
+        t->branch = opw_branch(&arm->opw, t->joint);
+        t->turned = true;
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            t->turn[i] = (int)round(t->joint[i] / TURN);
+        }
+    }
+    for (int i = 0; i < 3; i++) {
+        t->pose.at[i] += shift[i];
+    }
+}
+
+/* The branch of the wrist in which joint 4 is within 90 deg of its zero, or beyond: one of the two
+ * is, as they are half a turn apart. */
+static void settle_wrist(const struct manipulator *arm, const struct robot *r, int32_t wrist,
+                         struct robot_target *t)
+{
+    static const double TURN = 6.283185307179586;
+    double joint[OPW_JOINTS];
+    int which;
+
+    memcpy(joint, r->joint, sizeof joint);
+    t->branch &= ~OPW_FLIP;
+    if (manipulator_solve(arm, &t->pose, 1u << t->branch, NULL, joint, &which) == MANIPULATOR_FAR) {
+        return;
+    }
+    const double four = joint[3] - TURN * round(joint[3] / TURN);
+    const bool near = four > -TURN / 4.0 && four <= TURN / 4.0;
+    t->branch |= near == (wrist == ROBOT_JOB_WRIST_NEAR) ? 0 : OPW_FLIP;
+    t->open &= ~OPW_FLIP;
+}
+
 bool controller_program_move(struct controller *s, const struct controller_config *c,
                              struct order *order)
 {
     const struct pose *tool = order->plain ? &c->robot.arm.tool : &order->tool;
-    struct robot_move *m = &order->move;
+    struct robot_move m = order->move;
+    struct manipulator arm = c->robot.arm;
 
     if (!controller_program_ready(s, c, tool)) {
         return false;
     }
-    if (m->kind == ROBOT_CIRCLE) {
-        struct manipulator arm = c->robot.arm;
-        arm.tool = *tool;
+    arm.tool = *tool;
+    if (m.kind == ROBOT_CIRCLE) {
         const struct pose via =
             order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
-        memcpy(m->via, via.at, sizeof m->via);
+        for (int i = 0; i < 3; i++) {
+            m.via[i] = via.at[i] + order->shift[i];
+        }
+    }
+    shift_target(&arm, &m.target, order->shift);
+    if (order->wrist) {
+        settle_wrist(&arm, &s->robot, order->wrist, &m.target);
     }
     const enum robot_status status =
-        controller_program_give(s, c, m, order->line, &s->trouble.refusal);
+        controller_program_give(s, c, &m, order->line, &s->trouble.refusal);
     if (status != ROBOT_OK && status != ROBOT_BUSY) {
         s->trouble.status = status;
         return fail(s, CONTROLLER_MOVE, order);

@@ -167,4 +167,5 @@ void controller_configure(const struct controller_settings *s, struct controller
     set_layers(s, &c->layers);
     set_robot(s, &c->robot);
     set_orders(s, &c->orders);
+    memcpy(c->orders.pulses, c->robot.scale, sizeof c->orders.pulses);
 }

@@ -30,7 +30,8 @@ struct orders_config {
     double origin[INTERPRETER_SYSTEMS][AXES]; /* [mm], [deg] of G54 .. G59.3 */
     bool block_delete, optional_stop, tool_stop;
     enum robot_singular singular;
-    int32_t lines; /* most instructions of a job that one call carries out */
+    double pulses[OPW_JOINTS]; /* [pulses/rad] of the joints, signed as they are */
+    int32_t lines;             /* most instructions of a job that one call carries out */
 };
 
 enum order_kind {
@@ -52,6 +53,9 @@ struct order {
     struct robot_move move;
     struct robot_target via; /* where a circle passes */
     struct pose tool;        /* with which the move is made */
+    double shift[3];         /* [mm] by which target and via are shifted in the base */
+    int32_t wrist;           /* ROBOT_JOB_WRIST_NEAR, _FAR: it decides the branch of the wrist */
+    int32_t job;             /* number of the job it is from */
     bool plain;              /* that tool is the one of the arm's parameters */
     uint32_t mask, value;    /* digital outputs of the mask become those of the value */
     int32_t index;           /* analog output, from 0 */

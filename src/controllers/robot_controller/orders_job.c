@@ -13,26 +13,37 @@ static struct pose frame_pose(const struct robot_job_frame *f)
 /* A point becomes a target. What its configuration leaves open is what is nearest, or on a path
  * what the path leads to. */
 static void target_of(struct robot_target *t, const struct robot_job_point *p,
-                      const struct robot_job_frame *user)
+                      const struct robot_job_frame *user, const double pulses[OPW_JOINTS])
 {
     static const int TURNED[3] = { 0, 3, 5 };
     const int32_t said[3] = { p->shoulder, p->elbow, p->wrist };
 
-    t->by_joints = p->kind == ROBOT_JOB_JOINTS;
+    t->by_joints = p->kind != ROBOT_JOB_POSE;
     for (int i = 0; i < OPW_JOINTS; i++) {
-        t->joint[i] = p->value[i] * DEGREE;
+        t->joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / pulses[i] : p->value[i] * DEGREE;
         t->turn[i] = ROBOT_ANY_TURN;
     }
     const struct pose frame = frame_pose(user), there = pose_of(p->value, p->value + 3);
     t->pose = pose_product(&frame, &there);
     for (int i = 0; i < 3; i++) {
-        t->open |= said[i] == ROBOT_JOB_ANY ? FLAG[i] : 0;
+        t->open |= said[i] == ROBOT_JOB_ANY || said[i] >= ROBOT_JOB_WRIST_NEAR ? FLAG[i] : 0;
         t->branch |= said[i] == 1 ? FLAG[i] : 0;
         if (p->turn[i] != ROBOT_JOB_ANY_TURN) {
             t->turned = true;
             t->turn[TURNED[i]] = p->turn[i];
         }
     }
+}
+
+/* How far a shift goes in the base frame. */
+static void shift_of(double shift[3], const struct robot_job_point *p,
+                     const struct robot_job_frame *user)
+{
+    struct pose frame = frame_pose(user);
+    for (int i = 0; i < 3; i++) {
+        frame.at[i] = 0.0;
+    }
+    pose_point(&frame, p->value, shift);
 }
 
 static void job_move(struct order *order, const struct orders_config *c,
@@ -48,11 +59,18 @@ static void job_move(struct order *order, const struct orders_config *c,
     m->feed = r->tag == ROBOT_JOB_V ? r->speed : 0.0;
     m->spin = r->tag == ROBOT_JOB_VR ? r->speed * DEGREE : 0.0;
     m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
-    target_of(&m->target, &t->points->point[r->point], &t->points->user[r->user]);
+    const struct robot_job_point *p = robot_job_point(t->job, t->points, r->point);
+    target_of(&m->target, p, &t->points->user[r->user], c->pulses);
+    order->wrist = p->wrist >= ROBOT_JOB_WRIST_NEAR ? p->wrist : 0;
+    if (r->shift >= 0) {
+        shift_of(order->shift, robot_job_point(t->job, t->points, r->shift),
+                 &t->points->user[r->shift_user]);
+    }
     order->plain = r->tool == 0;
     order->tool = frame_pose(&t->points->tool[r->tool]);
     if (m->kind == ROBOT_CIRCLE) {
-        target_of(&order->via, &t->points->point[r->via], &t->points->user[r->user]);
+        target_of(&order->via, robot_job_point(t->job, t->points, r->via),
+                  &t->points->user[r->user], c->pulses);
     }
 }
 
@@ -63,6 +81,7 @@ void orders_job_next(struct orders *o, const struct orders_config *c, const stru
 
     robot_job_next(&o->job, t->job, t->points, in, c->lines, &r);
     order->line = r.line;
+    order->job = r.job;
     order->after = o->moves = o->job.moves;
     o->waits = r.answer == ROBOT_JOB_WAIT;
     switch (r.answer) {
@@ -72,8 +91,8 @@ void orders_job_next(struct orders *o, const struct orders_config *c, const stru
         break;
     case ROBOT_JOB_DOUT:
         order->kind = ORDER_OUT;
-        order->mask = 1u << r.index;
-        order->value = r.on ? order->mask : 0;
+        order->mask = (r.count == ROBOT_JOB_GROUP ? (1u << ROBOT_JOB_GROUP) - 1u : 1u) << r.index;
+        order->value = (uint32_t)r.on << r.index;
         order->after = r.after;
         break;
     case ROBOT_JOB_AOUT:

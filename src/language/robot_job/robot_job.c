@@ -8,7 +8,7 @@
 /* End the job that is being read. */
 static int end_job(struct robot_job_reading *in)
 {
-    if (in->p->jobs == 0) {
+    if (in->p->jobs == in->jobs) {
         return 0;
     }
     in->s.line = in->last;
@@ -29,8 +29,11 @@ static int begin_job(struct robot_job_reading *in, const char *name, int32_t len
     memset(job, 0, sizeof *job);
     memcpy(job->name, name, (size_t)length);
     job->start = p->count;
+    job->text = p->texts;
     job->line = in->last = in->s.line;
     in->end_line = 0;
+    in->section = ROBOT_JOB_INSIDE;
+    robot_job_positions_begin(in);
     return 0;
 }
 
@@ -53,9 +56,13 @@ static int header(struct robot_job_reading *in)
 {
     struct robot_job_scan *s = &in->s;
     struct robot_job_span name;
-    if (!s->name && !robot_job_scan_is(s, robot_job_scan_word(s), "JOB")) {
+    s->at = s->begin + s->slashes;
+    if (!robot_job_scan_is(s, robot_job_scan_word(s), s->slashes == 2 ? "NAME" : "JOB")) {
         s->at = s->begin;
         return 0;
+    }
+    if (s->slashes == 1) {
+        return 1; /* /JOB: its name follows */
     }
     const int32_t line = s->line, at = s->at;
     if (end_job(in)) {
@@ -71,7 +78,7 @@ static int header(struct robot_job_reading *in)
     }
     const int32_t other = job_of(in->p, s->text + name.at, name.length);
     if (other >= 0) {
-        s->r->other = in->p->job[other].line;
+        s->r->other = in->p->job[other].text == in->p->texts ? in->p->job[other].line : 0;
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_JOB_TWICE, name);
     }
     return begin_job(in, s->text + name.at, name.length) ? -1 : 1;
@@ -79,18 +86,28 @@ static int header(struct robot_job_reading *in)
 
 double robot_job_low(enum robot_job_operand_kind kind)
 {
-    return kind == ROBOT_JOB_B   ? 0.0
-           : kind == ROBOT_JOB_I ? INT16_MIN
-           : kind == ROBOT_JOB_D ? INT32_MIN
-                                 : -DBL_MAX;
+    switch (kind) {
+    case ROBOT_JOB_B:
+    case ROBOT_JOB_LB: return 0.0;
+    case ROBOT_JOB_I:
+    case ROBOT_JOB_LI: return INT16_MIN;
+    case ROBOT_JOB_D:
+    case ROBOT_JOB_LD: return INT32_MIN;
+    default:           return -DBL_MAX;
+    }
 }
 
 double robot_job_high(enum robot_job_operand_kind kind)
 {
-    return kind == ROBOT_JOB_B   ? UINT8_MAX
-           : kind == ROBOT_JOB_I ? INT16_MAX
-           : kind == ROBOT_JOB_D ? INT32_MAX
-                                 : DBL_MAX;
+    switch (kind) {
+    case ROBOT_JOB_B:
+    case ROBOT_JOB_LB: return UINT8_MAX;
+    case ROBOT_JOB_I:
+    case ROBOT_JOB_LI: return INT16_MAX;
+    case ROBOT_JOB_D:
+    case ROBOT_JOB_LD: return INT32_MAX;
+    default:           return DBL_MAX;
+    }
 }
 
 int32_t robot_job_find(const struct robot_job_program *p, const char *name)
@@ -125,52 +142,53 @@ static int find_label(struct robot_job_reading *in, struct robot_job_instruction
     return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_LABEL, name);
 }
 
-/* Jumps and calls get the numbers of the instructions that their labels and jobs stand for. */
-static int find_names(struct robot_job_reading *in)
+/* Jumps get the numbers of the instructions that their labels stand for. */
+static int find_labels(struct robot_job_reading *in)
 {
     struct robot_job_program *p = in->p;
-    int32_t job = -1;
-    for (int32_t i = 0; i < p->count; i++) {
+    int32_t job = in->jobs - 1;
+    for (int32_t i = in->first; i < p->count; i++) {
         struct robot_job_instruction *c = &p->instruction[i];
         while (job + 1 < p->jobs && p->job[job + 1].start <= i) {
             job++;
         }
-        if (c->level == ROBOT_JOB_ANY
-            || (c->op != ROBOT_JOB_OP_JUMP && c->op != ROBOT_JOB_OP_CALL)) {
-            continue;
-        }
         in->s.line = c->line;
-        if (c->level == 0) {
+        if (c->op == ROBOT_JOB_OP_JUMP && c->level == 0) {
             if (find_label(in, c, job)) {
                 return -1;
             }
-        } else {
-            const int32_t there = job_of(p, in->s.text + c->to, c->via);
-            if (there < 0) {
-                return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_JOB,
-                                            (struct robot_job_span){ c->to, c->via });
-            }
-            c->to = p->job[there].start;
+            c->level = ROBOT_JOB_ANY;
+            c->via = 0;
         }
-        c->via = 0;
     }
     return 0;
 }
 
-int robot_job_read(struct robot_job_program *p, const struct robot_job_points *points,
-                   const char *text, int64_t length, struct robot_job_report *r)
+void robot_job_begin_reading(struct robot_job_program *p)
 {
-    struct robot_job_reading in = { .p = p, .points = points };
+    p->count = p->jobs = p->labels = p->callees = p->positions = p->terms = p->texts = 0;
+}
+
+int robot_job_read_text(struct robot_job_program *p, const struct robot_job_points *points,
+                        const char *text, int64_t length, struct robot_job_report *r)
+{
+    struct robot_job_reading in = { .p = p, .points = points, .first = p->count, .jobs = p->jobs };
     int status;
 
-    p->count = p->jobs = p->labels = 0;
     if (robot_job_scan_begin(&in.s, text, length, r)) {
         return -1;
     }
+    r->text = p->texts;
     while ((status = robot_job_scan_line(&in.s)) > 0) {
         status = header(&in);
-        if (status == 0 && p->jobs == 0) {
+        if (status == 0 && p->jobs == in.jobs) {
             status = begin_job(&in, "MAIN", 4);
+        }
+        if (status == 0 && in.s.slashes > 0) {
+            status = robot_job_positions_word(&in) ? -1 : 1;
+        }
+        if (status == 0 && in.section != ROBOT_JOB_INSIDE) {
+            status = robot_job_positions_line(&in);
         }
         if (status < 0 || (status == 0 && robot_job_words(&in))) {
             return -1;
@@ -180,8 +198,61 @@ int robot_job_read(struct robot_job_program *p, const struct robot_job_points *p
     if (status < 0 || end_job(&in)) {
         return -1;
     }
-    if (p->jobs == 0) {
+    if (p->jobs == in.jobs) {
         return robot_job_scan_fault(&in.s, ROBOT_JOB_BAD_EMPTY, (struct robot_job_span){ 0, 0 });
     }
-    return find_names(&in);
+    if (find_labels(&in)) {
+        return -1;
+    }
+    p->texts++;
+    return 0;
+}
+
+static int32_t job_called(const struct robot_job_program *p, int32_t callee)
+{
+    return robot_job_find(p, p->callee[callee].name);
+}
+
+bool robot_job_wanted(const struct robot_job_program *p, int32_t callee)
+{
+    return job_called(p, callee) < 0;
+}
+
+int robot_job_end_reading(struct robot_job_program *p, struct robot_job_report *r)
+{
+    *r = (struct robot_job_report){ .fault = ROBOT_JOB_OK };
+    for (int32_t i = 0; i < p->count; i++) {
+        struct robot_job_instruction *c = &p->instruction[i];
+        if (c->level != 1 || (c->op != ROBOT_JOB_OP_JUMP && c->op != ROBOT_JOB_OP_CALL)) {
+            continue;
+        }
+        const struct robot_job_callee *name = &p->callee[c->to];
+        const int32_t there = job_called(p, c->to);
+        if (there < 0) {
+            *r = (struct robot_job_report){ .fault = ROBOT_JOB_BAD_JOB,
+                                            .line = name->line,
+                                            .column = name->column,
+                                            .offset = name->offset,
+                                            .length = name->length,
+                                            .text = name->text };
+            return -1;
+        }
+        c->to = p->job[there].start;
+        c->level = ROBOT_JOB_ANY;
+    }
+    return 0;
+}
+
+int robot_job_read(struct robot_job_program *p, const struct robot_job_points *points,
+                   const char *text, int64_t length, struct robot_job_report *r)
+{
+    robot_job_begin_reading(p);
+    return robot_job_read_text(p, points, text, length, r) || robot_job_end_reading(p, r) ? -1 : 0;
+}
+
+const struct robot_job_point *robot_job_point(const struct robot_job_program *p,
+                                              const struct robot_job_points *points, int32_t number)
+{
+    return number < ROBOT_JOB_POINTS ? &points->point[number]
+                                     : &p->position[number - ROBOT_JOB_POINTS].point;
 }

@@ -9,23 +9,30 @@
 #include "robot_job_points.h"
 
 enum {
-    ROBOT_JOB_INSTRUCTIONS = 4096, /* instructions */
+    ROBOT_JOB_INSTRUCTIONS = 16384, /* instructions */
     ROBOT_JOB_JOBS = 64,
-    ROBOT_JOB_LABELS = 1024,   /* of all jobs */
-    ROBOT_JOB_NAME_MAX = 32,   /* [characters] of a job or label */
-    ROBOT_JOB_BLOCKS = 16,     /* IF, LOOP, WHILE inside each other */
-    ROBOT_JOB_LOOPS = 8,       /* of them LOOP */
-    ROBOT_JOB_CALLS = 12,      /* CALL inside each other, as the maker's job stack */
-    ROBOT_JOB_VARIABLES = 100, /* of each kind */
-    ROBOT_JOB_SIGNALS = 32,    /* IN#(1) .. IN#(32), OT#(1) .. OT#(32) */
-    ROBOT_JOB_ANALOGS = 8,     /* AI#(1) .. AI#(8), AO#(1) .. AO#(8) */
-    ROBOT_JOB_LEVELS = 8       /* PL=0 .. PL=8 */
+    ROBOT_JOB_CALLEES = 256,     /* names of jobs that are called */
+    ROBOT_JOB_POSITIONS = 16384, /* in the jobs themselves */
+    ROBOT_JOB_TERMS = 4096,      /* further comparisons of conditions, arguments of calls */
+    ROBOT_JOB_LABELS = 1024,     /* of all jobs */
+    ROBOT_JOB_NAME_MAX = 32,     /* [characters] of a job or label */
+    ROBOT_JOB_BLOCKS = 16,       /* IF, LOOP, WHILE, FOR, SWITCH inside each other */
+    ROBOT_JOB_LOOPS = 8,         /* of them LOOP */
+    ROBOT_JOB_CALLS = 12,        /* CALL inside each other, as the maker's job stack */
+    ROBOT_JOB_VARIABLES = 100,   /* of each kind */
+    ROBOT_JOB_LOCALS = 10,       /* of each kind, in each call */
+    ROBOT_JOB_ARGUMENTS = 8,     /* of a call */
+    ROBOT_JOB_SIGNALS = 32,      /* IN#(1) .. IN#(32), OT#(1) .. OT#(32) */
+    ROBOT_JOB_GROUP = 8,         /* signals of IG#(n), OG#(n) */
+    ROBOT_JOB_ANALOGS = 8,       /* AI#(1) .. AI#(8), AO#(1) .. AO#(8) */
+    ROBOT_JOB_LEVELS = 8         /* PL=0 .. PL=8 */
 };
 
 #define ROBOT_JOB_VOLT_MAX 10.0 /* [V] of analog outputs, either sign */
 
-/* Kind of an operand: a constant, a variable (B 0 .. 255, I 16 bit, D 32 bit, R a double), a signal
- * or an analog channel. Signals and channels count from 0 here. */
+/* Kind of an operand: a constant, a variable (B 0 .. 255, I 16 bit, D 32 bit, R a double; LB LI LD
+ * LR those of a call), a signal, eight of them as a number, or an analog channel. Signals and
+ * channels count from 0 here. */
 enum robot_job_operand_kind {
     ROBOT_JOB_NOTHING,
     ROBOT_JOB_CONSTANT,
@@ -35,7 +42,13 @@ enum robot_job_operand_kind {
     ROBOT_JOB_R,
     ROBOT_JOB_IN,
     ROBOT_JOB_OT,
-    ROBOT_JOB_AI
+    ROBOT_JOB_AI,
+    ROBOT_JOB_IG,
+    ROBOT_JOB_OG,
+    ROBOT_JOB_LB,
+    ROBOT_JOB_LI,
+    ROBOT_JOB_LD,
+    ROBOT_JOB_LR
 };
 
 struct robot_job_operand {
@@ -54,6 +67,12 @@ enum robot_job_relation {
     ROBOT_JOB_AT_LEAST
 };
 
+/* One comparison. */
+struct robot_job_term {
+    enum robot_job_relation relation;
+    struct robot_job_operand left, right;
+};
+
 enum robot_job_path { ROBOT_JOB_JOINT, ROBOT_JOB_LINE, ROBOT_JOB_CIRCLE };
 
 /* What the speed of a move counts: VJ [% of the joints' highest speeds], V [mm/s] or VR [deg/s] of
@@ -68,6 +87,9 @@ enum robot_job_op {
     ROBOT_JOB_OP_USER,
     ROBOT_JOB_OP_DOUT,
     ROBOT_JOB_OP_AOUT,
+    ROBOT_JOB_OP_GROUP,
+    ROBOT_JOB_OP_SHIFT,
+    ROBOT_JOB_OP_GETARG,
     ROBOT_JOB_OP_SET,
     ROBOT_JOB_OP_ADD,
     ROBOT_JOB_OP_SUB,
@@ -75,6 +97,7 @@ enum robot_job_op {
     ROBOT_JOB_OP_DIV,
     ROBOT_JOB_OP_WAIT,
     ROBOT_JOB_OP_TIMER,
+    ROBOT_JOB_OP_REACHED,
     ROBOT_JOB_OP_JUMP,
     ROBOT_JOB_OP_UNLESS,
     ROBOT_JOB_OP_CALL,
@@ -86,14 +109,18 @@ enum robot_job_op {
 };
 
 /* One instruction. Its condition decides whether it is done; for WAIT, whether the wait is over;
- * for UNLESS (the beginning of IF, ELSEIF, WHILE), whether it does not jump. */
+ * for UNLESS (the beginning of IF, ELSEIF, WHILE, FOR, CASE), whether it does not jump. */
 struct robot_job_instruction {
     enum robot_job_op op;
     int32_t line;
     enum robot_job_relation relation;
     struct robot_job_operand left, right; /* compared; in SET .. DIV what changes, and by what */
-    int32_t to;  /* point; instruction; tool, user frame; level; signal, channel */
-    int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth */
+    int32_t more, terms;                  /* further comparisons: place and number */
+    bool any;                             /* one of them is enough */
+    int32_t argument, arguments;          /* of CALL: place and number; of GETARG: number from 0 */
+    bool early;  /* NWAIT: what follows a move need not wait until it is reached */
+    int32_t to;  /* point; instruction; tool, user frame; level; signal, channel; -1: no shift */
+    int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth; of a shift: user frame */
     enum robot_job_path path;
     enum robot_job_speed tag;
     int32_t inside; /* the LOOP it stands in, -1: none */
@@ -106,7 +133,21 @@ struct robot_job_instruction {
 struct robot_job {
     char name[ROBOT_JOB_NAME_MAX + 1];
     int32_t start; /* its first instruction */
+    int32_t text;  /* number of the text it is in, from 0 */
     int32_t line;
+};
+
+/* A job that is called or gone on in, and where that is said first. */
+struct robot_job_callee {
+    char name[ROBOT_JOB_NAME_MAX + 1];
+    int32_t text, line, column, offset, length;
+};
+
+/* A position that stands in a job: C00000 is the job's own, P00000 that of all jobs. */
+struct robot_job_position {
+    int32_t job; /* -1: of all */
+    int32_t number;
+    struct robot_job_point point;
 };
 
 struct robot_job_label {
@@ -116,16 +157,33 @@ struct robot_job_label {
 };
 
 struct robot_job_program {
-    int32_t count, jobs, labels;
+    int32_t count, jobs, labels, callees, positions, terms, texts;
     struct robot_job_instruction instruction[ROBOT_JOB_INSTRUCTIONS];
     struct robot_job job[ROBOT_JOB_JOBS];
     struct robot_job_label label[ROBOT_JOB_LABELS];
+    struct robot_job_callee callee[ROBOT_JOB_CALLEES];
+    struct robot_job_position position[ROBOT_JOB_POSITIONS];
+    struct robot_job_term term[ROBOT_JOB_TERMS]; /* of an argument: left */
 };
 
 /* Read a program that may go to these points. -1: it is refused, the report says why, and *p is
  * undefined. */
 int robot_job_read(struct robot_job_program *p, const struct robot_job_points *points,
                    const char *text, int64_t length, struct robot_job_report *r);
+
+/* The same from several texts, as folders of pendants have one for each job: begin, read text after
+ * text, the program's first; names that are called and have no job yet are those of texts to be read;
+ * end. */
+void robot_job_begin_reading(struct robot_job_program *p);
+int robot_job_read_text(struct robot_job_program *p, const struct robot_job_points *points,
+                        const char *text, int64_t length, struct robot_job_report *r);
+bool robot_job_wanted(const struct robot_job_program *p, int32_t callee);
+int robot_job_end_reading(struct robot_job_program *p, struct robot_job_report *r);
+
+/* A point by the number that instructions have: of the points file, or a position of a job. */
+const struct robot_job_point *robot_job_point(const struct robot_job_program *p,
+                                              const struct robot_job_points *points,
+                                              int32_t number);
 
 /* Least and greatest value of a variable of a kind: B, I, D; R takes anything finite. */
 double robot_job_low(enum robot_job_operand_kind kind);

@@ -54,10 +54,25 @@
     /* a signal compared with <, > or with what is neither ON nor OFF */ \
     X(ROBOT_JOB_BAD_COMPARE, "IN# and OT# compare by = or <> with ON or OFF") \
     X(ROBOT_JOB_BAD_EMPTY, "no instruction") \
+    /* AND and OR in one condition */ \
+    X(ROBOT_JOB_BAD_MIXTURE, "AND beside OR in one condition") \
+    X(ROBOT_JOB_BAD_BEFORE_CASE, "before the first CASE") \
+    /* CASE or DEFAULT behind DEFAULT; other: line of the DEFAULT */ \
+    X(ROBOT_JOB_BAD_AFTER_DEFAULT, "behind DEFAULT") \
+    X(ROBOT_JOB_BAD_NEXT, "NEXT of another variable") /* other: line of the FOR */ \
+    X(ROBOT_JOB_BAD_SHIFT, "a shift is a pose without a turn") \
+    /* INFORM's, but not of this controller */ \
+    X(ROBOT_JOB_BAD_LACKING, "INFORM that this controller lacks") \
+    X(ROBOT_JOB_BAD_AXES, "six values wanted, as many as the arm has axes") \
+    X(ROBOT_JOB_BAD_OTHER_AXES, "base or station axes, which the arm has not") \
+    X(ROBOT_JOB_BAD_OTHER_ROBOT, "a move of another robot, and there is one") \
+    X(ROBOT_JOB_BAD_POSITION, "position not in this job") \
+    X(ROBOT_JOB_BAD_CONFIGURATION, "///RCONF wants six numbers or more") \
     /* instructions, jobs, labels, blocks; high: how many may be */ \
     X(ROBOT_JOB_BAD_TOO_MANY, "too many") \
     /* while it runs */ \
     X(ROBOT_JOB_BAD_STACK, "CALL inside too many others") /* CALL deeper than ROBOT_JOB_CALLS */ \
+    X(ROBOT_JOB_BAD_ARGUMENT, "an argument it was not called with") \
     X(ROBOT_JOB_BAD_ZERO_DIVISION, "division by zero") \
     /* a result outside the range of its variable or output */ \
     X(ROBOT_JOB_BAD_RANGE, "result out of range") \
@@ -74,6 +89,7 @@ struct robot_job_report {
     int32_t column;         /* from 1 */
     int32_t offset, length; /* [byte] where the text at fault lies in the whole text */
     int32_t other;          /* another line that belongs to the fault, or 0 */
+    int32_t text;           /* number of the text it lies in, from 0 */
     double low, high;       /* the range that BAD_VALUE left; BAD_TOO_MANY has `high` alone */
 };
 

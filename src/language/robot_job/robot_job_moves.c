@@ -29,23 +29,38 @@ static int speed_tag(struct robot_job_scan *s, struct robot_job_span w, enum rob
     return robot_job_scan_number(s, low, high, value) ? -1 : 1;
 }
 
-/* Take P and the number of a point that is in the points file. 1: taken, 0: something else stands
- * here. */
+/* Take P and the number of a point that is in the points file or stands in a job, or C and that of
+ * a position of this job. 1: taken, 0: something else stands here. */
 static int take_point(struct robot_job_reading *in, int32_t *point)
 {
     struct robot_job_scan *s = &in->s;
     robot_job_scan_over(s);
     const int32_t at = s->at;
     const struct robot_job_span w = robot_job_scan_word(s);
+    const struct robot_job_span letter = { w.at, 1 };
+    const bool own = robot_job_scan_is(s, letter, "C");
     *point = robot_job_scan_digits(s, w);
-    if (*point < 0 || !robot_job_scan_is(s, (struct robot_job_span){ w.at, 1 }, "P")) {
+    if (*point < 0 || !(own || robot_job_scan_is(s, letter, "P"))) {
         s->at = at;
         return 0;
     }
-    if (*point >= ROBOT_JOB_POINTS || in->points->point[*point].kind == ROBOT_JOB_NO_POINT) {
-        return robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT, w);
+    if (own) {
+        *point = robot_job_positions_find(in, 'C', *point);
+        return *point >= 0 ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_POSITION, w);
     }
-    return 1;
+    if (*point >= ROBOT_JOB_POINTS || in->points->point[*point].kind == ROBOT_JOB_NO_POINT) {
+        *point = robot_job_positions_find(in, 'P', *point);
+    }
+    return *point >= 0 ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT, w);
+}
+
+/* Whether a word is a position of axes outside the arm: BC00000, EC00000, BP000, EX000. */
+static bool other_axes(const struct robot_job_scan *s, struct robot_job_span w)
+{
+    const struct robot_job_span two = { w.at, 2 };
+    return w.length > 2 && s->text[w.at + 2] >= '0' && s->text[w.at + 2] <= '9'
+           && (robot_job_scan_is(s, two, "BC") || robot_job_scan_is(s, two, "EC")
+               || robot_job_scan_is(s, two, "BP") || robot_job_scan_is(s, two, "EX"));
 }
 
 static int take_tag(struct robot_job_scan *s, struct robot_job_span w,
@@ -68,9 +83,20 @@ static int take_tag(struct robot_job_scan *s, struct robot_job_span w,
                    ? 0
                    : robot_job_scan_fault(s, ROBOT_JOB_BAD_KIND, w);
     }
+    if (robot_job_scan_is(s, w, "NWAIT")) {
+        if (c->early) {
+            return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+        }
+        c->early = true;
+        return 0;
+    }
     const bool level = robot_job_scan_is(s, w, "PL");
     if (!level && !robot_job_scan_is(s, w, "CR")) {
-        return robot_job_scan_fault(s, ROBOT_JOB_BAD_WORD, w);
+        return robot_job_scan_fault(s,
+                                    other_axes(s, w)        ? ROBOT_JOB_BAD_OTHER_AXES
+                                    : robot_job_lacks(s, w) ? ROBOT_JOB_BAD_LACKING
+                                                            : ROBOT_JOB_BAD_WORD,
+                                    w);
     }
     if (c->level != ROBOT_JOB_ANY || c->corner > 0.0) {
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
@@ -84,7 +110,8 @@ static int take_tag(struct robot_job_scan *s, struct robot_job_span w,
 
 static int same_frames(struct robot_job_reading *in, int32_t via, int32_t end)
 {
-    const struct robot_job_point *a = &in->points->point[via], *b = &in->points->point[end];
+    const struct robot_job_point *a = robot_job_point(in->p, in->points, via),
+                                 *b = robot_job_point(in->p, in->points, end);
     return a->tool == b->tool && a->user == b->user
                ? 0
                : robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_FRAMES);
@@ -124,6 +151,27 @@ static int arc_point(struct robot_job_reading *in, struct robot_job_instruction 
     }
 }
 
+/* Report what stands where a point is wanted. */
+static int no_point(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    const int32_t at = s->at;
+    const struct robot_job_span w = robot_job_scan_word(s);
+    if (other_axes(s, w)) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_OTHER_AXES, w);
+    }
+    s->at = at;
+    return robot_job_scan_unexpected(s);
+}
+
+/* Whether the move of another robot follows, +MOVJ. */
+static bool another_move(const struct robot_job_scan *s)
+{
+    return s->end - s->at > 4
+           && robot_job_scan_is(s, (struct robot_job_span){ s->at + 1, 3 }, "MOV")
+           && s->text[s->at] == '+';
+}
+
 int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
 {
     struct robot_job_scan *s = &in->s;
@@ -135,7 +183,7 @@ int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
     c->path = path;
     const int status = take_point(in, &c->to);
     if (status <= 0) {
-        return status < 0 ? -1 : robot_job_scan_unexpected(s);
+        return status < 0 ? -1 : no_point(in);
     }
     if (path == ROBOT_JOB_CIRCLE) {
         int32_t end;
@@ -149,7 +197,8 @@ int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
     while (!robot_job_scan_over(s)) {
         const struct robot_job_span w = robot_job_scan_word(s);
         if (w.length == 0) {
-            return robot_job_scan_unexpected(s);
+            return another_move(s) ? robot_job_scan_fault_line(s, ROBOT_JOB_BAD_OTHER_ROBOT)
+                                   : robot_job_scan_unexpected(s);
         }
         if (take_tag(s, w, c)) {
             return -1;
@@ -159,6 +208,47 @@ int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
         return arc_point(in, c);
     }
     return second ? same_frames(in, c->via, c->to) : 0;
+}
+
+/* Read SFTON P001, SFTON P001 BF or RF, SFTON P001 UF#(1). */
+int robot_job_move_shift(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_SHIFT);
+    if (!c) {
+        return -1;
+    }
+    robot_job_scan_over(s);
+    struct robot_job_span at = { s->at, 0 };
+    const int status = take_point(in, &c->to);
+    if (status <= 0) {
+        return status < 0 ? -1 : robot_job_scan_unexpected(s);
+    }
+    at.length = s->at - at.at;
+    const struct robot_job_point *p = robot_job_point(in->p, in->points, c->to);
+    if (p->kind != ROBOT_JOB_POSE || p->value[3] != 0.0 || p->value[4] != 0.0
+        || p->value[5] != 0.0) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_SHIFT, at);
+    }
+    if (robot_job_scan_over(s)) {
+        return 0;
+    }
+    at = robot_job_scan_word(s);
+    if (robot_job_scan_is(s, at, "BF") || robot_job_scan_is(s, at, "RF")) {
+        return 0;
+    }
+    if (!robot_job_scan_is(s, at, "UF")) {
+        s->at = at.length > 0 ? at.at : s->at;
+        return robot_job_scan_is(s, at, "TF") || robot_job_scan_is(s, at, "MTF")
+                   ? robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, at)
+                   : robot_job_scan_unexpected(s);
+    }
+    if (robot_job_operand_channel(in, ROBOT_JOB_FRAMES - 1, &c->via)) {
+        return -1;
+    }
+    c->via++; /* user frames count from 1 here, 0 is the base */
+    at.length = s->at - at.at;
+    return in->points->user[c->via].defined ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
 }
 
 int robot_job_move_speed(struct robot_job_reading *in)

@@ -126,7 +126,7 @@ static int take_flag(struct robot_job_scan *s, struct robot_job_span w, struct r
     return 0;
 }
 
-static struct robot_job_point no_point(void)
+struct robot_job_point robot_job_point_open(void)
 {
     return (struct robot_job_point){ .shoulder = ROBOT_JOB_ANY,
                                      .elbow = ROBOT_JOB_ANY,
@@ -196,7 +196,7 @@ static int read_point(struct robot_job_scan *s, struct robot_job_points *points,
         s->r->other = p->line;
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT_TWICE, w);
     }
-    *p = no_point();
+    *p = robot_job_point_open();
     p->line = s->line;
     return read_tags(s, points, p);
 }
@@ -212,7 +212,7 @@ int robot_job_points_read(struct robot_job_points *p, const char *text, int64_t 
     robot_job_points_clear(p);
     while ((status = robot_job_scan_line(&s)) > 0) {
         struct robot_job_span w;
-        if (s.name || (w = robot_job_scan_word(&s)).length == 0) {
+        if (s.slashes > 0 || (w = robot_job_scan_word(&s)).length == 0) {
             s.at = s.begin;
             return robot_job_scan_unexpected(&s);
         }

@@ -22,21 +22,30 @@ enum {
     ROBOT_JOB_FRAMES = 64         /* tools 0 (flange) .. 63, user frames 0 (base) .. 63 */
 };
 
-enum robot_job_point_kind { ROBOT_JOB_NO_POINT, ROBOT_JOB_JOINTS, ROBOT_JOB_POSE };
+enum robot_job_point_kind {
+    ROBOT_JOB_NO_POINT,
+    ROBOT_JOB_JOINTS,
+    ROBOT_JOB_POSE,
+    ROBOT_JOB_PULSES
+};
 
 /* A configuration may leave these open. The arm then takes what is nearest to where it stands. */
 enum { ROBOT_JOB_ANY = -1, ROBOT_JOB_ANY_TURN = -128, ROBOT_JOB_TURN_MAX = 100 };
 
+/* A wrist told as Yaskawa's pendants do, by joint 4: within 90 deg of its zero, whole turns aside
+ * (their "flip"), or beyond ("no flip"). */
+enum { ROBOT_JOB_WRIST_NEAR = 2, ROBOT_JOB_WRIST_FAR = 3 };
+
 struct robot_job_point {
-    double value[6]; /* joints [deg], or X Y Z [mm] A B C [deg] */
+    double value[6]; /* joints [deg] or [pulses], or X Y Z [mm] A B C [deg] */
     enum robot_job_point_kind kind;
     int32_t shoulder;   /* 0 FRONT, 1 BACK, ROBOT_JOB_ANY */
     int32_t elbow;      /* 0 UP, 1 DOWN, ROBOT_JOB_ANY */
-    int32_t wrist;      /* 0 NOFLIP, 1 FLIP, ROBOT_JOB_ANY */
+    int32_t wrist;      /* 0 NOFLIP, 1 FLIP, ROBOT_JOB_WRIST_NEAR, _FAR, ROBOT_JOB_ANY */
     int32_t turn[3];    /* of joints 1 4 6: n for 360 n - 180 < joint <= 360 n + 180 [deg],
                          * -100 .. 100, or ROBOT_JOB_ANY_TURN */
     int32_t tool, user; /* ROBOT_JOB_ANY: those in force when the program goes to the point */
-    int32_t line;       /* of the points file; 0: the point was taught */
+    int32_t line;       /* of its file; 0: the point was taught */
 };
 
 struct robot_job_frame {
@@ -49,6 +58,9 @@ struct robot_job_points {
     struct robot_job_point point[ROBOT_JOB_POINTS];
     struct robot_job_frame tool[ROBOT_JOB_FRAMES], user[ROBOT_JOB_FRAMES];
 };
+
+/* A point of which nothing is said. */
+struct robot_job_point robot_job_point_open(void);
 
 /* Leave no points, and of the frames tool 0 and user frame 0 alone. */
 void robot_job_points_clear(struct robot_job_points *p);

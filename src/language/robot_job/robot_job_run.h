@@ -3,9 +3,9 @@
  * The program runs ahead of the motion, so that corners can be rounded. Moves are numbered 1, 2, ..
  * as they are requested, and the caller says how many it has reached:
  *  - a move joins the queue of the motion;
- *  - an output carries `after`, the number of the latest move requested before it. It changes when
- *    that move has reached its point: at rest, or where the path passes the corner if that is
- *    rounded; at once if reached >= after. So it costs no stop;
+ *  - an output carries `after`, the number of the latest move requested before it, or of the one
+ *    before that if it is NWAIT. It changes when that move has reached its point: at rest, or where
+ *    the path passes the corner if that is rounded; at once if reached >= after. So it costs no stop;
  *  - what looks at inputs or at time (IF and WAIT on IN# or AI#, DIN, AIN, TIMER, PAUSE, the end)
  *    waits until all moves before it are reached: ROBOT_JOB_REACH. The caller may count a move as
  *    reached where its zone begins.
@@ -34,6 +34,10 @@ struct robot_job_start {
 struct robot_job_call {
     int32_t pc;                    /* next instruction; of a caller: where it goes on afterwards */
     int32_t loop[ROBOT_JOB_LOOPS]; /* rounds left, -1: for ever */
+    int32_t arguments;             /* number of those that it was called with */
+    double argument[ROBOT_JOB_ARGUMENTS];
+    int32_t whole[3][ROBOT_JOB_LOCALS]; /* LB LI LD */
+    double real[ROBOT_JOB_LOCALS];      /* LR */
 };
 
 /* State of a program that runs: plain bytes without pointers. */
@@ -49,6 +53,8 @@ struct robot_job_run {
     double speed[4];                       /* by enum robot_job_speed; [0] is not used */
     int32_t rotary;                        /* MOVL and MOVC without a speed take VR: 0 or 1 */
     int32_t level, tool, user;
+    int32_t shift, shift_user;  /* point by which the moves are shifted, -1: none; its frame */
+    int32_t early;              /* the latest move is NWAIT: 1 */
     int32_t ended;              /* 1: the program is over */
     enum robot_job_fault fault; /* that stopped it */
 };
@@ -63,7 +69,7 @@ struct robot_job_inputs {
 
 enum robot_job_answer {
     ROBOT_JOB_MOVE,  /* go to a point */
-    ROBOT_JOB_DOUT,  /* digital output `index` becomes `on`, after a move */
+    ROBOT_JOB_DOUT,  /* digital outputs from `index` become `on`, after a move */
     ROBOT_JOB_AOUT,  /* analog output `index` becomes `volt`, after a move */
     ROBOT_JOB_REACH, /* needs reached = after; ask again */
     ROBOT_JOB_WAIT,  /* WAIT, TIMER: ask again */
@@ -76,6 +82,7 @@ enum robot_job_answer {
 struct robot_job_request {
     enum robot_job_answer answer;
     int32_t line;  /* of the program */
+    int32_t job;   /* number of the job in which that is */
     int64_t after; /* MOVE: its own number; else the latest move before */
     /* MOVE */
     enum robot_job_path path;
@@ -85,10 +92,13 @@ struct robot_job_request {
     int32_t level;      /* PL; 0: stop at the point */
     double corner;      /* CR [mm]; 0: by level */
     int32_t tool, user; /* those of the point, or in force */
+    int32_t shift;      /* point that says how far it is shifted, -1: not */
+    int32_t shift_user; /* user frame in which that counts */
     /* DOUT, AOUT */
     int32_t index; /* from 0 */
-    int32_t on;
-    double volt; /* [V] -10 .. 10 */
+    int32_t count; /* DOUT: number of outputs from there, 1 or ROBOT_JOB_GROUP */
+    int32_t on;    /* their levels as a number */
+    double volt;   /* [V] -10 .. 10 */
     /* FAULT */
     enum robot_job_fault fault;
 };

@@ -1,6 +1,7 @@
 #include "robot_job_scan.h"
 
 #include <math.h>
+#include <stddef.h>
 
 static bool blank(char c)
 {
@@ -67,7 +68,7 @@ int robot_job_scan_unexpected(struct robot_job_scan *s)
     return robot_job_scan_fault(s, ROBOT_JOB_BAD_EXTRA, p);
 }
 
-/* Where a comment begins in text[at, end), or end; the // of //NAME is none. */
+/* Where a comment begins in text[at, end), or end; the // of a pendant's word is none. */
 static int32_t comment(const struct robot_job_scan *s, int32_t at, int32_t end)
 {
     while (at < end && s->text[at] != '\''
@@ -75,6 +76,32 @@ static int32_t comment(const struct robot_job_scan *s, int32_t at, int32_t end)
         at++;
     }
     return at;
+}
+
+/* Number of / in front of a word of a pendant's file; 0: the line has none. */
+static int32_t pendant_word(struct robot_job_scan *s)
+{
+    static const struct {
+        char slashes;
+        char word[9];
+    } WORDS[] = { { 1, "JOB" },     { 2, "NAME" },  { 2, "POS" },  { 2, "INST" },
+                  { 2, "ARGINFO" }, { 3, "TOOL" },  { 3, "USER" }, { 3, "POSTYPE" },
+                  { 3, "RECTAN" },  { 3, "RCONF" }, { 3, "PULSE" } };
+    int32_t found = 0;
+    s->at = s->begin;
+    while (s->at < s->end && s->text[s->at] == '/') {
+        s->at++;
+    }
+    const int32_t slashes = s->at - s->begin;
+    const struct robot_job_span w = robot_job_scan_word(s);
+    for (size_t i = 0; i < sizeof WORDS / sizeof WORDS[0] && slashes > 0; i++) {
+        if (slashes == WORDS[i].slashes && robot_job_scan_is(s, w, WORDS[i].word)
+            && (i == 1 || w.at == s->begin + slashes)) { /* a blank is in comments, but for NAME */
+            found = slashes;
+        }
+    }
+    s->at = s->begin;
+    return found;
 }
 
 int robot_job_scan_line(struct robot_job_scan *s)
@@ -101,13 +128,10 @@ int robot_job_scan_line(struct robot_job_scan *s)
         while (s->begin < end && blank(s->text[s->begin])) {
             s->begin++;
         }
-        s->at = s->begin + 2;
         s->end = end;
-        s->name = comment(s, s->begin, end) == s->begin && s->at < end
-                  && robot_job_scan_is(s, robot_job_scan_word(s), "NAME");
-        s->at = s->name ? s->at : s->begin;
-        s->end = comment(s, s->at, end);
-        while (s->end > s->at && blank(s->text[s->end - 1])) {
+        s->slashes = pendant_word(s);
+        s->end = comment(s, s->begin + s->slashes, end);
+        while (s->end > s->begin && blank(s->text[s->end - 1])) {
             s->end--;
         }
         if (s->end > s->begin) {

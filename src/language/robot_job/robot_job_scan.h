@@ -15,7 +15,7 @@ struct robot_job_scan {
     int32_t line;       /* number of this line, from 1 */
     int32_t begin, end; /* [byte] this line without the blanks around it, comment and line end */
     int32_t at;         /* [byte] where the part begins that has not been read yet */
-    bool name;          /* the line begins with //NAME, which has been read */
+    int32_t slashes;    /* number of / in front of a word that pendants write so, or 0 */
     struct robot_job_report *r;
 };
 

@@ -2,12 +2,14 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 enum {
-    WHOLE = 1u << ROBOT_JOB_B | 1u << ROBOT_JOB_I | 1u << ROBOT_JOB_D,
-    VARIABLE = WHOLE | 1u << ROBOT_JOB_R,
+    WHOLE = ROBOT_JOB_WHOLES,
+    REAL = 1u << ROBOT_JOB_R | 1u << ROBOT_JOB_LR,
+    VARIABLE = WHOLE | REAL,
     VALUE = VARIABLE | 1u << ROBOT_JOB_CONSTANT,
-    SIGNAL = 1u << ROBOT_JOB_IN | 1u << ROBOT_JOB_OT
+    SIGNAL = 1u << ROBOT_JOB_IN | 1u << ROBOT_JOB_OT | 1u << ROBOT_JOB_IG | 1u << ROBOT_JOB_OG
 };
 
 /* What may follow a word in its line. */
@@ -26,10 +28,29 @@ enum form {
     END,
     LABEL,
     BLOCK,
+    SHIFT,
+    UNSHIFT,
+    ARGUMENT,
+    MESSAGE,
     NOTHING
 };
 
-enum block { IF, ELSEIF, ELSE, ENDIF, LOOP, ENDLOOP, WHILE, ENDWHILE };
+enum block {
+    IF,
+    ELSEIF,
+    ELSE,
+    ENDIF,
+    LOOP,
+    ENDLOOP,
+    WHILE,
+    ENDWHILE,
+    FOR,
+    NEXT,
+    SWITCH,
+    CASE,
+    DEFAULT,
+    ENDSWITCH
+};
 
 /* A word: what follows it, what it becomes (a path, an instruction, a part of a block; of FRAME and
  * OUTPUT one of two), kinds of its operands. */
@@ -49,7 +70,7 @@ static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "DOUT", OUTPUT, ROBOT_JOB_OP_DOUT, 0, 0 },
                                      { "AOUT", OUTPUT, ROBOT_JOB_OP_AOUT, 0, 0 },
                                      { "DIN", ARITHMETIC, ROBOT_JOB_OP_SET, WHOLE, SIGNAL },
-                                     { "AIN", ARITHMETIC, ROBOT_JOB_OP_SET, 1u << ROBOT_JOB_R,
+                                     { "AIN", ARITHMETIC, ROBOT_JOB_OP_SET, REAL,
                                        1u << ROBOT_JOB_AI },
                                      { "SET", ARITHMETIC, ROBOT_JOB_OP_SET, VARIABLE, VALUE },
                                      { "ADD", ARITHMETIC, ROBOT_JOB_OP_ADD, VARIABLE, VALUE },
@@ -77,8 +98,20 @@ static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "WHILE", BLOCK, WHILE, 0, 0 },
                                      { "WHILEEXP", BLOCK, WHILE, 0, 0 },
                                      { "ENDWHILE", BLOCK, ENDWHILE, 0, 0 },
-                                     { "NOP", NOTHING, 0, 0, 0 },
+                                     { "FOR", BLOCK, FOR, 0, 0 },
+                                     { "NEXT", BLOCK, NEXT, 0, 0 },
+                                     { "SWITCH", BLOCK, SWITCH, 0, 0 },
+                                     { "CASE", BLOCK, CASE, 0, 0 },
+                                     { "DEFAULT", BLOCK, DEFAULT, 0, 0 },
+                                     { "ENDSWITCH", BLOCK, ENDSWITCH, 0, 0 },
+                                     { "SFTON", SHIFT, 0, 0, 0 },
+                                     { "SFTOF", UNSHIFT, ROBOT_JOB_OP_SHIFT, 0, 0 },
+                                     { "GETARG", ARGUMENT, 0, 0, 0 },
+                                     { "CWAIT", NOTHING, ROBOT_JOB_OP_REACHED, 0, 0 },
+                                     { "MSG", MESSAGE, 0, 0, 0 },
+                                     { "NOP", NOTHING, ROBOT_JOB_OP_NOP, 0, 0 },
                                      { "LABEL", LABEL, 0, 0, 0 } };
+/* LABEL is the last one. */
 enum { WORD_COUNT = sizeof WORDS / sizeof WORDS[0] };
 
 struct robot_job_instruction *robot_job_reading_add(struct robot_job_reading *in,
@@ -106,7 +139,8 @@ static int check_constant(struct robot_job_reading *in, const struct robot_job_i
     struct robot_job_scan *s = &in->s;
     const double x = c->right.number;
     const double low = robot_job_low(c->left.kind), high = robot_job_high(c->left.kind);
-    if (c->right.kind != ROBOT_JOB_CONSTANT || c->left.kind == ROBOT_JOB_R) {
+    if (c->right.kind != ROBOT_JOB_CONSTANT || c->left.kind == ROBOT_JOB_R
+        || c->left.kind == ROBOT_JOB_LR) {
         return 0;
     }
     if (x != floor(x)) {
@@ -147,7 +181,28 @@ static int step(struct robot_job_reading *in, enum robot_job_op op)
     return 0;
 }
 
-/* Read DOUT OT#(n) ON or AOUT AO#(n) value. */
+/* Read the 0 to 255 of a group of outputs behind OG. */
+static int group(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    c->op = ROBOT_JOB_OP_GROUP;
+    if (robot_job_operand_channel(in, ROBOT_JOB_SIGNALS / ROBOT_JOB_GROUP, &c->to)) {
+        return -1;
+    }
+    robot_job_scan_over(s);
+    const int32_t at = s->at;
+    if (robot_job_operand(in, WHOLE | 1u << ROBOT_JOB_CONSTANT, &c->right)) {
+        return -1;
+    }
+    if (c->right.kind == ROBOT_JOB_CONSTANT) {
+        int32_t value;
+        s->at = at;
+        return robot_job_scan_whole(s, 0, (1 << ROBOT_JOB_GROUP) - 1, &value);
+    }
+    return 0;
+}
+
+/* Read DOUT OT#(n) ON, DOUT OG#(n) value or AOUT AO#(n) value. */
 static int output(struct robot_job_reading *in, bool digital)
 {
     struct robot_job_scan *s = &in->s;
@@ -158,12 +213,19 @@ static int output(struct robot_job_reading *in, bool digital)
     }
     robot_job_scan_over(s);
     const int32_t at = s->at;
+    if (digital && robot_job_scan_is(s, robot_job_scan_word(s), "OG")) {
+        return group(in, c);
+    }
+    s->at = at;
     if (!robot_job_scan_is(s, robot_job_scan_word(s), digital ? "OT" : "AO")) {
         s->at = at;
         return robot_job_scan_unexpected(s);
     }
     if (robot_job_operand_channel(in, digital ? ROBOT_JOB_SIGNALS : ROBOT_JOB_ANALOGS, &c->to)) {
         return -1;
+    }
+    if (digital) {
+        robot_job_scan_take(s, '=');
     }
     robot_job_scan_over(s);
     struct robot_job_span w = { s->at, 0 };
@@ -239,8 +301,54 @@ static int timer(struct robot_job_reading *in)
     return c ? robot_job_operand_time(in, c) : -1;
 }
 
-/* JUMP *LABEL, JUMP LABEL, JUMP JOB:NAME, CALL JOB:NAME; where that is, the end of the text tells:
- * until then `to` and `via` are the name, and `level` is 1 for a job. */
+/* The number of a job's name among those that are called; -1: there are too many. */
+static int32_t callee(struct robot_job_reading *in, struct robot_job_span name)
+{
+    struct robot_job_program *p = in->p;
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_callee one = { .text = p->texts,
+                                    .line = s->line,
+                                    .column = name.at - s->begin + 1,
+                                    .offset = name.at,
+                                    .length = name.length };
+    memcpy(one.name, s->text + name.at, (size_t)name.length);
+    for (int32_t i = 0; i < p->callees; i++) {
+        if (memcmp(p->callee[i].name, one.name, sizeof one.name) == 0) {
+            return i;
+        }
+    }
+    if (p->callees == ROBOT_JOB_CALLEES) {
+        s->r->high = ROBOT_JOB_CALLEES;
+        return robot_job_scan_fault_line(s, ROBOT_JOB_BAD_TOO_MANY);
+    }
+    p->callee[p->callees] = one;
+    return p->callees++;
+}
+
+/* Read the arguments of a call, ARGF10 ARGFB000, in brackets or not. */
+static int arguments(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    const bool bracket = robot_job_scan_take(s, '(');
+    c->argument = in->p->terms;
+    while (!robot_job_scan_over(s) && c->arguments < ROBOT_JOB_ARGUMENTS) {
+        struct robot_job_term t = { .relation = ROBOT_JOB_ALWAYS };
+        if (s->end - s->at < 4
+            || !robot_job_scan_is(s, (struct robot_job_span){ s->at, 4 }, "ARGF")) {
+            break;
+        }
+        s->at += 4;
+        if (robot_job_operand(in, VALUE, &t.left) || robot_job_operand_keep(in, &t)) {
+            return -1;
+        }
+        c->arguments++;
+    }
+    return !bracket || robot_job_scan_take(s, ')') ? 0 : robot_job_scan_unexpected(s);
+}
+
+/* JUMP *LABEL, JUMP LABEL, JUMP JOB:NAME, CALL JOB:NAME. Where that is, the end of the text tells,
+ * and of a job the end of all texts: until then `to` and `via` are the label's name, `level` is 0;
+ * or `to` is the number of the job's name, `level` is 1. */
 static int jump(struct robot_job_reading *in, enum robot_job_op op)
 {
     struct robot_job_scan *s = &in->s;
@@ -264,6 +372,13 @@ static int jump(struct robot_job_reading *in, enum robot_job_op op)
     }
     c->to = name.at;
     c->via = name.length;
+    if (c->level == 1) {
+        c->via = 0;
+        c->to = callee(in, name);
+        if (c->to < 0 || (op == ROBOT_JOB_OP_CALL && arguments(in, c))) {
+            return -1;
+        }
+    }
     return robot_job_operand_if(in, c);
 }
 
@@ -311,22 +426,66 @@ static int end(struct robot_job_reading *in)
     return robot_job_block_all_closed(in) || !robot_job_reading_add(in, ROBOT_JOB_OP_RET) ? -1 : 0;
 }
 
-static int nothing(struct robot_job_reading *in)
+static int nothing(struct robot_job_reading *in, enum robot_job_op op)
 {
-    return robot_job_reading_add(in, ROBOT_JOB_OP_NOP) ? 0 : -1;
+    return robot_job_reading_add(in, op) ? 0 : -1;
+}
+
+/* SFTOF: no shift from here on. */
+static int unshift(struct robot_job_reading *in)
+{
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_SHIFT);
+    if (c) {
+        c->to = -1;
+    }
+    return c ? 0 : -1;
+}
+
+/* Read GETARG LB000 IARG#(1). */
+static int argument(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_GETARG);
+    if (!c || robot_job_operand(in, VARIABLE, &c->left)) {
+        return -1;
+    }
+    robot_job_scan_over(s);
+    const int32_t at = s->at;
+    if (!robot_job_scan_is(s, robot_job_scan_word(s), "IARG")) {
+        s->at = at;
+        return robot_job_scan_unexpected(s);
+    }
+    return robot_job_operand_channel(in, ROBOT_JOB_ARGUMENTS, &c->argument);
+}
+
+/* MSG "words": nobody reads them here. */
+static int message(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    if (!robot_job_scan_take(s, '"')) {
+        return robot_job_scan_unexpected(s);
+    }
+    s->at = s->end;
+    return nothing(in, ROBOT_JOB_OP_NOP);
 }
 
 static int block(struct robot_job_reading *in, enum block what)
 {
     switch (what) {
-    case IF:      return robot_job_block_if(in);
-    case ELSEIF:  return robot_job_block_else(in, true);
-    case ELSE:    return robot_job_block_else(in, false);
-    case ENDIF:   return robot_job_block_endif(in);
-    case LOOP:    return robot_job_block_loop(in);
-    case ENDLOOP: return robot_job_block_endloop(in);
-    case WHILE:   return robot_job_block_while(in);
-    default:      return robot_job_block_endwhile(in);
+    case IF:        return robot_job_block_if(in);
+    case ELSEIF:    return robot_job_block_else(in, true);
+    case ELSE:      return robot_job_block_else(in, false);
+    case ENDIF:     return robot_job_block_endif(in);
+    case LOOP:      return robot_job_block_loop(in);
+    case ENDLOOP:   return robot_job_block_endloop(in);
+    case WHILE:     return robot_job_block_while(in);
+    case FOR:       return robot_job_block_for(in);
+    case NEXT:      return robot_job_block_next(in);
+    case SWITCH:    return robot_job_block_switch(in);
+    case CASE:      return robot_job_block_case(in, true);
+    case DEFAULT:   return robot_job_block_case(in, false);
+    case ENDSWITCH: return robot_job_block_endswitch(in);
+    default:        return robot_job_block_endwhile(in);
     }
 }
 
@@ -349,7 +508,11 @@ static int instruction(struct robot_job_reading *in, const struct word *w)
     case END:        return end(in);
     case LABEL:      return label(in);
     case BLOCK:      return block(in, (enum block)w->what);
-    default:         return nothing(in);
+    case SHIFT:      return robot_job_move_shift(in);
+    case UNSHIFT:    return unshift(in);
+    case ARGUMENT:   return argument(in);
+    case MESSAGE:    return message(in);
+    default:         return nothing(in, op);
     }
 }
 
@@ -367,7 +530,8 @@ static const struct word *first_word(struct robot_job_scan *s)
     }
     s->at = w.length > 0 ? s->at : s->begin;
     if (w.length > 0) {
-        robot_job_scan_fault(s, ROBOT_JOB_BAD_WORD, w);
+        robot_job_scan_fault(s, robot_job_lacks(s, w) ? ROBOT_JOB_BAD_LACKING : ROBOT_JOB_BAD_WORD,
+                             w);
     } else {
         robot_job_scan_unexpected(s);
     }
@@ -384,6 +548,10 @@ int robot_job_words(struct robot_job_reading *in)
     if (in->end_line > 0) {
         s->r->other = in->end_line;
         return robot_job_scan_fault_line(s, ROBOT_JOB_BAD_AFTER_END);
+    }
+    if (robot_job_block_before_case(in)
+        && !(word->form == BLOCK && word->what >= CASE && word->what <= ENDSWITCH)) {
+        return robot_job_scan_fault_line(s, ROBOT_JOB_BAD_BEFORE_CASE);
     }
     if (word->form != MOVE || word->what != ROBOT_JOB_CIRCLE) {
         const int32_t at = s->at;

@@ -31,7 +31,7 @@ static const struct {
     { "SET B000", "line 1: incomplete \"SET B000\"" },
     { "AOUT AO#(1)", "line 1: incomplete \"AOUT AO#(1)\"" },
     { "MOVJ VJ=50.00", "line 1: unexpected \"VJ=50.00\"" },
-    { "MOVJ C00000 VJ=50.00", "line 1: unexpected \"C00000\"" },
+    { "MOVJ C00000 VJ=50.00", "line 1: position not in this job \"C00000\"" },
     { "MOVJ P000 + VJ=50.00", "line 1: unexpected \"+\"" },
     { "MOVJ P000 P001", "line 1: unknown word \"P001\"" },
     { "MOVL P000 V=fast", "line 1: unexpected \"fast\"" },
@@ -56,7 +56,7 @@ static const struct {
     { "SPEED PL=1", "line 1: unexpected \"PL=1\"" },
     { "PL", "line 1: incomplete \"PL\"" },
     { "(NOP)", "line 1: unexpected \"(NOP)\"" },
-    { "/JOB", "line 1: unexpected \"/JOB\"" },
+    { "/MOVJ", "line 1: unexpected \"/MOVJ\"" },
     { "123 NOP", "line 1: unexpected \"123\"" },
     { "MOVL P001 V=10 V=20", "line 1: given twice \"V\"" },
     { "MOVL P001 V=10 VR=20", "line 1: given twice \"VR\"" },
@@ -228,7 +228,8 @@ static void limits(void)
         int most;
         const char *tail, *message;
     } LIMIT[] = {
-        { "", "NOP", ROBOT_JOB_INSTRUCTIONS - 1, "", "line 4096: too many \"NOP\" (at most 4096)" },
+        { "", "NOP", ROBOT_JOB_INSTRUCTIONS - 1, "",
+          "line 16384: too many \"NOP\" (at most 16384)" },
         { "", "JOB A#", ROBOT_JOB_JOBS, "", "line 65: too many \"JOB A65\" (at most 64)" },
         { "", "*A#", ROBOT_JOB_LABELS, "", "line 1025: too many \"*A1025\" (at most 1024)" },
         { "", "IF B000=1", ROBOT_JOB_BLOCKS, "ENDIF\n",
