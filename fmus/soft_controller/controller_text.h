@@ -113,7 +113,7 @@ static int read_job_text(struct fmu *f, struct controller_blob *b, const char *n
                : 0;
 }
 
-/* The name of a job's file beside the program, which has the program's ending or a pendant's. False:
+/* The name of a job's file beside the program, with the program's ending or a pendant's. False:
  * there is none. */
 static bool file_beside(const struct fmu *f, const char *job, char *name, size_t size)
 {

@@ -161,6 +161,25 @@ static void look_at_reset(struct drive_state *s, const struct drive_input *in)
         s->alarm = DRIVE_ENCODER;
 }
 
+/* The speed command of loops that run, `pulses` of it new; a drive that is switched off holds its
+ * place. False: an alarm ends them. */
+static bool follow(const struct drive_config *c, struct drive_state *s,
+                   const struct drive_input *in, int32_t pulses, bool wanted,
+                   struct drive_output *out)
+{
+    struct drive_input seen = *in;
+    if (!wanted)
+        seen.volts = -c->volt_offset;
+    s->command += pulses;
+    out->speed_command = speed_command(c, s, &seen, pulses, out);
+    if (fabs(out->following_error) > c->error_limit)
+        s->alarm = DRIVE_FOLLOWING_ERROR;
+    else if (fabs(out->speed) > DRIVE_OVERSPEED_RATIO * c->speed_limit)
+        s->alarm = DRIVE_OVERSPEED;
+    return s->alarm == DRIVE_NO_ALARM;
+}
+
+/* CCN 20: what a sample does, in its order. */
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
                              const struct drive_input *in, struct drive_output *out)
 {
@@ -186,20 +205,8 @@ enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s
         s->released = true;
         s->off = s->signal = 0;
     }
-    bool run = wanted || run_down(c, s, out->speed, s->alarm == DRIVE_NO_ALARM);
-    if (run) {
-        struct drive_input seen = *in;
-        if (!wanted)
-            seen.volts = -c->volt_offset; /* it holds its place */
-        pulses = wanted && !first ? pulses : 0;
-        s->command += pulses;
-        out->speed_command = speed_command(c, s, &seen, pulses, out);
-        if (fabs(out->following_error) > c->error_limit)
-            s->alarm = DRIVE_FOLLOWING_ERROR;
-        else if (fabs(out->speed) > DRIVE_OVERSPEED_RATIO * c->speed_limit)
-            s->alarm = DRIVE_OVERSPEED;
-        run = s->alarm == DRIVE_NO_ALARM;
-    }
+    const bool loops = wanted || run_down(c, s, out->speed, s->alarm == DRIVE_NO_ALARM);
+    const bool run = loops && follow(c, s, in, wanted && !first ? pulses : 0, wanted, out);
     if (run) {
         s->on = true;
         out->ready = wanted;

@@ -169,6 +169,23 @@ void robot_job_begin_reading(struct robot_job_program *p)
     p->count = p->jobs = p->labels = p->callees = p->positions = p->terms = p->texts = 0;
 }
 
+/* Read one line. */
+static int read_line(struct robot_job_reading *in)
+{
+    int status = header(in);
+    if (status == 0 && in->p->jobs == in->jobs) {
+        status = begin_job(in, "MAIN", 4);
+    }
+    if (status == 0 && in->s.slashes > 0) {
+        status = robot_job_positions_word(in) ? -1 : 1;
+    }
+    if (status == 0 && in->section != ROBOT_JOB_INSIDE) {
+        status = robot_job_positions_line(in);
+    }
+    in->last = in->s.line;
+    return status == 0 ? robot_job_words(in) : status < 0 ? -1 : 0;
+}
+
 int robot_job_read_text(struct robot_job_program *p, const struct robot_job_points *points,
                         const char *text, int64_t length, struct robot_job_report *r)
 {
@@ -180,20 +197,9 @@ int robot_job_read_text(struct robot_job_program *p, const struct robot_job_poin
     }
     r->text = p->texts;
     while ((status = robot_job_scan_line(&in.s)) > 0) {
-        status = header(&in);
-        if (status == 0 && p->jobs == in.jobs) {
-            status = begin_job(&in, "MAIN", 4);
-        }
-        if (status == 0 && in.s.slashes > 0) {
-            status = robot_job_positions_word(&in) ? -1 : 1;
-        }
-        if (status == 0 && in.section != ROBOT_JOB_INSIDE) {
-            status = robot_job_positions_line(&in);
-        }
-        if (status < 0 || (status == 0 && robot_job_words(&in))) {
+        if (read_line(&in)) {
             return -1;
         }
-        in.last = in.s.line;
     }
     if (status < 0 || end_job(&in)) {
         return -1;

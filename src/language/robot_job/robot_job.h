@@ -172,8 +172,7 @@ int robot_job_read(struct robot_job_program *p, const struct robot_job_points *p
                    const char *text, int64_t length, struct robot_job_report *r);
 
 /* The same from several texts, as folders of pendants have one for each job: begin, read text after
- * text, the program's first; names that are called and have no job yet are those of texts to be read;
- * end. */
+ * text, the program's first, until no name is called that has no job yet; end. */
 void robot_job_begin_reading(struct robot_job_program *p);
 int robot_job_read_text(struct robot_job_program *p, const struct robot_job_points *points,
                         const char *text, int64_t length, struct robot_job_report *r);

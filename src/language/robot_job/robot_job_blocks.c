@@ -189,7 +189,7 @@ int robot_job_block_endloop(struct robot_job_reading *in)
     return 0;
 }
 
-/* FOR B000=0 TO 9 STEP 1: the variable is set, then the block is left when it has passed the end. */
+/* FOR B000=0 TO 9 STEP 1: the variable is set; the block is left when it has passed the end. */
 int robot_job_block_for(struct robot_job_reading *in)
 {
     struct robot_job_scan *s = &in->s;

@@ -210,6 +210,31 @@ int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
     return second ? same_frames(in, c->via, c->to) : 0;
 }
 
+/* Read the frame of a shift, if there is one: BF, RF or UF#(1). */
+static int shift_frame(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    if (robot_job_scan_over(s)) {
+        return 0;
+    }
+    struct robot_job_span at = robot_job_scan_word(s);
+    if (robot_job_scan_is(s, at, "BF") || robot_job_scan_is(s, at, "RF")) {
+        return 0;
+    }
+    if (!robot_job_scan_is(s, at, "UF")) {
+        s->at = at.length > 0 ? at.at : s->at;
+        return robot_job_scan_is(s, at, "TF") || robot_job_scan_is(s, at, "MTF")
+                   ? robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, at)
+                   : robot_job_scan_unexpected(s);
+    }
+    if (robot_job_operand_channel(in, ROBOT_JOB_FRAMES - 1, &c->via)) {
+        return -1;
+    }
+    c->via++; /* user frames count from 1 here, 0 is the base */
+    at.length = s->at - at.at;
+    return in->points->user[c->via].defined ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
+}
+
 /* Read SFTON P001, SFTON P001 BF or RF, SFTON P001 UF#(1). */
 int robot_job_move_shift(struct robot_job_reading *in)
 {
@@ -230,25 +255,7 @@ int robot_job_move_shift(struct robot_job_reading *in)
         || p->value[5] != 0.0) {
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_SHIFT, at);
     }
-    if (robot_job_scan_over(s)) {
-        return 0;
-    }
-    at = robot_job_scan_word(s);
-    if (robot_job_scan_is(s, at, "BF") || robot_job_scan_is(s, at, "RF")) {
-        return 0;
-    }
-    if (!robot_job_scan_is(s, at, "UF")) {
-        s->at = at.length > 0 ? at.at : s->at;
-        return robot_job_scan_is(s, at, "TF") || robot_job_scan_is(s, at, "MTF")
-                   ? robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, at)
-                   : robot_job_scan_unexpected(s);
-    }
-    if (robot_job_operand_channel(in, ROBOT_JOB_FRAMES - 1, &c->via)) {
-        return -1;
-    }
-    c->via++; /* user frames count from 1 here, 0 is the base */
-    at.length = s->at - at.at;
-    return in->points->user[c->via].defined ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
+    return shift_frame(in, c);
 }
 
 int robot_job_move_speed(struct robot_job_reading *in)

@@ -38,6 +38,8 @@ void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *
     run->user = start->user;
 }
 
+/* The number that an operand stands for.
+ * CCN 16: a case for each kind. */
 static double value(const struct robot_job_run *run, const struct robot_job_inputs *in,
                     const struct robot_job_operand *o)
 {
@@ -328,7 +330,8 @@ static bool finish(struct robot_job_run *run, struct robot_job_request *r, int32
     return r->answer != ROBOT_JOB_BUSY;
 }
 
-/* Do one instruction. True: it makes a request. */
+/* Do one instruction. True: it makes a request.
+ * CCN 17: a case for each kind of work. */
 static bool step(struct robot_job_run *run, const struct robot_job_program *p,
                  const struct robot_job_points *points, const struct robot_job_inputs *in,
                  struct robot_job_request *r)

@@ -5,7 +5,8 @@
  *  - a move joins the queue of the motion;
  *  - an output carries `after`, the number of the latest move requested before it, or of the one
  *    before that if it is NWAIT. It changes when that move has reached its point: at rest, or where
- *    the path passes the corner if that is rounded; at once if reached >= after. So it costs no stop;
+ *    the path passes the corner if that is rounded; at once if reached >= after. So it costs no
+ *    stop;
  *  - what looks at inputs or at time (IF and WAIT on IN# or AI#, DIN, AIN, TIMER, PAUSE, the end)
  *    waits until all moves before it are reached: ROBOT_JOB_REACH. The caller may count a move as
  *    reached where its zone begins.

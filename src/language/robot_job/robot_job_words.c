@@ -202,6 +202,20 @@ static int group(struct robot_job_reading *in, struct robot_job_instruction *c)
     return 0;
 }
 
+/* Read ON or OFF. */
+static int on_or_off(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    const struct robot_job_span w = robot_job_scan_word(s);
+    c->right = (struct robot_job_operand){ .kind = ROBOT_JOB_CONSTANT };
+    c->right.number = robot_job_scan_is(s, w, "ON");
+    if (c->right.number == 0.0 && !robot_job_scan_is(s, w, "OFF")) {
+        s->at = w.length > 0 ? w.at : s->at;
+        return robot_job_scan_unexpected(s);
+    }
+    return 0;
+}
+
 /* Read DOUT OT#(n) ON, DOUT OG#(n) value or AOUT AO#(n) value. */
 static int output(struct robot_job_reading *in, bool digital)
 {
@@ -240,14 +254,7 @@ static int output(struct robot_job_reading *in, bool digital)
                    ? robot_job_scan_fault(s, ROBOT_JOB_BAD_VALUE, w)
                    : 0;
     }
-    w = robot_job_scan_word(s);
-    c->right = (struct robot_job_operand){ .kind = ROBOT_JOB_CONSTANT };
-    c->right.number = robot_job_scan_is(s, w, "ON");
-    if (c->right.number == 0.0 && !robot_job_scan_is(s, w, "OFF")) {
-        s->at = w.length > 0 ? w.at : s->at;
-        return robot_job_scan_unexpected(s);
-    }
-    return 0;
+    return on_or_off(in, c);
 }
 
 /* Read TOOL 1, TOOL TL#(1), USER 2 or USER UF#(2). */
@@ -489,6 +496,7 @@ static int block(struct robot_job_reading *in, enum block what)
     }
 }
 
+/* CCN 19: a case for each form. */
 static int instruction(struct robot_job_reading *in, const struct word *w)
 {
     const enum robot_job_op op = (enum robot_job_op)w->what;

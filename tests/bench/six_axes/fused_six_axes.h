@@ -62,6 +62,7 @@ enum { USED = 6 };
     X(card, remote_ready, int32_t, 1) X(card, remote_errors, int32_t, AXES)                       \
     X(drives, torque, double, AXES) X(drives, speed, double, AXES)                                \
     X(drives, speed_command, double, AXES) X(drives, following_error, double, AXES)               \
+    X(drives, load_ratio, double, AXES)                                                           \
     X(drives, ready, bool, AXES) X(drives, saturated, bool, AXES) X(drives, alarm, int32_t, AXES) \
     X(machine, motor_torque, double, AXES) X(machine, motor_angle, double, AXES)                  \
     X(machine, motor_speed, double, AXES) X(machine, motor_phase, double, AXES)                   \
