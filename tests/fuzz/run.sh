@@ -86,7 +86,7 @@ for name in "$@"; do
         objects harness "-w $fmi_include" $(ls "$PWD"/tests/fuzz/fmi/*.c | grep -v /inside.c)
         if [ $name = fmi ]; then
             for fmu in $fmus; do
-                fmi $fmu $((seconds / $(echo "$fmus" | wc -l))) $link
+                fmi $fmu $((seconds / $(echo "$fmus" | wc -l) + 1)) $link # 0 would be no limit
             done
         else
             fmi "${name#fmi_}" "$seconds" $link
