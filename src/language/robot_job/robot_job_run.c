@@ -26,6 +26,7 @@ void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *
                      const struct robot_job_start *start)
 {
     memset(run, 0, sizeof *run);
+    run->frames = 1;
     run->frame[0].pc = p->job[start->job].start;
     run->began = -1;
     run->shift = -1;
@@ -229,6 +230,7 @@ static int32_t call(struct robot_job_run *run, const struct robot_job_program *p
         frame->argument[i] = value(run, in, &p->term[c->argument + i].left);
     }
     run->frame[run->depth++].pc++;
+    run->frames++;
     return c->to;
 }
 
@@ -236,6 +238,7 @@ static int32_t come_back(struct robot_job_run *run, struct robot_job_request *r)
 {
     if (run->depth > 0) {
         run->depth--;
+        run->frames--;
     } else {
         run->ended = 1;
         r->answer = ROBOT_JOB_END;

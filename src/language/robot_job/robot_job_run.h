@@ -43,7 +43,8 @@ struct robot_job_call {
 
 /* State of a program that runs: plain bytes without pointers. */
 struct robot_job_run {
-    int32_t depth; /* calls inside each other */
+    int32_t depth;  /* calls inside each other */
+    int32_t frames; /* in use: depth + 1, or 0 before a program begins */
     struct robot_job_call frame[ROBOT_JOB_CALLS + 1];
     int32_t whole[3][ROBOT_JOB_VARIABLES]; /* B I D */
     double real[ROBOT_JOB_VARIABLES];      /* R */

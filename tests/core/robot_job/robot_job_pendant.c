@@ -109,6 +109,8 @@ static const struct {
     { "IF (IN#(1)=OFF AND B000=0)\nDOUT OT#(1) ON\nELSE\nDOUT OT#(2)=ON\nENDIF", "0:2+1=1;" },
     { "IF (IN#(1)=OFF) OR (B000=1)\nDOUT OT#(1) ON\nENDIF", "" },
     { "MOVL P2\nJUMP *A IF B000=0 AND IN#(1)=ON\nDOUT OT#(1) ON\n*A", "L1000 T0 U0;reach 1;" },
+    { "MOVL P2\nIF B000=0 AND IN#(1)=ON\nDOUT OT#(1) ON\nENDIF\nMOVL P2",
+      "L1000 T0 U0;reach 1;1:1+1=1;L1000 T0 U0;reach 2;" },
     /* groups */
     { "DOUT OG#(2) 255\nSET B001 7\nDOUT OG#(1) B001\nDIN B002 IG#(2)\nDIN I000 OG#(1)\n"
       "IF B002=5 AND I000=7 AND OT#(3)=ON\nDOUT OT#(9) OFF\nENDIF",
