@@ -74,7 +74,8 @@ static void check_request(const struct robot_job_request *r, const struct robot_
         const uint32_t all = (1u << r->count) - 1u;
         HOLDS(r->index >= 0 && r->index + r->count <= ROBOT_JOB_SIGNALS);
         HOLDS((r->count == 1 || r->count == ROBOT_JOB_GROUP) && ((uint32_t)r->on & ~all) == 0);
-        HOLDS((run->out >> r->index & all) == (uint32_t)r->on);
+        HOLDS((run->out >> r->index & all) == (r->time > 0 ? 0u : (uint32_t)r->on));
+        HOLDS(r->time == 0 || (r->on == 1 && r->count == 1));
     } else if (r->answer == ROBOT_JOB_AOUT) {
         HOLDS(r->index >= 0 && r->index < ROBOT_JOB_ANALOGS && fabs(r->volt) <= ROBOT_JOB_VOLT_MAX);
     } else if (r->answer == ROBOT_JOB_FAULT) {

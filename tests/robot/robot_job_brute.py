@@ -336,16 +336,21 @@ class Brute:
         elif word in ("SFTON", "SFTOF"):
             user = int(words[2][4:-1]) if len(words) > 2 and words[2][:2] == "UF" else 0
             self.shift = (int(words[1][1:]), user) if word == "SFTON" else (-1, 0)
+        elif word == "PULSE":
+            n = int(words[1][4:-1]) - 1
+            self.out &= ~(1 << n)
+            seconds = Fraction(words[2][2:] if len(words) > 2 else "0.3")
+            yield "dout", line, self.moves - self.early, n, 1, 1, int(seconds * NS)
         elif word == "DOUT" and words[1].startswith("OG"):
             n, value = 8 * (int(words[1][4:-1]) - 1), self.value(words[2])
             if not 0 <= value <= 255:
                 raise Stop("result out of range")
             self.out = self.out & ~(255 << n) | int(value) << n
-            yield "dout", line, self.moves - self.early, n, 8, int(value)
+            yield "dout", line, self.moves - self.early, n, 8, int(value), 0
         elif word == "DOUT":
             n = int(words[1][4:-1]) - 1
             self.out = self.out & ~(1 << n) | (words[2] == "ON") << n
-            yield "dout", line, self.moves - self.early, n, 1, int(words[2] == "ON")
+            yield "dout", line, self.moves - self.early, n, 1, int(words[2] == "ON"), 0
         elif word == "AOUT":
             volt = self.value(words[2])
             if not -10 <= volt <= 10:

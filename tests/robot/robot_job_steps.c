@@ -36,9 +36,10 @@ void robot_job_steps_next(int64_t now, int64_t reached, uint32_t di, const doubl
     memset(&run, 0xa5, sizeof run);
     robot_job_next(&copy, &program, &points, &in, most, &r);
     memcpy(&run, &copy, sizeof copy);
-    const double as[] = { r.answer, r.line,  (double)r.after, r.path,       r.point, r.via,   r.tag,
-                          r.speed,  r.level, r.corner,        r.tool,       r.user,  r.index, r.on,
-                          r.volt,   r.fault, r.shift,         r.shift_user, r.count };
+    const double as[] = { r.answer, r.line,  (double)r.after, r.path,  r.point,
+                          r.via,    r.tag,   r.speed,         r.level, r.corner,
+                          r.tool,   r.user,  r.index,         r.on,    r.volt,
+                          r.fault,  r.shift, r.shift_user,    r.count, (double)r.time };
     memcpy(request, as, sizeof as);
 }
 

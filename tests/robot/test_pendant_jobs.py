@@ -64,7 +64,7 @@ def run(folder: Path) -> motionfmu.Result:
         "component": {"soft": "soft_controller", "card": "fpga_card"},
         "connect": {"card.host_*": "soft.card_*", "soft.card_*": "card.*"},
         "set": values,
-        "record": {"signals": ["soft.joint_command", "soft.error"], "every": 20},
+        "record": {"signals": ["soft.joint_command", "soft.error", "card.dout"], "every": 20},
     }
     return motionfmu.scenario(text).run()
 
@@ -138,6 +138,22 @@ def test_the_first_number_of_rconf_is_the_side_of_joint_4(
     np.testing.assert_allclose(tip(q)[0], there, atol=1e-6)
     wrapped = (q[3] + 180.0) % 360.0 - 180.0
     assert (abs(wrapped) <= 90.0) == (flip == 0)
+
+
+def test_a_pulse_goes_off_by_itself(tmp_path: Path) -> None:
+    """On behind its move for 50 ms, whatever else goes on; a DOUT in between ends it."""
+    text = (
+        "MOVJ C00000 VJ=50.00\nPULSE OT#(2) T=0.05\nPULSE OT#(3) T=0.05\nTIMER T=0.02\n"
+        "DOUT OT#(3) ON\nTIMER T=0.1\n"
+    )
+    main = HEAD.format(name="MAIN", kind="BASE", pulses=pulses(0, HOME), places="", text=text)
+    (tmp_path / "MAIN.JBI").write_text(main)
+    result = run(tmp_path)
+    assert result.done_at is not None and result["soft.error"][-1] == 0, result.warnings
+    two, three = (result["card.dout"] >> n & 1 for n in (1, 2))
+    assert np.abs(np.diff(two)).sum() == 2 and two[-1] == 0
+    assert two.sum() * 1e-3 == pytest.approx(0.05, abs=2e-3)
+    assert np.abs(np.diff(three)).sum() == 1 and three[-1] == 1
 
 
 def test_jobs_that_are_called_lie_beside_the_program(tmp_path: Path) -> None:

@@ -77,6 +77,7 @@ SIMPLE = st.one_of(
     picked("CWAIT", "SFTON P005", "SFTON P005 UF#(2)", "SFTON P005 BF", "SFTOF", 'MSG "words"'),
     st.builds("DOUT {} {}".format, picked("OG#(1)", "OG#(4)"), picked(0, 1, 255) | WHOLE),
     st.builds("DIN {} {}".format, WHOLE, GROUP),
+    st.builds("PULSE {}{}".format, OUTPUT, picked("", " T=0.01", " T=1.50")),
     st.builds("GETARG {} IARG#({})".format, VARIABLE, picked(1, 2)),
     st.builds("MOVC P002 P003{}\nNOP".format, TAGS),
     ARC,
@@ -195,7 +196,7 @@ class Core:
     def next(self, brute: Brute) -> tuple[object, ...]:
         """The next request, in the terms of the other one."""
         w = brute.world
-        r = (ctypes.c_double * 19)()
+        r = (ctypes.c_double * 20)()
         LIBRARY.robot_job_steps_next(
             ctypes.c_int64(w.now),
             ctypes.c_int64(w.reached),
@@ -208,7 +209,7 @@ class Core:
         if kind == "move":
             return (*head, *r[3:12], r[16], r[17])
         if kind == "dout":
-            return (*head, r[12], r[18], r[13])
+            return (*head, r[12], r[18], r[13], r[19])
         if kind == "aout":
             return (*head, r[12], r[14])
         if kind == "fault":

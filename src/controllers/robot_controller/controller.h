@@ -117,6 +117,7 @@ struct controller_output {
     uint32_t mask, value;
     int32_t index;
     double volt;
+    int64_t pulse; /* [clocks] after which the outputs go off; 0: they stay */
 };
 
 struct controller {
@@ -154,7 +155,9 @@ struct controller {
     float move_feed[CONTROLLER_MOVES];   /* [mm/s] its feed as asked for; 0 of joints */
     int32_t output_count;
     struct controller_output output[CONTROLLER_OUTPUTS];
-    uint32_t out; /* digital outputs as programs have set them */
+    uint32_t out;                         /* digital outputs as programs have set them */
+    uint32_t pulsed;                      /* those that are on for a time */
+    int64_t pulse_end[ROBOT_JOB_SIGNALS]; /* [clock] when they go off */
 
     /* the pendant */
     struct controller_key start, abort, reset, teach, replay;

@@ -143,12 +143,14 @@ bool controller_program_put(struct controller *s, const struct order *o)
     if (s->output_count == CONTROLLER_OUTPUTS) {
         return false;
     }
-    s->output[s->output_count++] = (struct controller_output){ .after = s->first + o->after,
-                                                               .analog = o->kind == ORDER_ANALOG,
-                                                               .mask = o->mask,
-                                                               .value = o->value,
-                                                               .index = o->index,
-                                                               .volt = o->amount };
+    s->output[s->output_count++] =
+        (struct controller_output){ .after = s->first + o->after,
+                                    .analog = o->kind == ORDER_ANALOG,
+                                    .mask = o->mask,
+                                    .value = o->value,
+                                    .index = o->index,
+                                    .volt = o->amount,
+                                    .pulse = llround(o->pulse * FPGA_CLOCK_HZ) };
     return true;
 }
 
@@ -273,14 +275,44 @@ int32_t controller_program_run(struct controller *s, const struct controller_con
     return done;
 }
 
+/* Outputs that come on for a time, or that are set anew while they are. */
+static void begin_pulses(struct controller *s, const struct controller_output *o, int64_t done)
+{
+    s->pulsed &= ~o->mask;
+    if (o->pulse == 0) {
+        return;
+    }
+    s->pulsed |= o->mask & o->value;
+    for (int i = 0; i < ROBOT_JOB_SIGNALS; i++) {
+        if (o->mask & o->value & 1u << i) {
+            s->pulse_end[i] = done + o->pulse;
+        }
+    }
+}
+
+/* Pulses that are over. */
+static void end_pulses(struct controller *s, int64_t done)
+{
+    uint32_t over = 0;
+
+    for (int i = 0; i < ROBOT_JOB_SIGNALS && s->pulsed; i++) {
+        over |= s->pulsed & 1u << i && s->pulse_end[i] <= done ? 1u << i : 0u;
+    }
+    outbox_put(&s->outbox, done, over, 0);
+    s->out &= ~over;
+    s->pulsed &= ~over;
+}
+
 void controller_program_outputs(struct controller *s, int64_t done)
 {
     int32_t n = 0;
 
+    end_pulses(s, done);
     for (; n < s->output_count && s->output[n].after <= s->reached; n++) {
         const struct controller_output *o = &s->output[n];
         outbox_put(&s->outbox, done, o->mask, o->value);
         s->out = (s->out & ~o->mask) | o->value;
+        begin_pulses(s, o, done);
         if (o->analog) {
             s->volt[o->index] = o->volt;
             s->posts_ao = true;

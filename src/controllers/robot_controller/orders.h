@@ -58,6 +58,7 @@ struct order {
     int32_t job;             /* number of the job it is from */
     bool plain;              /* that tool is the one of the arm's parameters */
     uint32_t mask, value;    /* digital outputs of the mask become those of the value */
+    double pulse;            /* [s] after which outputs that come on go off; 0: they stay */
     int32_t index;           /* analog output, from 0 */
     double amount;           /* [V] of an analog output, [s] of a delay */
 };

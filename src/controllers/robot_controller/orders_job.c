@@ -93,6 +93,7 @@ void orders_job_next(struct orders *o, const struct orders_config *c, const stru
         order->kind = ORDER_OUT;
         order->mask = (r.count == ROBOT_JOB_GROUP ? (1u << ROBOT_JOB_GROUP) - 1u : 1u) << r.index;
         order->value = (uint32_t)r.on << r.index;
+        order->pulse = (double)r.time * 1e-9;
         order->after = r.after;
         break;
     case ROBOT_JOB_AOUT:

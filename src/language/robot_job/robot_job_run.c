@@ -11,16 +11,17 @@ enum kind { NOTHING, MOTION, MODE, OUTPUT, NUMBER, ARGUMENT, TIME, FLOW, OPERATO
 static const uint8_t KIND[] = { [ROBOT_JOB_OP_MOVE] = MOTION,     [ROBOT_JOB_OP_SPEED] = MODE,
                                 [ROBOT_JOB_OP_LEVEL] = MODE,      [ROBOT_JOB_OP_TOOL] = MODE,
                                 [ROBOT_JOB_OP_USER] = MODE,       [ROBOT_JOB_OP_DOUT] = OUTPUT,
-                                [ROBOT_JOB_OP_GROUP] = OUTPUT,    [ROBOT_JOB_OP_SHIFT] = MODE,
-                                [ROBOT_JOB_OP_GETARG] = ARGUMENT, [ROBOT_JOB_OP_REACHED] = NOTHING,
-                                [ROBOT_JOB_OP_AOUT] = OUTPUT,     [ROBOT_JOB_OP_SET] = NUMBER,
-                                [ROBOT_JOB_OP_ADD] = NUMBER,      [ROBOT_JOB_OP_SUB] = NUMBER,
-                                [ROBOT_JOB_OP_MUL] = NUMBER,      [ROBOT_JOB_OP_DIV] = NUMBER,
-                                [ROBOT_JOB_OP_WAIT] = TIME,       [ROBOT_JOB_OP_TIMER] = TIME,
-                                [ROBOT_JOB_OP_JUMP] = FLOW,       [ROBOT_JOB_OP_UNLESS] = FLOW,
-                                [ROBOT_JOB_OP_CALL] = FLOW,       [ROBOT_JOB_OP_RET] = FLOW,
-                                [ROBOT_JOB_OP_LOOP] = FLOW,       [ROBOT_JOB_OP_ENDLOOP] = FLOW,
-                                [ROBOT_JOB_OP_PAUSE] = OPERATOR,  [ROBOT_JOB_OP_NOP] = NOTHING };
+                                [ROBOT_JOB_OP_GROUP] = OUTPUT,    [ROBOT_JOB_OP_PULSE] = OUTPUT,
+                                [ROBOT_JOB_OP_SHIFT] = MODE,      [ROBOT_JOB_OP_GETARG] = ARGUMENT,
+                                [ROBOT_JOB_OP_REACHED] = NOTHING, [ROBOT_JOB_OP_AOUT] = OUTPUT,
+                                [ROBOT_JOB_OP_SET] = NUMBER,      [ROBOT_JOB_OP_ADD] = NUMBER,
+                                [ROBOT_JOB_OP_SUB] = NUMBER,      [ROBOT_JOB_OP_MUL] = NUMBER,
+                                [ROBOT_JOB_OP_DIV] = NUMBER,      [ROBOT_JOB_OP_WAIT] = TIME,
+                                [ROBOT_JOB_OP_TIMER] = TIME,      [ROBOT_JOB_OP_JUMP] = FLOW,
+                                [ROBOT_JOB_OP_UNLESS] = FLOW,     [ROBOT_JOB_OP_CALL] = FLOW,
+                                [ROBOT_JOB_OP_RET] = FLOW,        [ROBOT_JOB_OP_LOOP] = FLOW,
+                                [ROBOT_JOB_OP_ENDLOOP] = FLOW,    [ROBOT_JOB_OP_PAUSE] = OPERATOR,
+                                [ROBOT_JOB_OP_NOP] = NOTHING };
 
 void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *p,
                      const struct robot_job_start *start)
@@ -184,6 +185,13 @@ static enum robot_job_fault output(struct robot_job_run *run, const struct robot
         }
         r->on = (int32_t)x;
         run->out = (run->out & ~(GROUP_MASK << r->index)) | (uint32_t)r->on << r->index;
+        return ROBOT_JOB_OK;
+    }
+    if (c->op == ROBOT_JOB_OP_PULSE) { /* to the program it is what it becomes: off */
+        r->answer = ROBOT_JOB_DOUT;
+        r->count = r->on = 1;
+        r->time = c->time;
+        run->out &= ~(1u << c->to);
         return ROBOT_JOB_OK;
     }
     if (c->op == ROBOT_JOB_OP_AOUT) {

@@ -100,6 +100,7 @@ struct robot_job_request {
     int32_t index; /* from 0 */
     int32_t count; /* DOUT: number of outputs from there, 1 or ROBOT_JOB_GROUP */
     int32_t on;    /* their levels as a number */
+    int64_t time;  /* [ns] of a pulse, after which the output is off; 0: none */
     double volt;   /* [V] -10 .. 10 */
     /* FAULT */
     enum robot_job_fault fault;

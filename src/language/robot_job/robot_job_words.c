@@ -12,6 +12,11 @@ enum {
     SIGNAL = 1u << ROBOT_JOB_IN | 1u << ROBOT_JOB_OT | 1u << ROBOT_JOB_IG | 1u << ROBOT_JOB_OG
 };
 
+/* Length of a pulse: usual, least and most. [ns] */
+#define PULSE_TIME  300000000
+#define PULSE_LEAST 10000000
+#define PULSE_MOST  655350000000
+
 /* What may follow a word in its line. */
 enum form {
     MOVE,
@@ -32,6 +37,7 @@ enum form {
     UNSHIFT,
     ARGUMENT,
     MESSAGE,
+    PULSE,
     NOTHING
 };
 
@@ -109,6 +115,7 @@ static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "GETARG", ARGUMENT, 0, 0, 0 },
                                      { "CWAIT", NOTHING, ROBOT_JOB_OP_REACHED, 0, 0 },
                                      { "MSG", MESSAGE, 0, 0, 0 },
+                                     { "PULSE", PULSE, 0, 0, 0 },
                                      { "NOP", NOTHING, ROBOT_JOB_OP_NOP, 0, 0 },
                                      { "LABEL", LABEL, 0, 0, 0 } };
 /* LABEL is the last one. */
@@ -465,6 +472,37 @@ static int argument(struct robot_job_reading *in)
     return robot_job_operand_channel(in, ROBOT_JOB_ARGUMENTS, &c->argument);
 }
 
+/* Read PULSE OT#(n) T=0.50; without T 0.3 s, as INFORM has it. */
+static int pulse(struct robot_job_reading *in)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_PULSE);
+    if (!c) {
+        return -1;
+    }
+    robot_job_scan_over(s);
+    const int32_t at = s->at;
+    if (!robot_job_scan_is(s, robot_job_scan_word(s), "OT")) {
+        s->at = at;
+        return robot_job_scan_unexpected(s);
+    }
+    c->time = PULSE_TIME;
+    if (robot_job_operand_channel(in, ROBOT_JOB_SIGNALS, &c->to)) {
+        return -1;
+    }
+    if (robot_job_scan_over(s)) {
+        return 0;
+    }
+    struct robot_job_span time = { s->at, 0 };
+    if (robot_job_operand_time(in, c)) {
+        return -1;
+    }
+    time.length = s->at - time.at;
+    s->r->low = PULSE_LEAST * 1e-9;
+    s->r->high = PULSE_MOST * 1e-9;
+    return c->time >= PULSE_LEAST ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_VALUE, time);
+}
+
 /* MSG "words": nobody reads them here. */
 static int message(struct robot_job_reading *in)
 {
@@ -496,7 +534,7 @@ static int block(struct robot_job_reading *in, enum block what)
     }
 }
 
-/* CCN 19: a case for each form. */
+/* CCN 20: a case for each form. */
 static int instruction(struct robot_job_reading *in, const struct word *w)
 {
     const enum robot_job_op op = (enum robot_job_op)w->what;
@@ -520,6 +558,7 @@ static int instruction(struct robot_job_reading *in, const struct word *w)
     case UNSHIFT:    return unshift(in);
     case ARGUMENT:   return argument(in);
     case MESSAGE:    return message(in);
+    case PULSE:      return pulse(in);
     default:         return nothing(in, op);
     }
 }

@@ -141,6 +141,8 @@ static const struct {
                                                       "\"P002\"" },
     { "MOVL P2 NWAIT\nDOUT OT#(1) ON\nCWAIT\nDOUT OT#(2) ON\nMOVL P2\nDOUT OT#(3) ON",
       "L1000 T0 U0;0:1+1=1;reach 1;1:2+1=1;L1000 T0 U0;2:3+1=1;reach 2;" },
+    { "PULSE OT#(3) T=0.50\nPULSE OT#(4)\nIF OT#(3)=OFF\nDOUT OT#(1) ON\nENDIF",
+      "0:3+1=1;0:4+1=1;0:1+1=1;" },
     { "MSG \"it's // on\"\nDOUT OT#(1) ON", "0:1+1=1;" },
 };
 
@@ -176,6 +178,9 @@ static const struct {
     { "SFTON P001", "line 1: a shift is a pose without a turn \"P001\"" },
     { "MOVJ P000 BP000 VJ=5", "line 1: base or station axes, which the arm has not \"BP000\"" },
     { "MOVL BC00000 V=5", "line 1: base or station axes, which the arm has not \"BC00000\"" },
+    { "PULSE OT#(33)", "line 1: value out of range \"33\" (1 to 32)" },
+    { "PULSE OG#(1)", "line 1: unexpected \"OG#(1)\"" },
+    { "PULSE OT#(1) T=0.005", "line 1: value out of range \"T=0.005\" (0.01 to 655.35)" },
     { "MSG hello", "line 1: unexpected \"hello\"" },
     { "CALL JOB:NOBODY", "line 1: no such job \"NOBODY\"" },
     { "//NAME A\n//POS\n///TOOL 7\n//INST", "line 3: tool or user frame not in the points file "
