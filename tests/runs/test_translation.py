@@ -19,6 +19,7 @@ from svgelements import Path as SvgPath
 import motionfmu
 from motionfmu import InputError
 from motionfmu.analysis.gcode import read, strokes
+from motionfmu.cards import card_job
 from motionfmu.cards.server_page.job_pictures import pen_down
 
 FRAME = ROOT / "src/motionfmu/machines/engraver/example.plt"  # 80 x 50 mm from (10, 10) on
