@@ -135,25 +135,27 @@ def test_jobs_of_both_writers_are_the_same_bytes() -> None:
 
 
 def test_a_damaged_job_is_refused(planned: Plan) -> None:
-    text = planned.job[: 3 * job.PAGE]
+    text = planned.job[: 3 * card_job.PAGE]
     with pytest.raises(InputError, match="page 0: axes 3, period 1000000 ns, "):
         card_job.decode(text)
     draws = np.random.default_rng(1)
     for at in draws.integers(0, len(planned.job), 40):
         bad = bytearray(planned.job)
         bad[at] ^= 1 << draws.integers(8)
-        with pytest.raises(InputError, match=f"page {at // job.PAGE}: its CRC is wrong"):
+        with pytest.raises(InputError, match=f"page {at // card_job.PAGE}: its CRC is wrong"):
             card_job.decode(bytes(bad))
     for at in draws.integers(0, len(planned.job), 200):  # with a CRC that fits
         bad = bytearray(planned.job)
-        page = at - at % job.PAGE
+        page = at - at % card_job.PAGE
         bad[at] ^= 1 << draws.integers(8)
-        bad[page : page + job.PAGE] = job._sealed(bytes(bad[page : page + job.CRC_AT]))
+        bad[page : page + card_job.PAGE] = card_job._sealed(
+            bytes(bad[page : page + card_job.CRC_AT])
+        )
         try:
             card_job.decode(bytes(bad))
         except InputError:
             continue
-        assert page == 0 or at % job.PAGE >= job.FIRST_BYTE
+        assert page == 0 or at % card_job.PAGE >= card_job.FIRST_BYTE
 
 
 @pytest.mark.parametrize(
@@ -171,9 +173,9 @@ def test_a_damaged_job_is_refused(planned: Plan) -> None:
 def test_numbers_of_a_page_are_judged(payload: list[int], why: str) -> None:
     one = card_job.Job(1_000_000, 3, np.zeros((1, 4), np.int32), np.zeros(1, int))
     text = card_job.encode(one)
-    page = job._page(0, np.zeros(4, int), 1, bytes(payload))
+    page = card_job._page(0, np.zeros(4, int), 1, bytes(payload))
     with pytest.raises(InputError, match=f"x: page 1: {why}"):
-        card_job.decode(text[: job.PAGE] + job._sealed(page), "x")
+        card_job.decode(text[: card_job.PAGE] + card_job._sealed(page), "x")
 
 
 def squares() -> list[np.ndarray]:
