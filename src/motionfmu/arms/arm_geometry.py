@@ -51,9 +51,21 @@ class OpwGeometry:
 
     @property
     def origins(self) -> Array:
-        """Joints in the links before [m], (6, 3), in frames parallel to the base at inner 0."""
-        a1, a2, b, c1, c2, c3, _ = self.lengths
-        return np.array([[0, 0, 0], [a1, b, c1], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, 0]])
+        """Joints in the links before [m], (6, 3), in frames parallel to the base at inner 0.
+
+        As the plant has them: the last one is on the flange.
+        """
+        a1, a2, b, c1, c2, c3, c4 = self.lengths
+        return np.array([[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]])
+
+    @property
+    def joint_frames(self) -> list[tuple[Array, Array]]:
+        """Frame of each joint at angle 0 in the link before, 4x4, and its axis there."""
+        found = []
+        for k, (name, origin) in enumerate(zip(AXES, self.origins, strict=True)):
+            axis = _UNIT["xyz".index(name)]
+            found.append((placed(origin, about(axis, -self.offsets[k])), self.signs[k] * axis))
+        return found
 
     def forward(self, q: Array) -> Array:
         """Frames (..., 4, 4) of the tip in the arm's base at joint angles (..., 6) [rad]."""
@@ -64,7 +76,7 @@ class OpwGeometry:
             step[..., :3, 3] = origin
             step[..., :3, :3] = about(_UNIT["xyz".index(axis)], inner[..., k])
             frame = frame @ step
-        return np.asarray(frame @ placed([0.0, 0.0, self.lengths[6]]) @ self.flange)
+        return np.asarray(frame @ self.flange)
 
 
 class NoOpwGeometry(ValueError):
@@ -124,9 +136,8 @@ def kind_of(arm: ArmDescription) -> str:
     if len(slides) == 4 and slides.count("P") == 1:  # noqa: PLR2004
         if all(lines.parallel(1, k) for k in (2, 3, 4)):
             return "a SCARA"
-    if slides in ("RRRR", "RRRRR"):
-        if lines.upright(1, 2) and lines.parallel(2, 3):
-            return f"a palletizer of {len(slides)} joints"
+    if slides == "RRRR" and lines.upright(1, 2) and lines.parallel(2, 3):
+        return "a palletizer"
     if slides == "R" * SIX and lines.parallel(2, 3):
         if lines.parallel(3, 4):
             return "an arm with three parallel axes"
