@@ -82,7 +82,7 @@ def _inertial(link: RigidLink, moves: bool) -> Iterator[str]:
 
 def _geoms(link: RigidLink) -> Iterator[str]:
     for shape in link.shapes:
-        if shape.kind not in _GEOMS:
+        if shape.kind not in _GEOMS or min(shape.size) <= 0.0:
             continue
         size = shape.size
         if shape.kind == "box":
