@@ -24,7 +24,18 @@ def random_arms(count: int, mimics: bool = False) -> list[ArmDescription]:
 def told(arm: ArmDescription) -> list[tuple]:
     """All of an arm's joints but frames and masses."""
     return [
-        (j.name, j.kind, j.low, j.high, j.speed, j.effort, j.ratio, j.damping, j.friction, j.follows)
+        (
+            j.name,
+            j.kind,
+            j.low,
+            j.high,
+            j.speed,
+            j.effort,
+            j.ratio,
+            j.damping,
+            j.friction,
+            j.follows,
+        )
         for j in arm.joints
     ]
 
@@ -40,7 +51,9 @@ def test_a_urdf_is_read_back_as_it_was(arm):
     q, v, a = rng.uniform(-3.0, 3.0, (3, 30, len(arm.driven)))
     assert again.forward(q) == pytest.approx(arm.forward(q), abs=1e-13)
     torque = arm.inverse_dynamics(q, v, a)
-    assert again.inverse_dynamics(q, v, a) == pytest.approx(torque, abs=1e-12 * np.abs(torque).max())
+    assert again.inverse_dynamics(q, v, a) == pytest.approx(
+        torque, abs=1e-12 * np.abs(torque).max()
+    )
     place, apart = worst_differences(text, arm, 30, rng)
     assert place < 1e-12 and apart < 1e-12
 
@@ -50,7 +63,7 @@ def test_bodies_are_written_as_they_were():
         '<visual><origin xyz="0 0 1"/><geometry><box size="1 2 3"/></geometry></visual>'
         '<collision><geometry><cylinder radius="0.1" length="2"/></geometry></collision>'
         '<collision><geometry><sphere radius="0.3"/></geometry></collision>'
-        '<visual><geometry><mesh filename="package://a/b.stl" scale="1 1 0.001"/></geometry></visual>'
+        '<visual><geometry><mesh filename="package://a/b.stl" scale="1 1 0.1"/></geometry></visual>'
     )
     text = (f'<robot name="r"><link name="a"/><link name="b">{bodies}</link><joint name="j" '
             'type="continuous"><parent link="a"/><child link="b"/></joint></robot>')  # fmt: skip

@@ -41,8 +41,14 @@ def random_geometry(rng: np.random.Generator) -> OpwGeometry:
     """Lengths of either sign, also 0, offsets, signs, a tip turned and beside the flange."""
     a1, a2, b, c4 = rng.uniform(-0.4, 0.4, 4) * rng.integers(0, 2, 4)
     c1, c2, c3 = rng.uniform([-0.3, 0.1, 0.1], [1.0, 1.5, 1.5])
-    tip = UP if rng.random() < 0.5 else placed(rng.uniform(-0.2, 0.2, 3), turn_of(*rng.uniform(-3, 3, 3)))
-    base = UP if rng.random() < 0.5 else placed(rng.uniform(-1, 1, 3), turn_of(*rng.uniform(-3, 3, 3)))
+    tip = (
+        UP
+        if rng.random() < 0.5
+        else placed(rng.uniform(-0.2, 0.2, 3), turn_of(*rng.uniform(-3, 3, 3)))
+    )
+    base = (
+        UP if rng.random() < 0.5 else placed(rng.uniform(-1, 1, 3), turn_of(*rng.uniform(-3, 3, 3)))
+    )
     return OpwGeometry(
         (a1, a2, b, c1, c2, c3, c4),
         tuple(int(s) for s in rng.choice([-1, 1], 6)),
@@ -67,7 +73,7 @@ def test_any_frames_of_an_arm_give_its_motion_back():
     assert worst < 1e-9
 
 
-# a1, a2, b, c1, c2, c3, c4, offsets [deg], signs: as published by their makers and by ROS-Industrial.
+# a1, a2, b, c1, c2, c3, c4, offsets [deg], signs, by their makers and ROS-Industrial.
 KNOWN = {
     "ABB IRB 2400": ([0.1, -0.135, 0, 0.615, 0.705, 0.755, 0.085], [0, 0, -90, 0, 0, 0], [1] * 6),
     "KUKA KR 6 R900": (

@@ -84,9 +84,7 @@ def test_controller_and_plant_have_the_tip_of_the_urdf(result):
     real = arm.forward(result["arm.link_angle"])
     assert result["arm.tool_position"] == pytest.approx(real[:, :3, 3], abs=1e-9)
     w, x, y, z = result["arm.tool_quaternion"].T
-    ahead = np.column_stack(
-        [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)]
-    )
+    ahead = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
     assert ahead == pytest.approx(real[:, :3, 0], abs=1e-9)
 
 
@@ -105,7 +103,9 @@ def test_an_exported_urdf_is_the_same_arm(folder, tmp_path):
     again, own = urdf_arm(tmp_path / "again.urdf"), arm_machine(run.machine(folder)).arm
     q, v, a = np.random.default_rng(2).uniform(-3.0, 3.0, (3, 50, 6))
     torque = own.inverse_dynamics(q, v, a)
-    assert again.inverse_dynamics(q, v, a) == pytest.approx(torque, abs=1e-12 * np.abs(torque).max())
+    assert again.inverse_dynamics(q, v, a) == pytest.approx(
+        torque, abs=1e-12 * np.abs(torque).max()
+    )
     assert again.forward(q) == pytest.approx(own.forward(q), abs=1e-13)
     assert opw_geometry(again).deviation < 1e-12
     # What it says again needs no second guess: gears and torques come back.

@@ -57,7 +57,8 @@ def test_modified_dh_is_the_same_arm(tmp_path):
 def test_masses_of_dh_links_are_in_their_frames(tmp_path):
     """A pendulum of 2 kg at the end of 0.5 m: m g l, and m l2 + I at the joint."""
     text = ('name = "pendulum"\nconvention = "dh"\n[[joint]]\na = 500\nalpha = 30\nlow = -90\n'
-            'high = 90\nmass = 2\ncenter = [-100, 0, 0]\ninertia = [0.1, 0.1, 0.1, 0, 0, 0]\n')  # fmt: skip
+            'high = 90\nmass = 2\ncenter = [-100, 0, 0]\n'
+            "inertia = [0.1, 0.1, 0.1, 0, 0, 0]\n")  # fmt: skip
     arm = table_arm(file(tmp_path, text))
     still = np.zeros(1)
     held = arm.inverse_dynamics(still, still, still, (0, -9.81, 0))
@@ -83,8 +84,14 @@ def test_lengths_of_opw_are_an_arm(tmp_path):
 WRONG = {
     "key": ("ratoi = 3\n", "arm.toml:9: joint.0.ratoi = 3: Extra inputs are not permitted"),
     "speed": ("speed = -1\n", "arm.toml:9: joint.0.speed = -1: Input should be greater than 0"),
-    "text": ("mass = 'heavy'\n", "arm.toml:9: joint.0.mass = 'heavy': Input should be a valid number"),
-    "kind": ("kind = 'ball'\n", "arm.toml:9: joint.0.kind = 'ball': Input should be 'revolute', 'con"),
+    "text": (
+        "mass = 'heavy'\n",
+        "arm.toml:9: joint.0.mass = 'heavy': Input should be a valid number",
+    ),
+    "kind": (
+        "kind = 'ball'\n",
+        "arm.toml:9: joint.0.kind = 'ball': Input should be 'revolute', 'con",
+    ),
     "three": ("center = [1, 2]\n", "arm.toml:9: joint.0.center"),
 }
 
@@ -102,7 +109,7 @@ def test_what_is_wrong_has_its_line(tmp_path, name):
     ("text", "told"),
     [
         ('name = "x"\nconvention = "dh"\n[[joint]]\nd = 1\n', "low and high are missing"),
-        ('name = "x"\nconvention = "dh"\n[[joint]]\nlow = 5\nhigh = 5\n', "low = 5 is not below high"),
+        ('name = "x"\nconvention = "dh"\n[[joint]]\nlow = 5\nhigh = 5\n', "low = 5 is not below"),
         ('name = "x"\nconvention = "opw"\n[[joint]]\nlow = 1\nhigh = 2\n', "belong together"),
         ('convention = "dh"\n[[joint]]\nlow = 1\nhigh = 2\n', "name"),
         ('name = "x"\nconvention = "dh"\n', "joint"),

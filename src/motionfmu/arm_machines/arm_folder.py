@@ -61,7 +61,9 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
     try:
         geometry = opw_geometry(arm)
     except NoOpwGeometry as error:
-        told = "it cannot be driven yet: the controller wants axes 2 and 3 parallel and axes 4, 5, 6"
+        told = (
+            "it cannot be driven yet: the controller wants axes 2 and 3 parallel and axes 4, 5, 6"
+        )
         raise InputError(f"{source}: {arm.name} is {error}; {told} through a point") from None
     if geometry.deviation > MOST_DEVIATION:
         told = f"an arm with a spherical wrist but for {1e3 * geometry.deviation:.3g} mm"
@@ -92,7 +94,8 @@ def _given(values: ArmValues) -> set[str]:
 
 def _notes(geometry: OpwGeometry) -> Iterator[str]:
     if geometry.deviation > ROUNDING:
-        yield f"its lengths are {1e3 * geometry.deviation:.3g} mm from the file, whose angles are rounded"
+        off = f"{1e3 * geometry.deviation:.3g} mm"
+        yield f"its lengths are off by {off} at the tip, for the angles of the file are rounded"
     if np.abs(geometry.base - np.eye(4)).max() > ROUNDING:
         place = ", ".join(f"{1e3 * x:.6g}" for x in geometry.base[:3, 3])
         turned = np.abs(geometry.base[:3, :3] - np.eye(3)).max() > ROUNDING
@@ -132,14 +135,19 @@ def _set_lines(kept: Mapping[str, Any], values: ArmValues, source: str) -> Itera
 def _readme(
     name: str, arm: ArmDescription, values: ArmValues, source: str, notes: tuple[str, ...]
 ) -> Iterator[str]:
-    yield from (f"# {name}", "", f"{arm.name}, made from {source} by `motionfmu import {source}`.", "")
+    yield from (
+        f"# {name}",
+        "",
+        f"{arm.name}, made from {source} by `motionfmu import {source}`.",
+        "",
+    )
     joints = values.arm.joints
     yield "| joint | " + " | ".join(j.name for j in joints) + " |"
     yield "|" + "---|" * 7
     rows = {
-        "range [deg]": [f"{lo:.4g} .. {hi:.4g}" for lo, hi in _ranges(values)],
-        "speed [deg/s]": _cells(in_degrees(np.array([j.speed for j in joints]))),
-        "acceleration [deg/s2]": _cells(in_degrees(np.array([j.acceleration for j in joints]))),
+        "range [°]": [f"{lo:.4g} .. {hi:.4g}" for lo, hi in _ranges(values)],
+        "speed [°/s]": _cells(in_degrees(np.array([j.speed for j in joints]))),
+        "acceleration [°/s²]": _cells(in_degrees(np.array([j.acceleration for j in joints]))),
         "gear ratio": _cells([float(j.ratio or 0.0) for j in joints]),
         "mass [kg]": _cells([j.link.mass for j in joints]),
     }
@@ -152,7 +160,17 @@ def _readme(
 
 
 def taken_lines(taken: list[TakenValue]) -> list[str]:
-    """A line for each thing that was taken for granted."""
+    """Say what was taken for granted.
+
+    Parameters
+    ----------
+    taken : list of TakenValue
+
+    Returns
+    -------
+    list of str
+        A line for each.
+    """
     return [f"{t.what}: {f'{t.value} ' if t.value else ''}{t.why} ({t.names})" for t in taken]
 
 
@@ -166,7 +184,7 @@ def _cells(values: list[float]) -> list[str]:
 
 def _example(geometry: OpwGeometry, values: ArmValues) -> tuple[str, str] | None:
     """A job of a joint move and a line from the start pose, and its points; None if none fits."""
-    settings = {n: v for n, v in zip(LENGTHS, geometry.lengths, strict=True)}
+    settings = dict(zip(LENGTHS, geometry.lengths, strict=True))
     limits, shared = values.groups["limits"], values.groups["what controller and arm share"]
     arm = Kinematics(
         **settings,
@@ -180,7 +198,8 @@ def _example(geometry: OpwGeometry, values: ArmValues) -> tuple[str, str] | None
     here = arm.forward(start)
     size = 1e3 * LINE * (geometry.lengths[4] + geometry.lengths[5])
     for way in (*_ways(size), *_ways(size / 3.0)):
-        line, joints = [], start
+        line: list[np.ndarray] = []
+        joints = start
         for share in np.linspace(0.0, 1.0, STEPS + 1):
             frame = here.copy()
             frame[:3, 3] += share * way
@@ -199,9 +218,16 @@ def _ways(size: float) -> Iterator[np.ndarray]:
 
 
 def _job() -> str:
-    rows = ("//EXAMPLE", "' A joint move, a line back and forth, and home again", "MOVJ P000 VJ=50.00",
-            "MOVJ P001 VJ=50.00", "MOVL P000 V=100.0 PL=0", "MOVL P001 V=100.0 PL=0",
-            "MOVJ P000 VJ=50.00", "END")  # fmt: skip
+    rows = (
+        "//EXAMPLE",
+        "' A joint move, a line back and forth, and home again",
+        "MOVJ P000 VJ=50.00",
+        "MOVJ P001 VJ=50.00",
+        "MOVL P000 V=100.0 PL=0",
+        "MOVL P001 V=100.0 PL=0",
+        "MOVJ P000 VJ=50.00",
+        "END",
+    )
     return "\n".join(rows) + "\n"
 
 

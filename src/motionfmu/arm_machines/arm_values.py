@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.arm_machines.machine_arm import (
-    CONTROLLER,
     DRIVES,
     LENGTHS,
     PLANT,
@@ -22,6 +21,7 @@ from motionfmu.arm_machines.machine_arm import (
 )
 from motionfmu.arms.arm_description import (
     ArmDescription,
+    ArmJoint,
     RigidLink,
     angles_of,
     joined,
@@ -38,7 +38,7 @@ MASS_POWER = 2.3
 RATIOS = (30, 50, 80, 100, 120, 160)  # of strain wave gears
 MOTOR_SPEED = 4500.0 / 60.0 * 2.0 * math.pi  # [rad/s] at a joint's highest speed, at most
 ENDLESS = math.radians(3600.0)  # what the controller takes for a joint without ends
-SPARE = 3.0  # torque limit of a motor per what its joint's motion asks for: servo motors bear that at peak
+SPARE = 3.0  # torque limit of a motor per what the motion asks for, as servo motors bear at peak
 EXACT = 10  # digits of geometry in degrees
 STATES, SEED = 400, 1  # random states for largest torques and inertias
 # Inner angles at the start: upper arm upright, forearm level, hand down.
@@ -47,7 +47,7 @@ START = np.radians([0.0, 0.0, 90.0, 0.0, 90.0, 0.0])
 
 @dataclass(frozen=True)
 class TakenValue:
-    """A value that the description does not have, and why it is this one."""
+    """A value that is not in the description, and why it is this."""
 
     what: str
     names: str  # of the parameters
@@ -57,7 +57,7 @@ class TakenValue:
 
 @dataclass(frozen=True)
 class ArmValues:
-    """Values of [set] by group, and which of them are taken for granted."""
+    """Values of [set] by group, and what is taken for granted."""
 
     arm: ArmDescription  # with what was taken
     groups: dict[str, dict[str, Any]]
@@ -114,7 +114,7 @@ class _Values:
                 tensor=share * self.size**2 * link.tensor,
             )
             shapes = joints[k].link.shapes
-            moved = joined(own.name, [(own, back)])
+            moved = joined(own.name, [(own, np.asarray(back, dtype=np.float64))])
             joints[k] = replace(joints[k], link=replace(moved, shapes=shapes))
             masses.append(own.mass)
         names = ", ".join(joints[k].link.name for k in bare)
@@ -127,41 +127,40 @@ class _Values:
         return replace(arm, joints=tuple(joints))
 
     def _moving(self, arm: ArmDescription) -> ArmDescription:
-        """With speeds, accelerations and gears for joints that have none."""
-        joints = list(arm.joints)
-        known = self.like.arm.joints
+        """With speeds, ranges, accelerations and gears for joints that have none."""
+        joints = [self._limited(k, j) for k, j in enumerate(arm.joints)]
         name = self.like.machine.name
-        bare = [k for k in range(SIX) if math.isinf(joints[k].speed)]
-        for k in bare:
-            joints[k] = replace(joints[k], speed=known[k].speed)
-        if bare:
+        if bare := [k for k, j in enumerate(arm.joints) if math.isinf(j.speed)]:
             speeds = in_degrees(np.array([j.speed for j in joints]))
-            self._take(f"speed of joints {_numbered(bare)}", "soft.joint_speed", speeds,
-                       f"deg/s; of {name}")  # fmt: skip
-        for k in range(SIX):
-            time = known[k].speed / float(known[k].acceleration or 1.0)
-            joints[k] = replace(
-                joints[k],
-                low=max(joints[k].low, -ENDLESS),
-                high=min(joints[k].high, ENDLESS),
-                acceleration=joints[k].acceleration or joints[k].speed / time,
-            )
+            what = f"speed of joints {_numbered(bare)}"
+            self._take(what, "soft.joint_speed", speeds, f"°/s; of {name}")
         if any(j.acceleration is None for j in arm.joints):
-            self._take("acceleration", "soft.joint_acc",
-                       in_degrees(np.array([j.acceleration for j in joints])),
-                       f"deg/s2; full speed in the time of {name}, 0.25 to 0.35 s")  # fmt: skip
+            found = in_degrees(np.array([j.acceleration for j in joints]))
+            why = f"°/s²; full speed in the time of {name}, 0.25 to 0.35 s"
+            self._take("acceleration", "soft.joint_acc", found, why)
         if endless := [k for k, j in enumerate(arm.joints) if math.isinf(j.low)]:
-            self._take(f"range of joints {_numbered(endless)}, which have none", "soft.joint_low",
-                       math.degrees(ENDLESS), "deg both ways")  # fmt: skip
-        bare = [k for k in range(SIX) if joints[k].ratio is None]
-        for k in bare:
-            most = MOTOR_SPEED / joints[k].speed
-            fits = [n for n in RATIOS if n <= most]
-            joints[k] = replace(joints[k], ratio=float(fits[-1] if fits else max(1, int(most))))
-        if bare:
-            self._take("gear ratio", "soft.gear_ratio, arm.gear_ratio", [j.ratio for j in joints],
-                       "the highest of strain wave gears with 4500 rpm at full speed")  # fmt: skip
+            what = f"range of joints {_numbered(endless)}, which have none"
+            self._take(what, "soft.joint_low", math.degrees(ENDLESS), "° both ways")
+        if any(j.ratio is None for j in arm.joints):
+            why = "the highest of strain wave gears with 4500 rpm at full speed"
+            names = "soft.gear_ratio, arm.gear_ratio"
+            self._take("gear ratio", names, [j.ratio for j in joints], why)
         return replace(arm, joints=tuple(joints))
+
+    def _limited(self, k: int, joint: ArmJoint) -> ArmJoint:
+        known = self.like.arm.joints[k]
+        speed = known.speed if math.isinf(joint.speed) else joint.speed
+        fits = [n for n in RATIOS if n * speed <= MOTOR_SPEED]
+        ratio = fits[-1] if fits else max(1, int(MOTOR_SPEED / speed))
+        time = known.speed / float(known.acceleration or 1.0)
+        return replace(
+            joint,
+            speed=speed,
+            low=max(joint.low, -ENDLESS),
+            high=min(joint.high, ENDLESS),
+            acceleration=joint.acceleration or speed / time,
+            ratio=float(joint.ratio or ratio),
+        )
 
     def _frames(self, arm: ArmDescription) -> list[Array]:
         """Frames of the links of a description in those of the plant."""
@@ -187,11 +186,11 @@ class _Values:
             found.append(min(within, key=abs) if within else nearest)
         start = np.array(found)
         fifth = signs[4] * start[4] - offsets[4]
-        if abs(math.sin(fifth)) < 0.1:  # noqa: PLR2004  (joint 5 near a singular place)
+        if abs(math.sin(fifth)) < 0.1:
             joint = self.arm.joints[4]
             start[4] = min(max(start[4] + 0.5, joint.low), joint.high)
         self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
-                   "deg; upper arm upright, forearm level, hand down, as far as ranges let it")  # fmt: skip
+                   "°; upper arm upright, forearm level, hand down, within the ranges")  # fmt: skip
         return start
 
     def _shared(self, start: Array) -> dict[str, Any]:
@@ -288,17 +287,17 @@ class _Values:
             "drives.torque_limit": self._torque_limits(torque, motors),
         }
         speeds = np.array([j.speed for j in self.arm.joints]) * ratio * 60.0 / (2.0 * math.pi)
-        if max(speeds) > 5000.0:  # noqa: PLR2004  (the drives' own limit)
+        if max(speeds) > 5000.0:
             gains["drives.speed_limit"] = [float(round(max(5000.0, 1.1 * s))) for s in speeds]
         name = like.machine.name
         self._take("motors, their friction", "arm.motor_*", motors["arm.motor_inertia"],
-                   f"kg.m2; of {name} by inertia and torque of this arm's own motion")  # fmt: skip
+                   f"kg·m²; of {name} by inertia and torque of this arm's own motion")  # fmt: skip
         self._take("stiffness, lost motion, friction of gears", "arm.stiffness_*, arm.lost_motion",
-                   gears["arm.stiffness_1"], f"N.m/rad; of {name} by torque; 3 arcmin")  # fmt: skip
+                   gears["arm.stiffness_1"], f"N·m/rad; of {name} by torque; 3 arcmin")  # fmt: skip
         self._take("errors of its geometry", "arm.origin_error, arm.zero_error", "",
                    f"of {name} by size; 0 makes it exact")  # fmt: skip
         self._take("gains of the drives", "drives.velocity_gain", gains["drives.velocity_gain"],
-                   f"N.m.s/rad; of {name} by the motors' inertia; motionfmu margins judges them")  # fmt: skip
+                   f"N·m·s/rad; of {name} by the motors' inertia, for margins")  # fmt: skip
         return {"motors": motors, "gears": gears, "errors": errors, "drives": gains}
 
     def _torque_limits(self, torque: Array, motors: dict[str, list[float]]) -> list[float]:
@@ -314,13 +313,14 @@ class _Values:
                 continue
             found.append(float(f"{SPARE * need:.4g}"))
             if joint.effort:
-                weak.append(f"{joint.name}: {joint.effort:g} of {need * ratio:.4g} N.m")
+                weak.append(f"{joint.name}: {joint.effort:g} of {need * ratio:.4g} N·m")
         if weak:
-            self._take("torque that bears payload and accelerations", "drives.torque_limit", found,
-                       f"N.m of the motors; the description's is too small: {', '.join(weak)}")  # fmt: skip
+            why = f"N·m of the motors; the description's is too small: {', '.join(weak)}"
+            what = "torque that bears payload and accelerations"
+            self._take(what, "drives.torque_limit", found, why)
         elif not all(j.effort for j in self.arm.joints):
             self._take("torque", "drives.torque_limit", found,
-                       "N.m of the motors; three times what the motion asks for")  # fmt: skip
+                       "N·m of the motors; three times what the motion asks for")  # fmt: skip
         return found
 
     def _own_payload(self) -> tuple[float, Array, Array]:

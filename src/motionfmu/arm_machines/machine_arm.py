@@ -28,17 +28,41 @@ LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 
 @dataclass(frozen=True)
 class ArmMachine:
-    """A machine with an arm: its tables, and values of its parameters in SI units."""
+    """A machine with an arm, and values of its parameters in SI units.
+
+    Attributes
+    ----------
+    machine : Machine
+    tables : mapping
+        Of its file.
+    names : mapping
+        Component by FMU.
+    values : mapping
+        By FMU and variable, such as ``robot_arm.mass``.
+    arm : ArmDescription
+        Without the payload.
+    geometry : OpwGeometry
+    """
 
     machine: Machine
     tables: Mapping[str, Any]
-    names: Mapping[str, str]  # component by FMU
-    values: Mapping[str, Array]  # by FMU and variable, such as robot_arm.mass
+    names: Mapping[str, str]
+    values: Mapping[str, Array]
     arm: ArmDescription
     geometry: OpwGeometry
 
     def of(self, fmu: str, variable: str) -> Array:
-        """Value of a parameter in SI units, in its shape."""
+        """Value of a parameter.
+
+        Parameters
+        ----------
+        fmu, variable : str
+
+        Returns
+        -------
+        ndarray
+            In SI units, in its shape.
+        """
         return self.values[f"{fmu}.{variable}"]
 
 

@@ -13,7 +13,7 @@ PRISMATIC = "prismatic"
 
 @dataclass(frozen=True)
 class LinkShape:
-    """A simple body of a link, or a reference to a mesh, in the link's frame."""
+    """A simple body or a mesh, in the frame of its link."""
 
     use: str  # visual or collision
     kind: str  # box, cylinder, sphere or mesh
@@ -24,7 +24,7 @@ class LinkShape:
 
 @dataclass(frozen=True)
 class RigidLink:
-    """What a link weighs and looks like; a link without inertia says so by `mass` 0."""
+    """What a link weighs and looks like; its mass is 0 if unknown."""
 
     name: str
     mass: float = 0.0  # [kg]
@@ -35,7 +35,9 @@ class RigidLink:
 
 @dataclass(frozen=True)
 class ArmJoint:
-    """A joint and the link behind it; [rad] and [N.m], of a prismatic one [m] and [N].
+    """A joint and the link behind it.
+
+    Units are [rad] and [N.m], of a prismatic one [m] and [N].
 
     Attributes
     ----------
@@ -116,12 +118,33 @@ class ArmDescription:
         return sum(j.link.mass for j in self.joints)
 
     def all_joints(self, q: Array) -> Array:
-        """Angles (..., joints) of all joints, of (..., driven joints)."""
+        """Angles of all joints, those that follow others too.
+
+        Parameters
+        ----------
+        q : (..., driven joints) array_like
+            [rad], of prismatic joints [m].
+
+        Returns
+        -------
+        (..., joints) ndarray
+        """
         share, offset = self._shares()
         return np.asarray(np.asarray(q, float) @ share.T + offset)
 
     def frames(self, q: Array) -> list[Array]:
-        """Frames of the links in the base, (..., 4, 4) each, at driven joints (..., driven)."""
+        """Where the links are.
+
+        Parameters
+        ----------
+        q : (..., driven joints) array_like
+            [rad], of prismatic joints [m].
+
+        Returns
+        -------
+        list of (..., 4, 4) ndarray
+            Frame of each in the base [m].
+        """
         angles = self.all_joints(q)
         frame = np.broadcast_to(np.eye(4), (*angles.shape[:-1], 4, 4))
         found = []
@@ -246,7 +269,7 @@ def angles_of(turn: Array) -> tuple[float, float, float]:
     pitch = float(np.arctan2(-turn[2, 0], np.hypot(turn[2, 1], turn[2, 2])))
     if np.hypot(turn[2, 1], turn[2, 2]) < STRAIGHT:
         roll = float(np.arctan2(-turn[1, 2], turn[1, 1]))
-        return (roll if pitch < 0.0 else roll, pitch, 0.0)
+        return roll, pitch, 0.0
     roll = float(np.arctan2(turn[2, 1], turn[2, 2]))
     return roll, pitch, float(np.arctan2(turn[1, 0], turn[0, 0]))
 

@@ -51,16 +51,16 @@ class OpwGeometry:
 
     @property
     def origins(self) -> Array:
-        """Joints in the links before [m], (6, 3), in frames parallel to the base at inner 0.
+        """Joints in the links before as the plant has them, (6, 3) [m].
 
-        As the plant has them: the last one is on the flange.
+        Frames are parallel to the base at inner 0; the last joint is on the flange.
         """
         a1, a2, b, c1, c2, c3, c4 = self.lengths
         return np.array([[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]])
 
     @property
     def joint_frames(self) -> list[tuple[Array, Array]]:
-        """Frame of each joint at angle 0 in the link before, 4x4, and its axis there."""
+        """Frame of each joint at 0 in the link before, and its axis."""
         found = []
         for k, (name, origin) in enumerate(zip(AXES, self.origins, strict=True)):
             axis = _UNIT["xyz".index(name)]
@@ -68,7 +68,18 @@ class OpwGeometry:
         return found
 
     def forward(self, q: Array) -> Array:
-        """Frames (..., 4, 4) of the tip in the arm's base at joint angles (..., 6) [rad]."""
+        """Where the tip is.
+
+        Parameters
+        ----------
+        q : (..., 6) array_like
+            Joint angles [rad].
+
+        Returns
+        -------
+        (..., 4, 4) ndarray
+            Its frame in the arm's base [m].
+        """
         inner = np.asarray(self.signs) * np.asarray(q, float) - np.asarray(self.offsets)
         frame = np.broadcast_to(self.base, (*inner.shape[:-1], 4, 4))
         for k, (axis, origin) in enumerate(zip(AXES, self.origins, strict=True)):
@@ -80,11 +91,11 @@ class OpwGeometry:
 
 
 class NoOpwGeometry(ValueError):
-    """A chain of joints has other kinematics; the text says why."""
+    """A chain of joints has other kinematics, and the text says why."""
 
 
 @dataclass(frozen=True)
-class _Lines:
+class _JointAxes:
     """Axes of the joints with all angles 0: points and directions in the base, (joints, 3)."""
 
     points: Array
@@ -111,17 +122,28 @@ class _Lines:
         return self.angle(i, j) > math.pi / 2 - ANGLE
 
 
-def _lines(arm: ArmDescription) -> _Lines:
+def _lines(arm: ArmDescription) -> _JointAxes:
     frames = arm.frames(np.zeros(len(arm.driven)))
     places = [f[:3, 3] for f in frames]
-    return _Lines(
+    return _JointAxes(
         np.array(places),
         np.array([f[:3, :3] @ j.axis for f, j in zip(frames, arm.joints, strict=True)]),
     )
 
 
+# CCN 22: one question for each kind of arm, in the order in which they exclude each other.
 def kind_of(arm: ArmDescription) -> str:
-    """In words what kind of arm a chain is, by its joints and where their axes lie."""
+    """Say what kind of arm a chain of joints is.
+
+    Parameters
+    ----------
+    arm : ArmDescription
+
+    Returns
+    -------
+    str
+        Such as ``a SCARA``, by its joints and where their axes lie.
+    """
     slides = "".join("P" if j.slides else "R" for j in arm.joints)
     lines = _lines(arm)
     if any(j.follows is not None for j in arm.joints):
@@ -130,10 +152,10 @@ def kind_of(arm: ArmDescription) -> str:
     if slides == "RRRRRRR":
         return "an arm of seven joints"
     if slides.startswith("PPP"):
-        return "a gantry" + (" with a wrist" if len(slides) > 3 else "")  # noqa: PLR2004
+        return "a gantry" + (" with a wrist" if len(slides) > 3 else "")
     if slides[:1] == "P" and slides[1:] == "R" * SIX:
         return "an arm of six joints on a linear track"
-    if len(slides) == 4 and slides.count("P") == 1:  # noqa: PLR2004
+    if len(slides) == 4 and slides.count("P") == 1:
         if all(lines.parallel(1, k) for k in (2, 3, 4)):
             return "a SCARA"
     if slides == "RRRR" and lines.upright(1, 2) and lines.parallel(2, 3):
@@ -146,7 +168,7 @@ def kind_of(arm: ArmDescription) -> str:
 
 
 def opw_geometry(arm: ArmDescription) -> OpwGeometry:
-    """Recognize an arm with axes 2 and 3 parallel and a spherical wrist.
+    """Measure an arm with a spherical wrist, axes 2 and 3 parallel.
 
     Parameters
     ----------
@@ -171,12 +193,10 @@ def opw_geometry(arm: ArmDescription) -> OpwGeometry:
     states = np.random.default_rng(SEED).uniform(-math.pi, math.pi, (STATES, SIX))
     apart = (found.forward(states) - arm.forward(states))[..., :3, 3]
     worst = float(np.linalg.norm(apart, axis=-1).max())
-    return OpwGeometry(
-        found.lengths, found.signs, found.offsets, found.base, found.flange, worst
-    )
+    return OpwGeometry(found.lengths, found.signs, found.offsets, found.base, found.flange, worst)
 
 
-def _in_the_way(lines: _Lines) -> list[str]:
+def _in_the_way(lines: _JointAxes) -> list[str]:
     told = []
     if not lines.parallel(2, 3):
         told.append(f"axes 2 and 3 are {_degrees(lines.angle(2, 3))} from parallel")
@@ -200,7 +220,7 @@ def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.4g}°"
 
 
-def _crossing(lines: _Lines) -> Array:
+def _crossing(lines: _JointAxes) -> Array:
     """The point nearest to axes 4, 5, 6 in the sense of least squares."""
     a, b = np.zeros((3, 3)), np.zeros(3)
     for k in (3, 4, 5):
@@ -209,7 +229,8 @@ def _crossing(lines: _Lines) -> Array:
     return np.asarray(np.linalg.solve(a, b))
 
 
-def _measured(arm: ArmDescription, lines: _Lines, kind: str) -> OpwGeometry:
+# CCN 20: the arm is measured from its base to its tip; each step needs the frame of the one before.
+def _measured(arm: ArmDescription, lines: _JointAxes, kind: str) -> OpwGeometry:
     """Lengths of an arm whose axes lie as they must, with the pose at joint angles 0 as datum."""
     points, along = lines.points, lines.along
     up_sign = -1 if along[0, 2] < -ANGLE else 1
@@ -294,4 +315,4 @@ def _tidy(value: float) -> float:
 def _tidy_frame(frame: Array) -> Array:
     """A frame whose turn is none where it is rounding alone."""
     apart = np.abs(frame - np.eye(4)).max()
-    return np.eye(4) if apart < 1e-9 else np.asarray(frame)  # noqa: PLR2004
+    return np.eye(4) if apart < 1e-9 else np.asarray(frame)

@@ -10,13 +10,13 @@
     high = 165
     speed = 250
 
-DH: T = Rz(theta + q) Tz(d) Tx(a) Rx(alpha); modified (Craig): T = Rx(alpha) Tx(a) Rz(theta + q) Tz(d),
-of a prismatic joint d + q. OPW has its lengths in a table [opw] instead.
+DH is T = Rz(theta + q) Tz(d) Tx(a) Rx(alpha), modified DH (Craig) is T = Rx(alpha) Tx(a)
+Rz(theta + q) Tz(d), of a prismatic joint with d + q. OPW has its lengths in a table [opw] instead.
 """
 
 import math
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -41,11 +41,11 @@ _X, _, _Z = np.eye(3)
 Six = tuple[float, float, float, float, float, float]
 
 
-class _Keys(BaseModel):
+class _TableKeys(BaseModel):
     model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
-class _JointRow(_Keys):
+class _JointRow(_TableKeys):
     name: str | None = None
     kind: Literal["revolute", "continuous", "prismatic"] = "revolute"
     a: float = 0.0
@@ -72,7 +72,7 @@ class _JointRow(_Keys):
         return self
 
 
-class _OpwRow(_Keys):
+class _OpwRow(_TableKeys):
     a1: float
     a2: float
     b: float = 0.0
@@ -90,7 +90,7 @@ class _OpwRow(_Keys):
         return self
 
 
-class _TableFile(_Keys):
+class _TableFile(_TableKeys):
     name: str
     convention: Literal["dh", "modified_dh", "opw"]
     base: Six = (0.0,) * 6  # X Y Z A B C of the first frame
@@ -136,7 +136,7 @@ def _told(error: ValidationError, lines: Lines, file: str) -> list[str]:
     for one in error.errors():
         place = [str(p) for p in one["loc"]]
         table = ".".join(place[:2]) if place[:1] == ["joint"] else ".".join(place[:1])
-        key = place[2] if len(place) > 2 else (place[-1] if place else "")  # noqa: PLR2004
+        key = place[2] if len(place) > 2 else (place[-1] if place else "")
         line = lines.of("", key) if len(place) == 1 else lines.of(table, key)
         told = one["msg"].removeprefix("Value error, ")
         value = "" if isinstance(one["input"], dict) else f" = {shown(one['input'])}"

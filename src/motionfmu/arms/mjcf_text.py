@@ -6,7 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from motionfmu.arms.arm_description import G, ArmDescription, ArmJoint, Array, RigidLink
+from motionfmu.arms.arm_description import ArmDescription, ArmJoint, Array, G, RigidLink
 from motionfmu.arms.urdf_text import numbers
 
 # MuJoCo refuses a body that moves without mass or inertia.

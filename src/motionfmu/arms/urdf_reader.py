@@ -53,6 +53,10 @@ class _Tree:
             tip = _end(joint, "parent")
         return found[::-1]
 
+    def movers(self, tip: str) -> list[str]:
+        """Names of the joints that move between the root and a link."""
+        return [j.given["name"] for j in self.chain(tip) if j.given.get("type") in MOVING]
+
 
 def urdf_arm(file: str | Path, tip: str | None = None) -> ArmDescription:
     """Read an arm from a URDF.
@@ -89,6 +93,7 @@ def urdf_text_arm(text: str, file: str, tip: str | None = None) -> ArmDescriptio
     return ArmDescription(name, reader.base, joints, tip, last, tuple(notes))
 
 
+# CCN 16: one refusal for each thing that keeps links and joints from being a tree.
 def _tree(robot: XmlElement) -> _Tree:
     faults = Faults()
     if robot.tag != "robot":
@@ -150,23 +155,23 @@ def _end(joint: XmlElement, which: str) -> str:
     return child.word("link")
 
 
+# CCN 16: the tip asked for, one by its name, or the only one; or why there is none.
 def _tip(tree: _Tree, tip: str | None) -> str:
     """The end of the chain: the one asked for, or that behind the most joints."""
     if tip is not None:
         if tip not in tree.links:
             raise InputError(f"{tree.file}: no link {shown(tip)}{suggestion(tip, tree.links)}")
         return tip
-    moving = {n: [j for j in tree.chain(n) if j.given.get("type") in MOVING] for n in tree.links}
-    most = max(len(x) for x in moving.values())
-    longest = {n: x for n, x in moving.items() if len(x) == most}
-    if len({id(x[-1]) for x in longest.values() if x}) > 1:
-        ends = [n for n in longest if n not in tree.below]
+    movers = {n: tree.movers(n) for n in tree.links}
+    most = max(map(len, movers.values()))
+    longest = [n for n, names in movers.items() if len(names) == most]
+    ends = [n for n in longest if n not in tree.below]
+    if len({tuple(movers[n]) for n in longest}) > 1:
         raise InputError(f"{tree.file}: several chains: --tip one of {_listed(ends)}")
     for name in USUAL_TIPS:
         if found := [n for n in longest if n == name or n.endswith(f"_{name}")]:
             return found[0]
-    ends = [n for n in longest if n not in tree.below]
-    return ends[0] if len(ends) == 1 else next(iter(longest))
+    return ends[0] if len(ends) == 1 else longest[0]
 
 
 def _listed(names: Sequence[str]) -> str:

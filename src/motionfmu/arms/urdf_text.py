@@ -76,7 +76,10 @@ def _link(link: RigidLink) -> Iterator[str]:
         yield f"      <inertia {given}/>"
         yield "    </inertial>"
     for shape in link.shapes:
-        yield f"    <{shape.use}>{_origin(shape.origin)}<geometry>{_geometry(shape)}</geometry></{shape.use}>"
+        yield f"    <{shape.use}>"
+        yield f"      {_origin(shape.origin)}"
+        yield f"      <geometry>{_geometry(shape)}</geometry>"
+        yield f"    </{shape.use}>"
     yield "  </link>"
 
 

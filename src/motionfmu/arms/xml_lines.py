@@ -30,7 +30,9 @@ class XmlElement:
     def wrong(self, told: str) -> InputError:
         """A message with file, line and element."""
         name = self.given.get("name")
-        return InputError(f"{self.file}:{self.line}: <{self.tag}>{f' {name}' if name else ''}: {told}")
+        return InputError(
+            f"{self.file}:{self.line}: <{self.tag}>{f' {name}' if name else ''}: {told}"
+        )
 
     def words(self, key: str, count: int, usual: tuple[float, ...] | None) -> tuple[float, ...]:
         """Finite numbers of an attribute; what is usual if it is not there."""

@@ -50,7 +50,7 @@ def export(  # noqa: PLR0913  (each is an option)
         bool, typer.Option("--mjcf", help="The arm of a machine as a model of MuJoCo.")
     ] = False,
 ) -> None:
-    """Make a scenario's system one FMU, or an SSP of its FMUs; an FMU with its files; an arm's URDF.
+    """Make a scenario's system one FMU, or an SSP; an FMU with its files inside; an arm's URDF.
 
     FMU: parameters and open inputs of all components are its variables, by the names of the
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,

@@ -81,9 +81,7 @@ def _idle(a: ca.SX, values: dict[str, float]) -> set[str]:
     return found
 
 
-def _points(
-    expressions: list[ca.SX], values: dict[str, float], idle: set[str]
-) -> list[_Numbers]:
+def _points(expressions: list[ca.SX], values: dict[str, float], idle: set[str]) -> list[_Numbers]:
     """Values of expressions at random points; a symbol has one value in all expressions."""
     symbols = ca.symvar(ca.veccat(*expressions))
     columns: list[_Numbers] = []
@@ -167,8 +165,15 @@ def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
         if e.is_zero():
             row.pop(k, None)
         else:
-            idle = (old is None or old.idle) and (gone.idle or v.idle)
-            row[k] = _Entry(e, (old.at if old else 0.0) - at * v.at, e.is_constant(), idle)
+            none = gone.idle or v.idle
+            idle = (old is None or old.idle) and none
+            if old is not None and old.idle and not idle:
+                del row[k]  # it stands where it would stand if it came now, for sums have an order
+            # What is 0 by an idle parameter leaves a constant pivot what it was.
+            kept = old is None or old.idle or old.constant
+            constant = kept and (none or (gone.constant and by[j].constant and v.constant))
+            constant = constant or e.is_constant()
+            row[k] = _Entry(e, (old.at if old else 0.0) - at * v.at, constant, idle)
     return factor
 
 
