@@ -112,6 +112,7 @@ def _rows(a: ca.SX, at: _Numbers, idle: set[str]) -> list[_Row]:
     return rows
 
 
+# CCN 17: counting what fills and choosing by it read the same entries.
 def _pivot(rows: list[_Row], left: list[int], labels: Sequence[str]) -> tuple[int, int]:
     """Row and column of the next pivot: constant, least fill, largest in its row."""
     count: dict[int, int] = {}
@@ -152,6 +153,7 @@ def _over(e: ca.SX, pivot: _Entry) -> ca.SX:
     return e / pivot.e if pivot.constant else e * (1.0 / pivot.e)
 
 
+# CCN 19: whether an entry is idle, constant or gone is decided where it is computed.
 def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
     """Remove unknown j from a row; returns the factor, which the right side needs as well."""
     gone = row.pop(j)
