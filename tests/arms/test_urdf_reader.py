@@ -84,7 +84,7 @@ def test_the_chain_is_that_of_the_tip():
     arm = urdf_text_arm(text, "r.urdf", "f")
     assert [j.name for j in arm.joints] == ["j1", "k"]
     assert any("j2 (revolute) is beside the chain: held at 0" in n for n in arm.notes)
-    with pytest.raises(InputError, match="several chains: --tip one of f, tool0"):
+    with pytest.raises(InputError, match="--tip one of f, tool0, or l1, where they part"):
         urdf_text_arm(text, "r.urdf")
     straight = text.replace('<link name="f">', '<link name="g"/><link name="f">').replace(
         f'<joint name="k" {TURN}', '<joint name="k" type="fixed">'

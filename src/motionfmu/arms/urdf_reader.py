@@ -167,11 +167,19 @@ def _tip(tree: _Tree, tip: str | None) -> str:
     longest = [n for n, names in movers.items() if len(names) == most]
     ends = [n for n in longest if n not in tree.below]
     if len({tuple(movers[n]) for n in longest}) > 1:
-        raise InputError(f"{tree.file}: several chains: --tip one of {_listed(ends)}")
+        told = f"{tree.file}: several chains: --tip one of {_listed(ends)}"
+        raise InputError(f"{told}, or {_parting(tree, ends)}, where they part")
     for name in USUAL_TIPS:
         if found := [n for n in longest if n == name or n.endswith(f"_{name}")]:
             return found[0]
     return ends[0] if len(ends) == 1 else longest[0]
+
+
+def _parting(tree: _Tree, ends: Sequence[str]) -> str:
+    """The last link that all ways from the root have."""
+    ways = [[_end(j, "child") for j in tree.chain(n)] for n in ends]
+    shared = [step[0] for step in zip(*ways, strict=False) if len(set(step)) == 1]
+    return shared[-1] if shared else next(n for n in tree.links if n not in tree.into)
 
 
 def _listed(names: Sequence[str]) -> str:

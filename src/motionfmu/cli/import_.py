@@ -9,7 +9,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.cli.common import app
 from motionfmu.cli.run import warnings
 
-ARMS = (".urdf", ".toml")
+ARMS = (".urdf", ".xml", ".xacro", ".toml")
 
 
 @app.command("import")
