@@ -1,5 +1,7 @@
 """Arms written and read back: URDF by our reader and pinocchio, MJCF by MuJoCo."""
 
+import itertools
+import math
 from dataclasses import replace
 
 import mujoco
@@ -10,6 +12,7 @@ from random_arms import RandomArm, worst_differences
 from motionfmu import run
 from motionfmu.arm_machines import arm_machine
 from motionfmu.arms import ArmDescription, RigidLink, mjcf_text, urdf_text
+from motionfmu.arms.arm_description import angles_of, turn_of
 from motionfmu.arms.mjcf_text import LEAST_INERTIA, LEAST_MASS
 from motionfmu.arms.urdf_reader import urdf_text_arm
 
@@ -77,6 +80,19 @@ def test_bodies_are_written_as_they_were():
     assert len(arm.joints[0].link.shapes) == 4
     geoms = mujoco.MjModel.from_xml_string(mjcf_text(arm)).geom_size
     assert geoms == pytest.approx(np.array([[0.5, 1, 1.5], [0.1, 1, 0], [0.3, 0, 0]]))
+
+
+def test_every_quarter_turn_is_written_and_read_back():
+    """The 24 turns of a cube, among them pitches of 90 deg, where roll and yaw are one."""
+    right = math.pi / 2
+    for angles in itertools.product(range(4), repeat=3):
+        turn = turn_of(*(right * k for k in angles)).round()  # without digits that tell the angles
+        assert turn_of(*angles_of(turn)) == pytest.approx(turn, abs=1e-15)
+    rng = np.random.default_rng(3)
+    for roll, yaw in rng.uniform(-3.0, 3.0, (20, 2)):
+        for pitch in (-right, right, right - 1e-12):
+            turn = turn_of(roll, pitch, yaw)
+            assert turn_of(*angles_of(turn)) == pytest.approx(turn, abs=2e-12)
 
 
 def weighed(arm: ArmDescription) -> ArmDescription:

@@ -163,6 +163,19 @@ def test_rounded_angles_are_an_arm_and_the_deviation_is_known():
     assert opw_geometry(moved(5, [0.5 * MEET, 0, 0])).deviation > 1e-6
 
 
+def test_a_wrist_a_quarter_round_is_told_alike_whatever_the_last_digit():
+    """Axis 5 along x: one of two signs fits as well as the other, and rounding must not choose."""
+    found = []
+    for little in (-1e-12, 1e-12):
+        for quarter in (-math.pi / 2, math.pi / 2):
+            lengths = (0.1, -0.1, 0.0, 0.4, 0.5, 0.6, 0.1)
+            offsets = (0.0, 0.0, 0.0, quarter + little, 0.0, 0.0)
+            own = opw_geometry(arm_of(OpwGeometry(lengths, (1,) * 6, offsets, UP, UP)))
+            found.append((own.signs[4], round(own.offsets[3], 9)))
+    assert found[:2] == found[2:]
+    assert len({offset for _, offset in found}) == 1
+
+
 def test_kinds_of_arms_have_names():
     arm = straight()
     z = np.array([0.0, 0.0, 1.0])

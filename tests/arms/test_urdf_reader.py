@@ -93,6 +93,24 @@ def test_the_chain_is_that_of_the_tip():
     assert (arm.tip, arm.joints[0].link.mass) == ("tool0", 4.0)
 
 
+def test_a_joint_that_mimics_one_that_mimics():
+    """Twice the first and 0.3; a tenth less that: -2 q - 0.2."""
+    one = TURN + '<mimic joint="j1" multiplier="2" offset="0.3"/>'
+    two = TURN + '<mimic joint="j2" multiplier="-1" offset="0.1"/>'
+    arm = urdf_text_arm(chain(TURN, one, two), "r.urdf")
+    assert arm.all_joints([0.5]) == pytest.approx([0.5, 1.3, -1.2], abs=1e-15)
+    assert [j.name for j in arm.driven] == ["j1"]
+
+
+def test_a_joint_beside_the_chain_is_held_within_its_range():
+    """A slide that begins at 0.5 m: its 2 kg are there, and so is the middle of the 4 kg."""
+    slide = '<axis xyz="0 0 1"/><limit lower="0.5" upper="1"/>'
+    side = f'<joint name="k" type="prismatic">{slide}<parent link="l1"/><child link="f"/></joint>'
+    arm = urdf_text_arm(chain(TURN, more=LINK.format("f") + side), "r.urdf", "l1")
+    assert arm.joints[0].link.center == pytest.approx([0.0, 0.0, 0.25], abs=1e-15)
+    assert "joint k (prismatic) is beside the chain: held at 0.5" in arm.notes
+
+
 WRONG = {
     "no end": ("<robot", "r.urdf:1: no XML: unclosed token"),
     "another root": ("<sdf/>", "r.urdf:1: <sdf>: the root of a URDF is <robot>"),

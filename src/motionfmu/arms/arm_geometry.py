@@ -229,7 +229,7 @@ def _crossing(lines: _JointAxes) -> Array:
     return np.asarray(np.linalg.solve(a, b))
 
 
-# CCN 20: the arm is measured from its base to its tip; each step needs the frame of the one before.
+# CCN 19: the arm is measured from its base to its tip; each step needs the frame of the one before.
 def _measured(arm: ArmDescription, lines: _JointAxes, kind: str) -> OpwGeometry:
     """Lengths of an arm whose axes lie as they must, with the pose at joint angles 0 as datum."""
     points, along = lines.points, lines.along
@@ -267,7 +267,8 @@ def _measured(arm: ArmDescription, lines: _JointAxes, kind: str) -> OpwGeometry:
     both = math.atan2(float(fore @ x), float(fore @ up))
     turn = np.column_stack([np.cross(y, fore), y, fore])
     wrist = [float(turn[:, k] @ along[4]) for k in (0, 1)]
-    fifth = 1 if wrist[1] > 0.0 or (abs(wrist[1]) < ANGLE and wrist[0] < 0.0) else -1
+    beside = abs(wrist[1]) < ANGLE  # a quarter round: both signs fit, and rounding may not choose
+    fifth = 1 if (wrist[0] < 0.0 if beside else wrist[1] > 0.0) else -1
     roll = math.atan2(-fifth * wrist[0], fifth * wrist[1])
     turn = turn @ about(_UNIT[2], roll)
     tip = arm.forward(np.zeros(SIX))
