@@ -269,7 +269,7 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
     t->by_joints = true;
     t->turned = true;
     t->pose = r->pose;
-    t->branch = opw_branch(&c->arm.opw, r->joint);
+    t->branch = manipulator_branch(&c->arm, r->joint);
     memcpy(t->joint, r->joint, sizeof t->joint);
     for (int i = 0; i < OPW_JOINTS; i++) {
         t->turn[i] = (int)lround(r->joint[i] / TURN);
@@ -278,5 +278,5 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
 
 void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3])
 {
-    opw_factors(&c->arm.opw, r->joint, factor);
+    manipulator_factors(&c->arm, r->joint, factor);
 }

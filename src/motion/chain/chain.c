@@ -7,12 +7,6 @@
 /* Axes and rotations of a description have so many digits. */
 static const double UNIT_LENGTH = 1e-9;
 
-/* Where the joints are and where their axes point, base frame. */
-struct stand {
-    double origin[CHAIN_JOINTS][3]; /* [m] */
-    double axis[CHAIN_JOINTS][3];
-};
-
 static bool is_rotation(const double m[3][3])
 {
     double across[3];
@@ -39,8 +33,8 @@ bool chain_sound(const struct chain *c)
     return good && isfinite(vector3_dot(c->flange.at, c->flange.at)) && is_rotation(c->flange.turn);
 }
 
-static void stand_of(const struct chain *c, const double joint[CHAIN_JOINTS], struct stand *s,
-                     struct chain_pose *pose)
+void chain_axes_at(const struct chain *c, const double joint[CHAIN_JOINTS], struct chain_axes *s,
+                   struct chain_pose *pose)
 {
     /* Rotation behind so many joints. */
     double turned[CHAIN_JOINTS + 1][3][3] = { { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
@@ -71,9 +65,9 @@ static void stand_of(const struct chain *c, const double joint[CHAIN_JOINTS], st
 
 void chain_forward(const struct chain *c, const double joint[CHAIN_JOINTS], struct chain_pose *pose)
 {
-    struct stand s;
+    struct chain_axes s;
 
-    stand_of(c, joint, &s, pose);
+    chain_axes_at(c, joint, &s, pose);
 }
 
 /* The joint whose link a linkage keeps from being tilted by joint k; -1: none does. */
@@ -91,9 +85,9 @@ void chain_jacobian(const struct chain *c, const double joint[CHAIN_JOINTS],
                     struct chain_pose *pose, double column[CHAIN_JOINTS][6])
 {
     static const double none[3] = { 0.0, 0.0, 0.0 };
-    struct stand s;
+    struct chain_axes s;
 
-    stand_of(c, joint, &s, pose);
+    chain_axes_at(c, joint, &s, pose);
     for (int k = 0; k < c->joints; k++) {
         const int pivot = levelled(c, k);
         double arm[3];

@@ -42,6 +42,16 @@ bool chain_sound(const struct chain *c);
 void chain_forward(const struct chain *c, const double joint[CHAIN_JOINTS],
                    struct chain_pose *pose);
 
+/* Where the axes are, base frame. */
+struct chain_axes {
+    double origin[CHAIN_JOINTS][3]; /* [m] of the joints */
+    double axis[CHAIN_JOINTS][3];
+};
+
+/* The same with the axes. */
+void chain_axes_at(const struct chain *c, const double joint[CHAIN_JOINTS], struct chain_axes *axes,
+                   struct chain_pose *pose);
+
 /* The same with the motion of the flange for a unit rate of each joint: its velocity [m] or, of a
  * sliding joint, [1], and its turning [1], base frame. */
 void chain_jacobian(const struct chain *c, const double joint[CHAIN_JOINTS],

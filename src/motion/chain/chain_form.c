@@ -275,3 +275,15 @@ void chain_form_of(const struct chain *c, int32_t held, struct chain_form *f)
         chain_form_of(c, 2, f);
     }
 }
+
+int chain_form_open(const struct chain_form *f)
+{
+    const int count = f->chain.joints - (f->held >= 0);
+    const int open = f->kind == CHAIN_THREE_PARALLEL ? 5 : f->kind == CHAIN_SHOULDER_WRIST ? 4 : 3;
+
+    if (!(f->flags & CHAIN_FLIP)) {
+        return -1;
+    }
+    const int among = f->reversed ? count - 1 - open : open;
+    return among + (f->held >= 0 && among >= f->held);
+}

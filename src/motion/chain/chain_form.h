@@ -60,6 +60,9 @@ struct chain_form {
  * CHAIN_NONE, or the arm angle of an arm that has none. */
 void chain_form_of(const struct chain *c, int32_t held, struct chain_form *f);
 
+/* The joint (0 ..) that keeps its angle where the wrist's axes are in line; -1: there is none. */
+int chain_form_open(const struct chain_form *f);
+
 /* The lines and points with which a form is solved. */
 struct chain_points {
     struct chain_lines lines; /* reversed if the form is */
