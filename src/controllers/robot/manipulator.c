@@ -31,21 +31,28 @@ static void whole(const double joint[OPW_JOINTS], double q[CHAIN_JOINTS])
     memcpy(q, joint, OPW_JOINTS * sizeof *q);
 }
 
-static struct pose flange_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
+void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOINTS],
+                        struct opw_pose *flange)
 {
     struct chain_pose end;
-    struct opw_pose flange;
     double q[CHAIN_JOINTS];
+
+    if (!m->by_axes) {
+        opw_forward(&m->opw, joint, flange);
+        return;
+    }
+    whole(joint, q);
+    chain_forward(&m->axes.chain, q, &end);
+    memcpy(flange->at, end.at, sizeof flange->at);
+    memcpy(flange->turn, end.turn, sizeof flange->turn);
+}
+
+static struct pose flange_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
+{
+    struct opw_pose flange;
     struct pose p;
 
-    if (m->by_axes) {
-        whole(joint, q);
-        chain_forward(&m->axes.chain, q, &end);
-        memcpy(flange.at, end.at, sizeof flange.at);
-        memcpy(flange.turn, end.turn, sizeof flange.turn);
-    } else {
-        opw_forward(&m->opw, joint, &flange);
-    }
+    manipulator_flange(m, joint, &flange);
     for (int i = 0; i < 3; i++) {
         p.at[i] = flange.at[i] / MM;
     }
@@ -108,13 +115,16 @@ static uint32_t same_elbow(const struct manipulator *m, const double near[OPW_JO
     return fabs(elbow) < STRETCHED ? 0xff : elbow < 0.0 ? 0xcc : 0x33;
 }
 
-static uint32_t branches_by_axes(const struct manipulator *m, const struct opw_pose *flange,
-                                 const double near[OPW_JOINTS], uint32_t wanted,
-                                 double all[OPW_BRANCHES][OPW_JOINTS])
+uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose *flange,
+                              const double near[OPW_JOINTS], uint32_t wanted,
+                              double all[OPW_BRANCHES][OPW_JOINTS])
 {
     double q[CHAIN_JOINTS], joint[CHAIN_BRANCHES][CHAIN_JOINTS];
     struct chain_pose pose;
 
+    if (!m->by_axes) {
+        return opw_inverse_of(&m->opw, flange, near, wanted, all);
+    }
     whole(near, q);
     memcpy(pose.at, flange->at, sizeof pose.at);
     memcpy(pose.turn, flange->turn, sizeof pose.turn);
@@ -137,8 +147,7 @@ static uint32_t branches(const struct manipulator *m, const struct pose *pose,
         flange.at[i] = p.at[i] * MM;
     }
     quaternion_matrix(p.turn, flange.turn);
-    return m->by_axes ? branches_by_axes(m, &flange, near, wanted, all)
-                      : opw_inverse_of(&m->opw, &flange, near, wanted, all);
+    return manipulator_branches(m, &flange, near, wanted, all);
 }
 
 bool manipulator_joints(const struct manipulator *m, const struct pose *pose,

@@ -24,6 +24,14 @@ struct manipulator {
     struct pose tool; /* pose of its tip in the flange's frame */
 };
 
+/* Pose of the flange for joints [rad]; joints of all wanted branches of one, as opw_inverse_of gives
+ * them. */
+void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOINTS],
+                        struct opw_pose *flange);
+uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose *flange,
+                              const double near[OPW_JOINTS], uint32_t wanted,
+                              double all[OPW_BRANCHES][OPW_JOINTS]);
+
 /* Pose of the tool tip for joints [rad]. */
 struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS]);
 
