@@ -20,7 +20,7 @@ int chain_batch_arm(int joints, const double (*origin)[3], const double (*axis)[
         c.joint[i].slides = slides[i];
         c.joint[i].level = level[i];
     }
-    if (!chain_sound(&c)) {
+    if (!chain_good(&c)) {
         return -1;
     }
     chain_form_of(&c, held, &form);

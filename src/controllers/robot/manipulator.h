@@ -24,8 +24,8 @@ struct manipulator {
     struct pose tool; /* pose of its tip in the flange's frame */
 };
 
-/* Pose of the flange for joints [rad]; joints of all wanted branches of one, as opw_inverse_of gives
- * them. */
+/* Pose of the flange for joints [rad]; joints of all wanted branches of one, as opw_inverse_of
+ * gives them. */
 void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOINTS],
                         struct opw_pose *flange);
 uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose *flange,
@@ -42,8 +42,8 @@ struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW
 bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
                         double joint[OPW_JOINTS]);
 
-/* The same with joints 4 to 6 given in joint[]: joints 1 to 3 bring the tip to its place [mm]. Of an
- * arm by axes: false. */
+/* The same with joints 4 to 6 given in joint[]: joints 1 to 3 bring the tip to its place [mm]. Of
+ * an arm by axes: false. */
 bool manipulator_arm(const struct manipulator *m, const double at[3], double joint[OPW_JOINTS]);
 
 /* Number of whole turns of a joint that stands for: the nearest. */
@@ -77,8 +77,8 @@ bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINT
 int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINTS],
                         const double joint[OPW_JOINTS]);
 
-/* The branch that joints belong to: a sum of enum opw_flag, or of enum chain_flag, whose numbers are
- * the same. */
+/* The branch that joints belong to: a sum of enum opw_flag, or of enum chain_flag, whose numbers
+ * are the same. */
 int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINTS]);
 
 /* How far from singular: shoulder [m], elbow, wrist (opw.h, chain_inverse.h). */

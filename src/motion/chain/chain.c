@@ -20,7 +20,7 @@ static bool is_rotation(const double m[3][3])
     return good && fabs(vector3_dot(m[0], m[1])) <= UNIT_LENGTH;
 }
 
-bool chain_sound(const struct chain *c)
+bool chain_good(const struct chain *c)
 {
     bool good = c->joints >= 1 && c->joints <= CHAIN_JOINTS;
 

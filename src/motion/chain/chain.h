@@ -36,7 +36,7 @@ struct chain {
 
 /* Whether there are numbers of an arm: finite, axes of length 1, a flange turned by a rotation,
  * levels of joints that are there. */
-bool chain_sound(const struct chain *c);
+bool chain_good(const struct chain *c);
 
 /* Pose of the flange for joints [rad], [m]. */
 void chain_forward(const struct chain *c, const double joint[CHAIN_JOINTS],

@@ -151,7 +151,13 @@ static double wrist_of(const struct chain_lines *l, double centre[3])
     return meet(l, 3, l->count - 3, centre);
 }
 
-/* Lines 0, 1, 2 and the axis 3 of an arm of four joints, one of which slides, in parallel. */
+/* The same, and where two axes from `first` on meet. */
+static double meetings_of(const struct chain_lines *l, int first, struct chain_points *p)
+{
+    return el_max(wrist_of(l, p->centre), meet(l, first, 2, p->meeting));
+}
+
+/* The axes of an arm of four joints, one of which slides, in parallel. */
 static double scara_of(const struct chain_lines *l)
 {
     int slides = 0;
@@ -184,10 +190,9 @@ double chain_points_of(enum chain_kind kind, const struct chain_lines *l, double
     p->lines = *l;
     switch (kind) {
     case CHAIN_WRIST_PARALLEL: return el_max(wrist_of(l, p->centre) / size, only(l, 1, 2, 0));
-    case CHAIN_WRIST_SHOULDER:
-        return el_max(wrist_of(l, p->centre), meet(l, 0, 2, p->meeting)) / size;
-    case CHAIN_WRIST_ELBOW:  return el_max(wrist_of(l, p->centre), meet(l, 1, 2, p->meeting)) / size;
-    case CHAIN_WRIST_COLUMN: return el_max(wrist_of(l, p->centre) / size, only(l, 0, 1, 2));
+    case CHAIN_WRIST_SHOULDER: return meetings_of(l, 0, p) / size;
+    case CHAIN_WRIST_ELBOW:    return meetings_of(l, 1, p) / size;
+    case CHAIN_WRIST_COLUMN:   return el_max(wrist_of(l, p->centre) / size, only(l, 0, 1, 2));
     case CHAIN_THREE_PARALLEL:
         return l->count != 6 || !all_turn(l, 0, 6)
                    ? INFINITY
@@ -232,10 +237,26 @@ static const enum chain_kind KINDS[] = { CHAIN_WRIST_PARALLEL, CHAIN_WRIST_SHOUL
                                          CHAIN_THREE_PARALLEL, CHAIN_SCARA,
                                          CHAIN_GANTRY,         CHAIN_SHOULDER_WRIST };
 
+/* Take the kind that lines miss least, if by less than the form so far. */
+static void take_best(const struct chain_lines *lines, bool reversed, struct chain_form *f)
+{
+    struct chain_points points;
+
+    for (int n = 0; n < (int)(sizeof KINDS / sizeof KINDS[0]); n++) {
+        const double off = chain_points_of(KINDS[n], lines, f->size, &points);
+        const bool better = f->deviation > CHAIN_EXACT && off < 0.5 * f->deviation;
+        if (off <= CHAIN_LOOSE && better && level_fits(&f->chain, KINDS[n], reversed)) {
+            f->kind = KINDS[n];
+            f->deviation = off;
+            f->reversed = reversed;
+            f->flags = flags_of(f->kind, lines->count);
+        }
+    }
+}
+
 void chain_form_of(const struct chain *c, int32_t held, struct chain_form *f)
 {
     struct chain_lines lines;
-    struct chain_points points;
     double size = vector3_length(c->flange.at);
 
     for (int i = 0; i < c->joints; i++) {
@@ -256,20 +277,10 @@ void chain_form_of(const struct chain *c, int32_t held, struct chain_form *f)
     } else {
         chain_lines_of(c, &lines);
     }
-    for (int back = 0; back < 2; back++) {
-        for (int n = 0; n < (int)(sizeof KINDS / sizeof KINDS[0]); n++) {
-            const enum chain_kind kind = KINDS[n];
-            const double off = chain_points_of(kind, &lines, f->size, &points);
-            const bool better = f->deviation > CHAIN_EXACT && off < 0.5 * f->deviation;
-            if (off <= CHAIN_LOOSE && better && level_fits(c, kind, back == 1)
-                && (back == 0 || lines.count == 6)) {
-                f->kind = kind;
-                f->deviation = off;
-                f->reversed = back == 1;
-                f->flags = flags_of(kind, lines.count);
-            }
-        }
+    take_best(&lines, false, f);
+    if (lines.count == 6) {
         chain_lines_reverse(&lines);
+        take_best(&lines, true, f);
     }
     if (f->held == CHAIN_ARM_ANGLE && f->kind != CHAIN_SHOULDER_WRIST) {
         chain_form_of(c, 2, f);

@@ -497,8 +497,8 @@ static bool frame(const double a[3], const double b[3], double m[3][3])
     return true;
 }
 
-/* Frame of the line from shoulder to wrist, from which the arm angle counts: with the direction e of
- * the line and the axis h of joint 1, z is across e + h and some direction across h. */
+/* Frame of the line from shoulder to wrist, from which the arm angle counts: with the direction e
+ * of the line and the axis h of joint 1, z is across e + h and some direction across h. */
 static bool reference(const struct task *t, const double line[3], double m[3][3])
 {
     const double *h = t->p.lines.axis[0], *second = t->p.lines.axis[1];
@@ -523,8 +523,8 @@ static void point_of_elbow(const struct task *t, double elbow[3])
     vector3_across(h, d, elbow);
 }
 
-/* Seven joints with shoulder and wrist: joint 4 by their distance, joints 1 to 3 by the line between
- * them and the arm angle, joints 5 to 7 by what is left of the attitude. */
+/* Seven joints with shoulder and wrist: joint 4 by their distance, joints 1 to 3 by the line
+ * between them and the arm angle, joints 5 to 7 by what is left of the attitude. */
 static uint32_t with_shoulder(const struct task *t, double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
 {
     const double(*h)[3] = t->p.lines.axis, *m = t->p.meeting;
@@ -761,7 +761,8 @@ static double rise(const double k[3], const double h[3], const double on[3], con
     return vector3_triple(k, h, d);
 }
 
-/* The factor of a turn about h that brings u to distances from a place, in both lengths across h. */
+/* The factor of a turn about h that brings u to distances from a place, by both lengths across
+ * h. */
 static double stretch(const double place[3], const double h[3], const double on[3],
                       const double u[3])
 {

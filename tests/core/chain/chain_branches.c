@@ -11,7 +11,7 @@ static void circles(const struct rig *r)
     int64_t found = 0;
     enum { POSES = 2000 };
 
-    CHECK(chain_sound(&f.chain));
+    CHECK(chain_good(&f.chain));
     CHECK_EQ(f.kind, r->kind);
     CHECK_EQ(f.reversed, r->reversed);
     if (f.kind == CHAIN_ITERATED) {
@@ -124,7 +124,8 @@ static void jacobian(const struct rig *r)
     }
 }
 
-/* Where joint `middle` is at an angle two axes are in line: joint `kept` stays, the pose is kept. */
+/* Where joint `middle` is at an angle two axes are in line: joint `kept` stays, so does the
+ * pose. */
 static void in_line(const struct rig *r, int middle, double angle, int kept)
 {
     const struct chain_form f = rig_form(r);
@@ -258,21 +259,21 @@ static void nearest(void)
 static void unsound(void)
 {
     struct chain c = rig_chain(&RIGS[0]);
-    CHECK(chain_sound(&c));
+    CHECK(chain_good(&c));
     c.joint[2].axis[0] = 0.1;
-    CHECK(!chain_sound(&c));
+    CHECK(!chain_good(&c));
     c = rig_chain(&RIGS[0]);
     c.flange.turn[0][0] = -1.0;
-    CHECK(!chain_sound(&c));
+    CHECK(!chain_good(&c));
     c = rig_chain(&RIGS[0]);
     c.joint[1].origin[2] = NAN;
-    CHECK(!chain_sound(&c));
+    CHECK(!chain_good(&c));
     c = rig_chain(&RIGS[0]);
     c.joint[1].level = 2;
-    CHECK(!chain_sound(&c));
+    CHECK(!chain_good(&c));
     c = rig_chain(&RIGS[0]);
     c.joints = 8;
-    CHECK(!chain_sound(&c));
+    CHECK(!chain_good(&c));
 }
 
 int main(void)

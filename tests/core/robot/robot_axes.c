@@ -40,7 +40,7 @@ static void by_axes(struct manipulator *m, const struct arm_axes *a, const doubl
         memcpy(c.joint[i].axis, a->axis[i], sizeof c.joint[i].axis);
     }
     memcpy(c.flange.turn, flange, sizeof c.flange.turn);
-    CHECK(chain_sound(&c));
+    CHECK(chain_good(&c));
     chain_form_of(&c, CHAIN_NONE, &m->axes);
     m->by_axes = true;
 }
