@@ -22,6 +22,18 @@ struct robot_program {
     struct orders_text orders;
 };
 
+/* What a program does at an instant. */
+struct robot_sample {
+    double time;                                /* [s] */
+    double joint[OPW_JOINTS], rate[OPW_JOINTS]; /* [deg], [deg/s] commanded */
+    double place[3], speed,
+        feed;          /* [mm] of the tip, [mm/s] along its path, asked for; 0 of joints */
+    double factors[3]; /* from singular: [mm], 1, 1 */
+    int32_t line;      /* that moves, */
+    int32_t at;        /* and that a job reads next; 0: none, it is a part program */
+    int32_t by, axis;  /* struct limited */
+};
+
 #define SETTING(type, m, elements, unit, start, low, high) \
     { #m, \
       unit, \
@@ -141,6 +153,22 @@ static const struct field refusal_fields[] = {
     ONE(robot_refusal, limit, "limit", ""),
 };
 
+#define SAMPLE(m, unit)     ONE(robot_sample, m, #m, unit)
+#define SAMPLE_ROW(m, unit) ROW(robot_sample, m, #m, unit)
+static const struct field sample_fields[] = {
+    SAMPLE(time, "s"),
+    SAMPLE_ROW(joint, "deg"),
+    SAMPLE_ROW(rate, "deg/s"),
+    SAMPLE_ROW(place, "mm"),
+    SAMPLE(speed, "mm/s"),
+    SAMPLE(feed, "mm/s"),
+    SAMPLE_ROW(factors, "mm, 1, 1"),
+    SAMPLE(line, ""),
+    SAMPLE(at, ""),
+    SAMPLE(by, ""),
+    SAMPLE(axis, ""),
+};
+
 const struct table ROBOT_TABLES[] = {
     { "robot_config", config_fields, sizeof config_fields, sizeof(struct robot_station_config) },
     { "robot_reading", reading_fields, sizeof reading_fields,
@@ -152,6 +180,7 @@ const struct table ROBOT_TABLES[] = {
     { "robot_program", NULL, 0, sizeof(struct robot_program) },
     { "robot_controller", NULL, 0, sizeof(struct controller) },
     { "robot_arm", NULL, 0, sizeof(struct manipulator) },
+    { "robot_sample", sample_fields, sizeof sample_fields, sizeof(struct robot_sample) },
     { NULL, NULL, 0, 0 },
 };
 
@@ -271,6 +300,47 @@ int binding_robot_start(struct robot_station *s, const struct robot_program *p, 
 void binding_robot_run(struct robot_station *s, int64_t until, const struct robot_program *p)
 {
     robot_station_run(s, until, p ? &p->orders : NULL);
+}
+
+static void sample(struct robot_station *s, const struct robot_program *p, struct robot_sample *x)
+{
+    const struct robot *r = &s->controller.robot;
+    const struct limited limited = controller_limited(&s->controller, &s->config, &s->panel);
+
+    memset(x, 0, sizeof *x);
+    x->time = (double)s->clock / FPGA_CLOCK_HZ;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        x->joint[i] = r->joint[i] / DEGREE;
+        x->rate[i] = r->rate[i] / DEGREE;
+    }
+    memcpy(x->place, r->pose.at, sizeof x->place);
+    x->speed = r->speed;
+    x->feed = limited.feed;
+    robot_factors(r, &s->config.robot, x->factors);
+    x->factors[0] /= MM;
+    x->line = r->line > 0 ? s->controller.move_line[r->line % CONTROLLER_MOVES] : 0;
+    if (p->orders.job) {
+        robot_job_running(&s->controller.orders.job, &p->job, &x->at);
+    }
+    x->by = (int32_t)limited.by;
+    x->axis = limited.axis;
+}
+
+/* Run on to a clock, a row every `step` clocks, until the program is over and the arm rests; at
+ * most `most` rows. Returns their number. */
+int64_t binding_robot_trace(struct robot_station *s, const struct robot_program *p, int64_t until,
+                            int64_t step, struct robot_sample *rows, int64_t most)
+{
+    struct robot_station_reading now;
+    int64_t count = 0;
+
+    robot_station_read(s, &now);
+    while (!now.rests && s->clock < until && count < most) {
+        robot_station_run(s, s->clock + step, &p->orders);
+        sample(s, p, &rows[count++]);
+        robot_station_read(s, &now);
+    }
+    return count;
 }
 
 /* Move to joint angles [deg] or to a pose X Y Z [mm] A B C [deg]. */

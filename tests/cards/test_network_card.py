@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from motionfmu.base.units import spelled
 from motionfmu.cards import messages as m
-from motionfmu.cards.job import FrameEvent, Job, encode
+from motionfmu.cards.card_job import FrameEvent, Job, encode
 from motionfmu.cards.keys import OPEN_KEY
 from motionfmu.cards.wire import PcEnd
 

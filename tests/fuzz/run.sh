@@ -5,6 +5,7 @@
 # in build/fuzz, too. Each time the inputs are other ones; a seed that is given draws the same from the same corpora.
 #
 #     tests/fuzz/run.sh [seconds [name...]]       SEED=7    CLANG=clang-19 CLANG_FLAGS=... choose another clang
+#                                                 TIMEOUT=600 for an input on a machine that is busy with other work [s]
 set -eu
 cd "$(dirname "$0")/../.."
 seconds=${1:-120}
@@ -47,7 +48,7 @@ run() {
     target=$built/fuzz_$1 found=$built/$1.found
     mkdir -p "$found"
     if [ "$link" = -fsanitize=fuzzer ]; then
-        if ! "$target" -seed="$seed" -max_total_time="$3" -timeout=120 -artifact_prefix="$built/$1-" \
+        if ! "$target" -seed="$seed" -max_total_time="$3" -timeout=${TIMEOUT:-120} -artifact_prefix="$built/$1-" \
             -print_final_stats=1 "$found" "$PWD/$2" > "$target.log" 2>&1; then
             tail -40 "$target.log"
             exit 1
@@ -85,7 +86,7 @@ for name in "$@"; do
         objects harness "-w $fmi_include" $(ls "$PWD"/tests/fuzz/fmi/*.c | grep -v /inside.c)
         if [ $name = fmi ]; then
             for fmu in $fmus; do
-                fmi $fmu $((seconds / $(echo "$fmus" | wc -l))) $link
+                fmi $fmu $((seconds / $(echo "$fmus" | wc -l) + 1)) $link # 0 would be no limit
             done
         else
             fmi "${name#fmi_}" "$seconds" $link

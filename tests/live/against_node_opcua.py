@@ -23,7 +23,11 @@ VERSION = "2.186.4"
 
 async def _told(process: asyncio.subprocess.Process) -> Any:
     assert process.stdout is not None
-    return json.loads(await asyncio.wait_for(process.stdout.readline(), PATIENCE))
+    while not (line := await asyncio.wait_for(process.stdout.readline(), PATIENCE)).startswith(
+        b"{"
+    ):
+        assert line, "the reader has ended"  # node-opcua says which certificates it makes
+    return json.loads(line)
 
 
 async def _read(folder: Path) -> None:

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from motionfmu.cards import messages
+from motionfmu.cards.card_job import FrameEvent as Switch
+from motionfmu.cards.card_job import Job, decode, encode
 from motionfmu.cards.card_settings import asked
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.job import FrameEvent as Switch
-from motionfmu.cards.job import Job, decode, encode
 from motionfmu.cards.views import (
     CardView,
     Code,

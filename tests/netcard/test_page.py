@@ -29,9 +29,9 @@ from websockets.exceptions import ConnectionClosed
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import HEADERS
+from motionfmu.cards.card_job import decode
 from motionfmu.cards.config import CardConfig, load, read
 from motionfmu.cards.config_text import text_of, with_values
-from motionfmu.cards.job import decode
 from motionfmu.cards.server_page import PageServer, application
 from motionfmu.cards.server_page.form import form
 from motionfmu.cards.server_page.job_pictures import POINTS, picture

@@ -18,7 +18,7 @@ from fmi_tools import OK, Instance
 from motionfmu.base.binding import library
 from motionfmu.base.errors import InputError
 from motionfmu.cards import messages as m
-from motionfmu.cards.job import Job, encode
+from motionfmu.cards.card_job import Job, encode
 from motionfmu.cards.keys import new_key
 from motionfmu.cards.sim import FLASH_BYTES, FlashFile, VirtualNetCard, simulate
 from motionfmu.cards.transfer import JobFile, Transfer

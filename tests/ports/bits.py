@@ -88,9 +88,10 @@ def ran(made: Path, platform: Platform, arguments: Sequence[str], folder: Path) 
     whole = [*runner, str(made), *arguments]
     done = subprocess.run(whole, cwd=folder, capture_output=True, check=False)
     if done.returncode:
-        raise subprocess.CalledProcessError(
-            done.returncode, whole, done.stdout, done.stderr.decode(errors="replace")
-        )
+        told = done.stderr.decode(errors="replace")
+        error = subprocess.CalledProcessError(done.returncode, whole, done.stdout, told)
+        error.add_note(told)  # a test that fails shows it
+        raise error
     return done.stdout.decode().splitlines()
 
 

@@ -19,7 +19,7 @@ from svgelements import Path as SvgPath
 import motionfmu
 from motionfmu import InputError
 from motionfmu.analysis.gcode import read, strokes
-from motionfmu.cards import job
+from motionfmu.cards import card_job
 from motionfmu.cards.server_page.job_pictures import pen_down
 
 FRAME = ROOT / "src/motionfmu/machines/engraver/example.plt"  # 80 x 50 mm from (10, 10) on
@@ -145,7 +145,7 @@ def test_a_mill_and_a_card_get_the_same_drawing(kind: str, tmp_path: Path) -> No
     assert apart(exact(), cut(made.file)) < 0.0035 and apart(cut(made.file), exact()) < 0.001
     # The first is the circle, which lies in the outline.
     assert np.ptp(cut(made.file)[0], axis=0) == pytest.approx(6.0, abs=1e-3)
-    job_ = job.read(card.translated(file, {}).file)
+    job_ = card_job.read(card.translated(file, {}).file)
     places = job_.positions[:, :2] / 640
     down = pen_down(job_, np.zeros(len(places)))
     # 0.02 mm of the plan, chords, half a pulse
@@ -161,7 +161,7 @@ def test_options_of_a_drawing_are_those_of_mill_and_card(tmp_path: Path) -> None
     found = cut(mill.translated(file, asked).file)
     assert len(found) == 12
     assert apart(wanted, found) < 0.002 and apart(found, wanted) < 0.001
-    job_ = job.read(card.translated(file, asked).file)
+    job_ = card_job.read(card.translated(file, asked).file)
     places = job_.positions[:, :2] / 640
     down = pen_down(job_, np.zeros(len(places)))
     assert apart([places[down]], wanted) < 0.026

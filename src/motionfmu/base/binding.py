@@ -62,6 +62,7 @@ def library() -> ctypes.CDLL:
     c.netcard_receive.restype = c.netcard_send.restype = ctypes.c_size_t
     c.netcard_wants_connection.restype = c.binding_netcard_start.restype = ctypes.c_bool
     c.binding_netcard_card.restype = ctypes.c_void_p
+    c.binding_robot_trace.restype = ctypes.c_int64
     for name in ("acc_step", "dec_step", "dda", "over_spd", "ptp_ospd"):
         getattr(c, f"MCC_get_{name}").restype = ctypes.c_double
     for name in ("acc_type", "dec_type"):

@@ -25,7 +25,7 @@ from motionfmu.cli.drawing_choices import (
 )
 
 if TYPE_CHECKING:
-    from motionfmu.cards.job import Job
+    from motionfmu.cards.card_job import Job
     from motionfmu.cards.plan_figures import Figures
     from motionfmu.drawings import Drawing
 
@@ -143,7 +143,7 @@ def show(
     page: PageOption = 1,
 ) -> None:
     """Show what a drawing or a job holds."""
-    from motionfmu.cards import job
+    from motionfmu.cards import card_job
     from motionfmu.drawings import reading
 
     if picture and picture.suffix not in (".png", ".svg"):
@@ -153,7 +153,7 @@ def show(
     if file.suffix == ".mcj":
         if frame or page != 1:
             raise InputError(f"{file}: --frame and --page are for drawings, this is a job")
-        _show_job(file, job.read(file), picture)
+        _show_job(file, card_job.read(file), picture)
     else:
         _show_drawing(file, reading.read(file, frame, page), picture)
     if picture:

@@ -99,7 +99,7 @@ def _made(name: str, make: Callable[[Path], Any], *parts: str | bytes) -> Path:
 def _job(document: Document, component: str, file: Path) -> MachineProgram:
     """A job for a network card, with the parameters that its configuration gives the card."""
     needed("card")
-    from motionfmu.cards import job, load
+    from motionfmu.cards import card_job, load
     from motionfmu.cards.plan import plan, write
     from motionfmu.cards.plan_rows import plan_rows
     from motionfmu.drawings import reading
@@ -129,7 +129,7 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
             np.save(motion_file(target), plan_rows(planned, config))
 
         file = _made(f"{file.stem}{JOB}", make, planned.job, ROWS)
-    return MachineProgram(file, values, job.read(file).time, notes)
+    return MachineProgram(file, values, card_job.read(file).time, notes)
 
 
 def motion_file(job: str | Path) -> Path:

@@ -5,7 +5,8 @@
  *   - a refused call has one message, or one for each line of a part program that is wrong, and
  *     changes nothing; others have none;
  *   - both versions answer alike, have the same state and take each other's;
- *   - files are only made in the scratch folder, and what was there beside regular files stays. */
+ *   - files are only made in the scratch folder, and what was there beside regular files stays.
+ * The bytes of a state, damaged or not, are a file, too, in which an instance may begin. */
 #include <math.h>
 
 #include "holds.h"
@@ -200,7 +201,8 @@ static void to_bytes(struct pair *p, struct slot *s)
 {
     if (s->state[0]) {
         pair_write(p, s, bytes);
-        in_bytes = true;
+        in_bytes = wrote = true;
+        scratch_state(bytes[0], inside_size(bytes[0]));
         bytes_stand = s->stand;
         bytes_point = s->point;
     }
@@ -234,6 +236,7 @@ static void from_damaged(struct pair *p, struct bytes *b)
         const size_t less = size - 1 - take(b, 1) % 64;
         REFUSED(p, deserialize(p->c[v_], bytes[0], less, &state[v_]));
         HOLDS(!state[0] && !state[1]);
+        scratch_state(other, size);
     }
 }
 

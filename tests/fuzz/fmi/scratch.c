@@ -17,6 +17,17 @@ const char *const scratch_names[SCRATCH_NAMES] = {
     "./good.ngc", "out.real.npy", "table.csv"
 };
 
+const char *const scratch_texts[SCRATCH_TEXTS] = {
+    "state",
+    "state",
+    "G1 X0.2 F3000",
+    "G0 X0 Y0\nG64 P0.1\nG1 X0.1 F3000\nX0.2 Y0.1\nM3 S100",
+    "G91 G1 X1 F60000\nG2 I1\nM30",
+    "G10 L20 P1 X0\n#1=[2*3]\nG1 X#1\nQ",
+    "o1 while [1]\no1 endwhile",
+    "M2"
+};
+
 static const struct {
     const char *name, *text;
     size_t size;
@@ -63,6 +74,12 @@ void scratch_open(void)
     }
     HOLDS(mkdir("sub", 0777) == 0 && mkfifo("pipe", 0666) == 0);
     HOLDS(symlink("good.ngc", "link") == 0 && link("good.ngc", "hard") == 0);
+}
+
+void scratch_state(const char *bytes, size_t size)
+{
+    FILE *f = fopen("state", "wb"); /* none where an FMU has made a folder of that name */
+    HOLDS(!f || (fwrite(bytes, 1, size, f) == size && !fclose(f)));
 }
 
 void scratch_check(void)

@@ -48,7 +48,9 @@ union side_value value(struct bytes *b, const struct inside_variable *v, union s
         memset(large, 'a', (size_t)inside_string_max());
         n = take(b, 1);
         large[inside_string_max() - (n == 254)] = '\0'; /* just short enough, just too long */
-        x.string = n >= 254 ? large : scratch_names[(int)n % SCRATCH_NAMES];
+        x.string = n >= 254   ? large
+                   : n >= 192 ? scratch_texts[(int)n % SCRATCH_TEXTS]
+                              : scratch_names[(int)n % SCRATCH_NAMES];
     }
     return x;
 }

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from motionfmu.cards.card_job import Job, decode
 from motionfmu.cards.config import CardConfig
-from motionfmu.cards.job import Job, decode
 
 POINTS = 12_000  # of a picture
 KEPT = 16  # jobs

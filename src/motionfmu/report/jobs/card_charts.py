@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.errors import InputError
-from motionfmu.cards.job import Job
+from motionfmu.cards.card_job import Job
 from motionfmu.cards.plan import DRAWS, Plan
 from motionfmu.cards.plan_figures import speeds
 from motionfmu.drawings import Drawing

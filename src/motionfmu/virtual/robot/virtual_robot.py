@@ -6,15 +6,17 @@ from typing import Any
 
 import numpy as np
 
-from motionfmu.base.binding import CLOCK_HZ, Reading, Station, Struct, library
+from motionfmu.base.binding import CLOCK_HZ, Reading, Station, Struct, dtype, library
+from motionfmu.base.errors import InputError
 from motionfmu.virtual.robot.commands import Commands
 from motionfmu.virtual.robot.kinematics import configuration, switched_on
-from motionfmu.virtual.robot.refusal import message, whole_within
+from motionfmu.virtual.robot.refusal import RobotError, message, whole_within
 
 # Answers of reading.status.
 IDLE, RUNNING, HOLD, WAITING, DELAY, PAUSED, JOG, ERROR, STOPPED = range(9)
 # Frames of a jog.
 JOINTS, BASE, TOOL = range(3)
+_ROWS = 4096  # of a trace that are made at once
 
 
 def defaults() -> dict[str, tuple[Any, str]]:
@@ -138,6 +140,51 @@ class VirtualRobot(Commands, Station[RobotReading]):
         seen = {name: self._state[name] for name in self._state}
         found = {name: reading[name] for name in reading}
         return RobotReading({**seen, **found, "words": words.value.decode()})
+
+    def trace(self, seconds: float, step: float) -> np.ndarray:
+        """Run a program on and sample it until the arm rests.
+
+        Parameters
+        ----------
+        seconds : float
+            [s] at most.
+        step : float
+            [s] between two samples, rounded to 25 ns.
+
+        Returns
+        -------
+        (n,) structured ndarray
+            ``time`` [s]; ``joint`` (6,) [deg], ``rate`` (6,) [deg/s], ``place`` (3,) [mm] and
+            ``speed`` [mm/s] commanded; ``feed`` asked for, 0 of joints [mm/s]; ``factors`` (3,) as
+            in `RobotReading`; ``line`` that moves; ``at``, that a job reads next, 0 of a part
+            program; ``by`` and ``axis``, what limits it (`motionfmu.base.motion_rows.CAUSES`).
+
+        Raises
+        ------
+        RobotError
+            No program has been started.
+        InputError
+            It is no such time.
+        """
+        if self._program is None:
+            raise RobotError("trace: no program has been started")
+        clocks = round(step * CLOCK_HZ)
+        if clocks < 1:
+            raise InputError(f"step = {step} s: 25 ns or more wanted")
+        last = int(self._state["clock"]) + round(seconds * CLOCK_HZ)
+        parts = []
+        while not parts or len(parts[-1]) == _ROWS:
+            rows = np.zeros(_ROWS, dtype("robot_sample"))
+            count = library().binding_robot_trace(
+                self._state.pointer,
+                self._program.pointer,
+                ctypes.c_int64(last),
+                ctypes.c_int64(clocks),
+                rows.ctypes.data_as(ctypes.c_void_p),
+                ctypes.c_int64(_ROWS),
+            )
+            parts.append(rows[:count])
+        return np.concatenate(parts)
 
     def set_inputs(self, *numbers: int) -> None:
         """Digital inputs at the card's terminals.

@@ -1,0 +1,124 @@
+"""The command that judges a robot's program before it moves."""
+
+import json
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from motionfmu.base.errors import InputError
+from motionfmu.cli.common import (
+    FAILED,
+    Folder,
+    OnMachine,
+    ScenarioPath,
+    Set,
+    app,
+    bare_table,
+    give,
+    loaded,
+    out,
+    progress_bar,
+    report,
+    results,
+    settings,
+)
+
+if TYPE_CHECKING:
+    from motionfmu.analysis.dry_run import DryRun, InputChange
+    from motionfmu.run import Scenario
+
+SHOWN = 12  # lines on the console
+CHANGE = re.compile(r"(\d+)=(on|off)(?:@(\d+(?:\.\d*)?))?")
+
+
+@app.command()
+def job(  # noqa: PLR0913  (each is an option of the command)
+    path: ScenarioPath,
+    machine: OnMachine = None,
+    input_: Annotated[
+        list[str],
+        typer.Option(
+            "--input", metavar="N=on@SECONDS", help="A digital input that changes, as IN#(N)."
+        ),
+    ] = [],  # noqa: B006
+    set_: Set = [],  # noqa: B006
+    folder: Folder = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
+) -> None:
+    """Judge a robot's program before it moves: reach, branch, limits, cycle time, line by line.
+
+    It is run dry: by the controller that drives the arm, a hundred times as fast, without the arm.
+    Inputs are those that the scenario drives, or those of --input.
+    """
+    changes = [_change(text) for text in input_]
+    scenario = loaded(path, machine)
+    target = folder or results(scenario.name, "job")
+    run = _run(scenario, changes, settings(set_))
+    if as_json:
+        give(json.dumps(run.numbers(), indent=1, allow_nan=False))
+    else:
+        _tell(run)
+        _write(run, target)
+    if run.fault:
+        raise typer.Exit(FAILED)
+
+
+def _change(text: str) -> "InputChange":
+    from motionfmu.analysis.dry_run import InputChange
+    from motionfmu.analysis.dry_run.robot_dry_run import INPUTS
+
+    found = CHANGE.fullmatch(text.strip())
+    if not found or not 1 <= int(found[1]) <= INPUTS:
+        raise InputError(f"--input {text}: N=on@SECONDS or N=off@SECONDS wanted, N 1 to {INPUTS}")
+    return InputChange(float(found[3] or 0.0), int(found[1]), found[2] == "on")
+
+
+def _run(scenario: "Scenario", changes: "list[InputChange]", given: dict[str, object]) -> "DryRun":
+    """Run it dry with the time so far, which shows on a terminal only."""
+    from motionfmu.analysis.dry_run import dry_run
+
+    with progress_bar() as bar:
+        task = bar.add_task(scenario.name, total=None)
+
+        def told(seconds: float) -> None:
+            bar.update(task, description=f"{scenario.name}: {seconds:.0f} s")
+
+        return dry_run(scenario, changes, given, told)
+
+
+def _tell(run: "DryRun") -> None:
+    from motionfmu.report.cycle_time_section import name_of
+    from motionfmu.report.jobs.dry_run_page import HEADS, line_cells
+    from motionfmu.report.jobs.gcode_page import clock
+
+    for text in run.fault.split("\n") if run.fault else ():
+        out.print(f"{run.file}: {text}", markup=False, soft_wrap=True)
+    if not len(run.samples):
+        return
+    ends = "until it is refused" if run.fault else "in all"
+    waits = f", {clock(run.waits)} of it waits for inputs" if run.waits else ""
+    out.print(f"[bold]{run.file.name}[/]  {clock(run.time)} {ends}{waits}; {len(run.moves)} moves")
+    where = bare_table("limited by", "s", "%")
+    for s in run.motion.shares():
+        where.add_row(name_of(s), f"{s.time:.3f}", f"{100.0 * s.time / run.motion.time:.1f}")
+    out.print(where)
+    lines = run.lines
+    if len(lines) > SHOWN:
+        out.print(f"the {SHOWN} of {len(lines)} lines whose joints come nearest to their ends:")
+        lines = sorted(sorted(lines, key=lambda x: x.nearest.left)[:SHOWN], key=lambda x: x.line)
+    table = bare_table(*HEADS)
+    for x in lines:
+        table.add_row(*line_cells(x, run.axes))
+    out.print(table)
+
+
+def _write(run: "DryRun", target: Path) -> None:
+    from motionfmu.report import result_folder
+    from motionfmu.report.jobs.dry_run_page import page_text
+
+    result_folder.usable(target)
+    with result_folder.whole(target) as part:
+        result_folder.write_result(part, page_text(run), run.numbers())
+    report(target / "report.html")
