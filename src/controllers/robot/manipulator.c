@@ -1,6 +1,7 @@
 #include "manipulator.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "el_extremes.h"
@@ -60,6 +61,12 @@ static struct pose flange_pose(const struct manipulator *m, const double joint[O
     return p;
 }
 
+void manipulator_with(const struct manipulator *m, const struct pose *tool, struct manipulator *arm)
+{
+    memcpy(arm, m, m->by_axes ? sizeof *m : offsetof(struct manipulator, axes));
+    arm->tool = *tool;
+}
+
 struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
 {
     const struct pose flange = flange_pose(m, joint);
@@ -70,8 +77,11 @@ int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINT
 {
     double q[CHAIN_JOINTS];
 
+    if (!m->by_axes) {
+        return opw_branch(&m->opw, joint);
+    }
     whole(joint, q);
-    return m->by_axes ? chain_branch(&m->axes, q) : opw_branch(&m->opw, joint);
+    return chain_branch(&m->axes, q);
 }
 
 void manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],

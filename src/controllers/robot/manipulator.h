@@ -18,11 +18,15 @@ struct manipulator_joint {
 
 struct manipulator {
     struct opw opw;
-    bool by_axes;           /* the arm is not opw but */
-    struct chain_form axes; /* these six turning joints */
+    bool by_axes; /* the arm is not opw but axes */
     struct manipulator_joint joint[OPW_JOINTS];
-    struct pose tool; /* pose of its tip in the flange's frame */
+    struct pose tool;       /* pose of its tip in the flange's frame */
+    struct chain_form axes; /* six turning joints; last, as it is large */
 };
+
+/* The arm with another tool; axes are copied if it is by them. */
+void manipulator_with(const struct manipulator *m, const struct pose *tool,
+                      struct manipulator *arm);
 
 /* Pose of the flange for joints [rad]; joints of all wanted branches of one, as opw_inverse_of
  * gives them. */

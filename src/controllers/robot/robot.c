@@ -149,8 +149,8 @@ static void predict(const struct robot *r, const struct robot_config *c, const d
 
 void robot_cycle(struct robot *r, const struct robot_config *c)
 {
-    struct manipulator arm = c->arm;
-    const struct arm_geometry g = robot_geometry(r, &arm);
+    struct manipulator arm;
+    const struct arm_geometry g = { &arm, &r->moves };
     const struct kinematics kinematics = arm_moves_kinematics();
     const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
     double joint[OPW_JOINTS];
@@ -158,6 +158,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct point point;
 
+    manipulator_with(&c->arm, &r->tool, &arm);
     memcpy(joint, r->joint, sizeof joint);
     if (robot_idle(r)) {
         show(r, c, joint, &pose);
