@@ -255,6 +255,22 @@ static void nearest(void)
     CHECK_EQ(chain_nearest(&f, 5, all, near, low, high, got), -1);
 }
 
+/* A parallelogram elsewhere than in a palletizer leaves no closed form. */
+static void levels(void)
+{
+    static const struct {
+        int rig, joint, level;
+    } ELSEWHERE[] = { { 0, 3, 2 }, { 8, 3, 1 }, { 10, 3, 1 }, { 10, 3, 3 } };
+
+    for (int n = 0; n < (int)(sizeof ELSEWHERE / sizeof ELSEWHERE[0]); n++) {
+        struct chain c = rig_chain(&RIGS[ELSEWHERE[n].rig]);
+        struct chain_form f;
+        c.joint[ELSEWHERE[n].joint].level = ELSEWHERE[n].level;
+        chain_form_of(&c, CHAIN_NONE, &f);
+        CHECK_EQ(f.kind, CHAIN_ITERATED);
+    }
+}
+
 /* Numbers that are no arm. */
 static void unsound(void)
 {
@@ -298,6 +314,7 @@ int main(void)
     }
     arm_angles(&RIGS[13]);
     nearest();
+    levels();
     unsound();
     return check_result();
 }
