@@ -12,7 +12,7 @@ from lines_apart import apart
 from typer.testing import CliRunner
 
 from motionfmu.base.errors import InputError
-from motionfmu.cards import CardConfig, job, load
+from motionfmu.cards import CardConfig, card_job, load
 from motionfmu.cards.config import read as config_of
 from motionfmu.cards.plan import DRAWS, Plan, origin, plan
 from motionfmu.cards.plan_figures import figures, paths
@@ -103,15 +103,15 @@ def test_pulses_are_the_plan_to_half_a_pulse(planned: Plan) -> None:
 
 
 def test_the_job_says_what_was_planned(planned: Plan) -> None:
-    read = job.decode(planned.job)
+    read = card_job.decode(planned.job)
     np.testing.assert_array_equal(read.commands, planned.commands)
     np.testing.assert_array_equal(read.frame_events, planned.events)
-    assert job.encode(read) == planned.job
+    assert card_job.encode(read) == planned.job
     assert (read.period_ns, read.mask) == (1_000_000, 3)
     assert read.pulses_per_m[:2] == (800_000, 800_000)
     assert read.speed_max[:2] == (160_000, 160_000)
     assert read.acc_max[:2] == (800_000, 800_000) and read.jerk_max[:2] == (40_000_000, 40_000_000)
-    assert read.events == [job.FrameEvent(1, False, 1), job.FrameEvent(1, False, 0)]
+    assert read.events == [card_job.FrameEvent(1, False, 1), card_job.FrameEvent(1, False, 0)]
     assert np.flatnonzero(read.frame_events).size == 3
     assert read.time == pytest.approx(len(planned.steps) * 1e-3)
 
@@ -125,33 +125,37 @@ def test_jobs_of_both_writers_are_the_same_bytes() -> None:
     events = np.where(draws.random(900) < 0.2, draws.integers(1, 4, 900), 0)
     for mask in (15, 10, 4):
         moved = commands * [mask >> k & 1 for k in range(4)]
-        one = job.Job(1_000_000, mask, moved, events, [job.FrameEvent(3, True, 1, 50)] * 3)
-        read = job.decode(job.encode(one))
+        one = card_job.Job(
+            1_000_000, mask, moved, events, [card_job.FrameEvent(3, True, 1, 50)] * 3
+        )
+        read = card_job.decode(card_job.encode(one))
         np.testing.assert_array_equal(read.commands, moved)
         np.testing.assert_array_equal(read.frame_events, events)
         assert read.events == one.events and read.mask == mask
 
 
 def test_a_damaged_job_is_refused(planned: Plan) -> None:
-    text = planned.job[: 3 * job.PAGE]
+    text = planned.job[: 3 * card_job.PAGE]
     with pytest.raises(InputError, match="page 0: axes 3, period 1000000 ns, "):
-        job.decode(text)
+        card_job.decode(text)
     draws = np.random.default_rng(1)
     for at in draws.integers(0, len(planned.job), 40):
         bad = bytearray(planned.job)
         bad[at] ^= 1 << draws.integers(8)
-        with pytest.raises(InputError, match=f"page {at // job.PAGE}: its CRC is wrong"):
-            job.decode(bytes(bad))
+        with pytest.raises(InputError, match=f"page {at // card_job.PAGE}: its CRC is wrong"):
+            card_job.decode(bytes(bad))
     for at in draws.integers(0, len(planned.job), 200):  # with a CRC that fits
         bad = bytearray(planned.job)
-        page = at - at % job.PAGE
+        page = at - at % card_job.PAGE
         bad[at] ^= 1 << draws.integers(8)
-        bad[page : page + job.PAGE] = job._sealed(bytes(bad[page : page + job.CRC_AT]))
+        bad[page : page + card_job.PAGE] = card_job._sealed(
+            bytes(bad[page : page + card_job.CRC_AT])
+        )
         try:
-            job.decode(bytes(bad))
+            card_job.decode(bytes(bad))
         except InputError:
             continue
-        assert page == 0 or at % job.PAGE >= job.FIRST_BYTE
+        assert page == 0 or at % card_job.PAGE >= card_job.FIRST_BYTE
 
 
 @pytest.mark.parametrize(
@@ -167,11 +171,11 @@ def test_a_damaged_job_is_refused(planned: Plan) -> None:
     ],
 )
 def test_numbers_of_a_page_are_judged(payload: list[int], why: str) -> None:
-    one = job.Job(1_000_000, 3, np.zeros((1, 4), np.int32), np.zeros(1, int))
-    text = job.encode(one)
-    page = job._page(0, np.zeros(4, int), 1, bytes(payload))
+    one = card_job.Job(1_000_000, 3, np.zeros((1, 4), np.int32), np.zeros(1, int))
+    text = card_job.encode(one)
+    page = card_job._page(0, np.zeros(4, int), 1, bytes(payload))
     with pytest.raises(InputError, match=f"x: page 1: {why}"):
-        job.decode(text[: job.PAGE] + job._sealed(page), "x")
+        card_job.decode(text[: card_job.PAGE] + card_job._sealed(page), "x")
 
 
 def squares() -> list[np.ndarray]:
@@ -255,7 +259,7 @@ def test_what_cannot_be_planned(text: str, axes: int, why: str, config: CardConf
 def test_a_pen_by_an_axis(config: CardConfig) -> None:
     three = TEXT + f'[[axes]]\nname = "Z"{AXIS}[motion.pen]\nkind = "axis"\nup = 3\ndown = -1\n'
     found = plan(plt.parse(written(squares()[:2])), config_of(three, "card.toml"))
-    read = job.decode(found.job)
+    read = card_job.decode(found.job)
     assert read.events == [] and read.mask == 7 and not read.frame_events.any()
     assert read.positions[-1].tolist()[2] == 3 * SCALE
     assert set(found.places[found.steps == DRAWS, 2].round(9)) == {-1.0}
@@ -295,7 +299,7 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_the_job_of_the_scenario_is_of_its_drawing() -> None:
     folder = ROOT / "scenarios/plt_plate"
     drawing, settings = plt.read(folder / "plate.plt"), load(folder / "card.toml")
-    kept = job.read(folder / "plate.mcj")
+    kept = card_job.read(folder / "plate.mcj")
     assert kept.origin == origin(drawing, settings, DrawingOptions())
     (line,) = clean(drawing)
     vertices = np.loadtxt(folder / "plate.txt")[:, :2]

@@ -48,7 +48,7 @@ def reserves_chart(run: DryRun) -> Diagram:
     middle, half = 0.5 * (run.low + run.high), 0.5 * (run.high - run.low)
     place, rate = (s["joint"] - middle) / half, s["rate"] / run.top
     time = s["time"]
-    rows = []
+    rows: list[Subplot] = []
     for what, values in (("Place in the range", place), ("Share of the speed", rate)):
         curves = [
             SamplesMark(Samples(time, np.ascontiguousarray(values[:, k])), name, AXES[k])

@@ -172,7 +172,7 @@ class VirtualRobot(Commands, Station[RobotReading]):
         if clocks < 1:
             raise InputError(f"step = {step} s: 25 ns or more wanted")
         last = int(self._state["clock"]) + round(seconds * CLOCK_HZ)
-        parts = []
+        parts: list[np.ndarray] = []
         while not parts or len(parts[-1]) == _ROWS:
             rows = np.zeros(_ROWS, dtype("robot_sample"))
             count = library().binding_robot_trace(
