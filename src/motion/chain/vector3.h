@@ -62,7 +62,7 @@ static inline void vector3_turn(const double h[3], struct el_turn t, const doubl
 static inline void vector3_matrix(const double h[3], struct el_turn t, double m[3][3])
 {
     for (int k = 0; k < 3; k++) {
-        const double e[3] = { k == 0, k == 1, k == 2 };
+        const double e[3] = { k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0 };
         double column[3];
         vector3_turn(h, t, e, column);
         for (int i = 0; i < 3; i++) {
