@@ -21,6 +21,8 @@ model SixAxisArm
     {0.9429, 0.9429, 0.0891}, {0.3441, 0.3441, 0.1872}, {0.2781, 0.2781, 0.0162},
     {0.005475, 0.00375, 0.005475}, {0.00032, 0.00032, 0.00048}}
     "Moments of inertia xx, yy, zz about the centres";
+  parameter Real product[6,3](each unit = "kg.m2") = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+    {0, 0, 0}, {0, 0, 0}} "The other elements of their tensors: xy, yz, zx";
   parameter Real link_viscous[6](each unit = "N.m.s/rad", each min = 0) =
     {9, 12.5, 6.5, 1.55, 1.55, 0.8} "Friction of the joints per speed";
   parameter Real payload_mass(unit = "kg", min = 0) = 6 "Mass of the payload";
@@ -78,7 +80,10 @@ model SixAxisArm
     {5e-4, 5e-4, 5e-4, 5e-4, 5e-4, 5e-4} "Time constant of the current loop; 0 makes it ideal";
   parameter Integer encoder_lines[6](each min = 1) = {2500, 2500, 2500, 2500, 2500, 2500}
     "Line periods of the motor encoder per turn";
-  parameter Real tool_length(unit = "m") = 0.15 "From the flange to the tip of the pen, along z";
+  parameter Real tool_place[3](each unit = "m") = {0, 0, 0} "Foot of the tool on the flange";
+  parameter Real tool_turn[3](each unit = "deg") = {0, 0, 0}
+    "How the tool is turned on it: A, B, C about x, y, z, that about x first";
+  parameter Real tool_length(unit = "m") = 0.15 "From its foot to the tip of the pen, along its z";
   parameter Real pen_stiffness(unit = "N/m", min = 0) = 1e3 "Of the pen's spring";
   parameter Real paper_height(unit = "m") = -10
     "Height of the sheet of paper over the base; by default below all reach";
@@ -123,10 +128,17 @@ protected
     inertia[3,:], inertia[4,:], inertia[5,:], inertia[6,:] + payload_inertia
     + paired*{apart[2]^2 + apart[3]^2, apart[3]^2 + apart[1]^2, apart[1]^2 + apart[2]^2}}
     "Their moments of inertia";
-  final parameter Real link_product[6,3](each unit = "kg.m2") = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0},
-    {0, 0, 0}, {0, 0, 0},
-    {-paired*apart[1]*apart[2], -paired*apart[2]*apart[3], -paired*apart[3]*apart[1]}}
+  final parameter Real link_product[6,3](each unit = "kg.m2") = {product[1,:], product[2,:],
+    product[3,:], product[4,:], product[5,:], product[6,:]
+    - paired*{apart[1]*apart[2], apart[2]*apart[3], apart[3]*apart[1]}}
     "The other elements of their tensors: xy, yz, zx";
+  final parameter Real lean[3](each unit = "rad") = tool_turn*pi/360 "Halves of A, B, C";
+  final parameter Real held[4](each unit = "1") = {
+    cos(lean[3])*cos(lean[2])*cos(lean[1]) + sin(lean[3])*sin(lean[2])*sin(lean[1]),
+    cos(lean[3])*cos(lean[2])*sin(lean[1]) - sin(lean[3])*sin(lean[2])*cos(lean[1]),
+    cos(lean[3])*sin(lean[2])*cos(lean[1]) + sin(lean[3])*cos(lean[2])*sin(lean[1]),
+    sin(lean[3])*cos(lean[2])*cos(lean[1]) - cos(lean[3])*sin(lean[2])*sin(lean[1])}
+    "Attitude of the tool on the flange: w, x, y, z";
   final parameter Real axis[6,3](each unit = "1") = {{0, 0, 1}, {0, 1, 0}, {0, 1, 0}, {0, 0, 1},
     {0, 1, 0}, {0, 0, 1}} "Axes of the joints";
   HangingJoint hanging[6](axis = axis, each gravity = gravity, mass = link_mass,
@@ -156,11 +168,14 @@ protected
     axis = axis,
     origin = origin, mass = link_mass, center = link_center, inertia = link_inertia,
     product = link_product, viscous = link_viscous, start_angle = hanging.start) "Links";
-  Pen pen(length = tool_length, paper = paper_height, stiffness = pen_stiffness) "Tool";
+  Pen pen(length = tool_length, paper = paper_height, stiffness = pen_stiffness,
+    foot = tool_place, along = 2*{held[2]*held[4] + held[1]*held[3],
+    held[3]*held[4] - held[1]*held[2], 0.5 - held[2]*held[2] - held[3]*held[3]}) "Tool";
   Real half[6](each unit = "rad") "Half of the joint angles; those of axes 2 and 3 together";
   Real arm[4](each unit = "1") "Orientation of the forearm: w, x, y, z";
   Real wrist[4](each unit = "1") "Joints 4 and 5";
   Real both[4](each unit = "1") "Joints 1 to 5";
+  Real hand[4](each unit = "1") "All joints: orientation of the flange";
 equation
   connect(base.b, link[1].a);
   link[1].rate = base.rate;
@@ -203,8 +218,12 @@ equation
   both[2] = arm[1]*wrist[2] + arm[2]*wrist[1] + arm[3]*wrist[4] - arm[4]*wrist[3];
   both[3] = arm[1]*wrist[3] - arm[2]*wrist[4] + arm[3]*wrist[1] + arm[4]*wrist[2];
   both[4] = arm[1]*wrist[4] + arm[2]*wrist[3] - arm[3]*wrist[2] + arm[4]*wrist[1];
-  tool_quaternion[1] = both[1]*cos(half[6]) - both[4]*sin(half[6]);
-  tool_quaternion[2] = both[2]*cos(half[6]) + both[3]*sin(half[6]);
-  tool_quaternion[3] = both[3]*cos(half[6]) - both[2]*sin(half[6]);
-  tool_quaternion[4] = both[4]*cos(half[6]) + both[1]*sin(half[6]);
+  hand[1] = both[1]*cos(half[6]) - both[4]*sin(half[6]);
+  hand[2] = both[2]*cos(half[6]) + both[3]*sin(half[6]);
+  hand[3] = both[3]*cos(half[6]) - both[2]*sin(half[6]);
+  hand[4] = both[4]*cos(half[6]) + both[1]*sin(half[6]);
+  tool_quaternion[1] = hand[1]*held[1] - hand[2]*held[2] - hand[3]*held[3] - hand[4]*held[4];
+  tool_quaternion[2] = hand[2]*held[1] + hand[1]*held[2] + hand[3]*held[4] - hand[4]*held[3];
+  tool_quaternion[3] = hand[3]*held[1] + hand[1]*held[3] + hand[4]*held[2] - hand[2]*held[4];
+  tool_quaternion[4] = hand[4]*held[1] + hand[1]*held[4] + hand[2]*held[3] - hand[3]*held[2];
 end SixAxisArm;

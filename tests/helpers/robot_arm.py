@@ -83,12 +83,9 @@ def urdf(a: Arm) -> str:
     origins = np.array(
         [[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]]
     ) + a.parameter("origin_error")
-    bodies = [
-        (f"l{k + 1}", m, c, i)
-        for k, (m, c, i) in enumerate(
-            zip(a.parameter("mass"), a.parameter("center"), a.parameter("inertia"), strict=True)
-        )
-    ]
+    kinds = ("mass", "center", "inertia", "product")
+    rows = zip(*(a.parameter(n) for n in kinds), strict=True)
+    bodies = [(f"l{k}", *row) for k, row in enumerate(rows, 1)]
     payload = ("load", *(a.parameter(f"payload_{n}") for n in ("mass", "center", "inertia")))
     links = "".join(_body(*body) for body in [*bodies, payload])
     joints = "".join(
@@ -109,12 +106,13 @@ def _numbers(v: Any) -> str:
     return " ".join(repr(float(x)) for x in np.ravel(v))
 
 
-def _body(name: str, mass: Any, center: Any, inertia: Any) -> str:
+def _body(name: str, mass: Any, center: Any, inertia: Any, product: Any = (0, 0, 0)) -> str:
     xx, yy, zz = (repr(float(v)) for v in inertia)
+    xy, yz, zx = (repr(float(v)) for v in product)
     return (
         f'<link name="{name}"><inertial><origin xyz="{_numbers(center)}" rpy="0 0 0"/>'
         f'<mass value="{float(mass)!r}"/><inertia ixx="{xx}" iyy="{yy}" izz="{zz}" '
-        'ixy="0" ixz="0" iyz="0"/></inertial></link>'
+        f'ixy="{xy}" ixz="{zx}" iyz="{yz}"/></inertial></link>'
     )
 
 

@@ -35,7 +35,12 @@ def test_regressor_is_that_of_pinocchio(values):
     assert worst < 1e-13
 
 
-@pytest.mark.parametrize("values", [{}, TILTED], ids=["default", "tilted"])
+ASKEW = {"product": [0.03, -0.05, 0.02] * 3 + [0.002, 0.001, -0.003] * 3}
+
+
+@pytest.mark.parametrize(
+    "values", [{}, TILTED, TILTED | ASKEW], ids=["default", "tilted", "whole tensors"]
+)
 def test_torques_are_those_of_the_arm(values):
     """Standard parameters of the plant, load included, make the torques of the FMU's equation."""
     plant, a = plant_of(**values), Arm(**values)

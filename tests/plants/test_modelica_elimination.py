@@ -42,6 +42,35 @@ def test_random_sparse_systems(seed):
     assert found == pytest.approx(wanted, rel=1e-9, abs=1e-9 * np.abs(wanted).max())
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_an_array_of_zeros_changes_no_bit(seed):
+    """Coefficients of 0 anywhere but on the way: the same pivots and rounding as without them."""
+    rng = np.random.default_rng(seed)
+    n = 30
+    s, p = ca.SX.sym("s", 3), [ca.SX.sym(f"p[{k}]") for k in range(60)]
+    a = 4.0 * ca.SX.eye(n)
+    for i in range(n):
+        for j in rng.choice(n, 2, replace=False):
+            a[i, int(j)] += ca.sin(s[int(j) % 3])
+    more = ca.SX(a)
+    for q in p:
+        i, j = (int(k) for k in rng.integers(0, n, 2))
+        if more[i, j].is_zero():
+            more[i, j] = q if rng.random() < 0.5 else -q
+    b = ca.SX(rng.normal(size=n))
+    at = {f"s_{k}": v for k, v in enumerate(rng.normal(size=3))}
+    none = {str(q): 0.0 for q in p}
+    plain = solved(a, b, **at)
+    assert (solved(more, b, none, **at, **none) == plain).all()
+    # What they are when they are not 0 is part of the solution.
+    some = {str(q): v for q, v in zip(p, rng.uniform(-0.5, 0.5, len(p)), strict=True)}
+    names = ca.vertcat(s, *p)
+    matrix = ca.Function("f", [names], [ca.densify(more)])([*at.values(), *some.values()])
+    wanted = np.linalg.solve(np.array(matrix), np.array(ca.DM(b))).ravel()
+    assert solved(more, b, none, **at, **some) == pytest.approx(wanted, rel=1e-8, abs=1e-8)
+    assert np.abs(wanted - plain).max() > 1e-3
+
+
 def test_a_pivot_that_changes_its_sign_is_not_taken():
     """The first coefficient is no pivot, nor the least filling one; with another order it goes."""
     x = ca.SX.sym("x")

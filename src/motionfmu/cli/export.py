@@ -14,11 +14,15 @@ from motionfmu.cli.run import warnings
 @app.command()
 def export(  # noqa: PLR0913  (each is an option)
     path: Annotated[
-        Path, typer.Argument(help="Folder of a scenario, its scenario.toml, or an FMU's name.")
+        Path,
+        typer.Argument(
+            help="Folder of a scenario, its scenario.toml, or an FMU's name; of an arm its machine."
+        ),
     ],
     machine: OnMachine = None,
     target: Annotated[
-        Path | None, typer.Option("--out", "-o", help="The file; NAME.fmu, NAME.ssp if not given.")
+        Path | None,
+        typer.Option("--out", "-o", help="The file; NAME.fmu, .ssp, .urdf, .xml if not given."),
     ] = None,
     fmi: Annotated[
         int | None, typer.Option(help="FMI version: 2 or 3; 3, of an SSP 2 if not given.")
@@ -41,13 +45,21 @@ def export(  # noqa: PLR0913  (each is an option)
         list[str],
         typer.Option(metavar="PATTERN", help="Signals shown beside the recorded: 'card.err_*'."),
     ] = [],  # noqa: B006
+    urdf: Annotated[bool, typer.Option("--urdf", help="The arm of a machine as a URDF.")] = False,
+    mjcf: Annotated[
+        bool, typer.Option("--mjcf", help="The arm of a machine as a model of MuJoCo.")
+    ] = False,
 ) -> None:
-    """Make a scenario's system one FMU, or an SSP of its FMUs; or pack an FMU with its files.
+    """Make a scenario's system one FMU, or an SSP; an FMU with its files inside; an arm's URDF.
 
     FMU: parameters and open inputs of all components are its variables, by the names of the
     scenario and with its values; its outputs are what the scenario records. SSP: components, wires,
-    values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside.
+    values, time; 1.0 with FMI 2, 2.0 with FMI 3. Files that it reads are inside. An arm: links with
+    masses, joints with limits and gears, the tip of its tool; without payload and motors.
     """
+    if urdf or mjcf:
+        _arm(path, target, urdf, settings(set_))
+        return
     if machine is None and _is_fmu(path):
         _pack(path.name, target, fmi or 3, program, settings(set_))
         return
@@ -75,6 +87,25 @@ def export(  # noqa: PLR0913  (each is an option)
     size = f"{written.components} components, {written.connections} connections"
     print(f"{file}: SSP {fmi - 1}.0, FMI {fmi}, {size}; steps of {step:g} s")
     warnings(written.left_out)
+
+
+def _arm(path: Path, target: Path | None, urdf: bool, given: Mapping[str, Any]) -> None:
+    """Write the arm of a machine, and print what it holds."""
+    from motionfmu.arm_machines import arm_machine
+    from motionfmu.arms import mjcf_text, urdf_text
+    from motionfmu.run import machine
+
+    found = machine(path)
+    arm = arm_machine(found, given).arm
+    file = target or Path(f"{found.name}.{'urdf' if urdf else 'xml'}")
+    text = urdf_text(arm) if urdf else mjcf_text(arm)
+    try:
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{file}: {error.strerror}") from None
+    print(f"{file}: {arm.name}, {len(arm.joints)} joints, {arm.mass:.4g} kg, tip {arm.tip}")
+    where = "a URDF" if urdf else "MJCF"
+    print(f"not in {where}: highest accelerations, payload, motors, stiffness of the gears")
 
 
 def _is_fmu(path: Path) -> bool:

@@ -1,31 +1,81 @@
-"""The command that makes a scenario of somebody's SSP."""
+"""The command that makes a scenario of somebody's SSP, and a machine of somebody's arm."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.cli.common import app
 from motionfmu.cli.run import warnings
+
+ARMS = (".urdf", ".xml", ".xacro", ".toml")
 
 
 @app.command("import")
 def import_(
-    path: Annotated[Path, typer.Argument(help="An SSP 1.0 or 2.0.", metavar="FILE.ssp")],
+    path: Annotated[
+        Path,
+        typer.Argument(
+            help="An SSP 1.0 or 2.0; an arm as URDF, or as a table of Denavit and Hartenberg or of "
+            "OPW lengths (.toml).",
+            metavar="FILE",
+        ),
+    ],
     target: Annotated[
-        Path | None, typer.Option("--out", "-o", help="The folder; FILE if not given.")
+        Path | None, typer.Option("--out", "-o", help="The folder; FILE's name if not given.")
     ] = None,
-    stop: Annotated[float | None, typer.Option(help="End [s], instead of the file's.")] = None,
-    step: Annotated[float | None, typer.Option(help="Communication step [s], likewise.")] = None,
+    stop: Annotated[
+        float | None, typer.Option(help="Of an SSP: end [s], instead of the file's.")
+    ] = None,
+    step: Annotated[
+        float | None, typer.Option(help="Of an SSP: communication step [s], likewise.")
+    ] = None,
+    tip: Annotated[
+        str | None,
+        typer.Option(metavar="LINK", help="Of a URDF: the link at the end of the arm."),
+    ] = None,
 ) -> None:
-    """Make a scenario of an SSP: a folder with scenario.toml and its FMUs.
+    """Make a scenario of an SSP, or a machine of an arm: a folder that runs.
 
-    Nested systems become one; values are converted to the units of their variables. What a scenario
-    cannot say, such as a transformation on a wire, is refused.
+    SSP: scenario.toml and its FMUs. Nested systems become one; values are converted to the units of
+    their variables. What a scenario cannot say, such as a transformation on a wire, is refused.
+    Arm: machine.toml with controller, card, drives and arm, and a job to try. What the file lacks
+    (accelerations, gears, motors, friction) is taken in proportion to another arm, and listed.
     """
+    if path.suffix.lower() in ARMS:
+        if stop is not None or step is not None:
+            raise InputError("--stop and --step are for an SSP")
+        _arm(path, target or Path(path.stem), tip)
+        return
+    if tip is not None:
+        raise InputError("--tip is for a URDF")
     from motionfmu.ssp.ssp_import import take
 
     taken = take(path, target or Path(path.stem), stop, step)
     size = f"{taken.components} components, {taken.wires} wires, {taken.values} values"
     print(f"{taken.folder / 'scenario.toml'}: {size}")
     warnings(taken.warnings)
+
+
+def _arm(path: Path, folder: Path, tip: str | None) -> None:
+    """Make a machine of an arm, and print what was taken for granted."""
+    from motionfmu.arm_machines import make_machine, taken_lines
+    from motionfmu.arms import table_arm, urdf_arm
+
+    if path.suffix.lower() == ".toml":
+        if tip is not None:
+            raise InputError("--tip is for a URDF")
+        arm = table_arm(path)
+    else:
+        arm = urdf_arm(path, tip)
+    made = make_machine(arm, folder, path.name)
+    a1, _, _, _, c2, c3, _ = made.geometry.lengths
+    size = f"reach {abs(a1) + c2 + c3:.3g} m, {made.values.arm.mass:.4g} kg"
+    print(f"{folder / 'machine.toml'}: {arm.name} to {arm.tip}, six joints, {size}")
+    print(f"not in {path.name}, and taken; what is known better goes into machine.toml:")
+    for line in taken_lines(made.values.taken):
+        print(f"  {line}")
+    warnings(list(made.notes))
+    if made.example is not None:
+        print(f"next: motionfmu run {made.example} --machine {folder}")

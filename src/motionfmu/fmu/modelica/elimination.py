@@ -27,6 +27,7 @@ class _Entry:
     e: ca.SX
     at: _Numbers
     constant: bool
+    idle: bool = False  # 0 as long as a parameter that may stand for it has its value
 
 
 _Row = dict[int, _Entry]
@@ -40,10 +41,13 @@ def solve(a: ca.SX, b: ca.SX, values: dict[str, float], labels: Sequence[str]) -
     """Solve A x = b by constant pivots first, then by those with the least fill (Markowitz 1957).
 
     `values` has the parameters by name; all other symbols may have any value. A pivot has the same
-    sign at all points; NoPivot names the unknowns that have none.
+    sign at all points; NoPivot names the unknowns that have none. A coefficient that is
+    a parameter, whose whole array is 0, by itself is no fill: such an array may come to a model
+    without another order of pivots, and so without another rounding of what the model was before.
     """
-    numbers = _points([a, b], values)
-    rows, right = _rows(a, numbers[0]), [b[i] for i in range(b.numel())]
+    idle = _idle(a, values)
+    numbers = _points([a, b], values, idle)
+    rows, right = _rows(a, numbers[0], idle), [b[i] for i in range(b.numel())]
     order: list[tuple[int, int]] = []
     left = list(range(len(rows)))
     while left:
@@ -61,11 +65,23 @@ def solve(a: ca.SX, b: ca.SX, values: dict[str, float], labels: Sequence[str]) -
                 right[i] = right[i] - v.e * x[k]
         x[j] = _over(right[i], rows[i][j])
     solution = ca.vertcat(*x)
-    _check(solution, numbers, _points([solution], values)[0], labels)
+    _check(solution, numbers, _points([solution], values, idle)[0], labels)
     return solution
 
 
-def _points(expressions: list[ca.SX], values: dict[str, float]) -> list[_Numbers]:
+def _idle(a: ca.SX, values: dict[str, float]) -> set[str]:
+    """Parameters, of arrays of 0, that are coefficients by themselves, with either sign."""
+    some = {name.partition("[")[0] for name, value in values.items() if value != 0.0}
+    found = set()
+    for i, j in zip(*a.sparsity().get_triplet(), strict=True):
+        for e in (a[i, j], -a[i, j]):
+            name = str(e) if e.is_symbolic() else ""
+            if name in values and name.partition("[")[0] not in some:
+                found.add(name)
+    return found
+
+
+def _points(expressions: list[ca.SX], values: dict[str, float], idle: set[str]) -> list[_Numbers]:
     """Values of expressions at random points; a symbol has one value in all expressions."""
     symbols = ca.symvar(ca.veccat(*expressions))
     columns: list[_Numbers] = []
@@ -74,6 +90,8 @@ def _points(expressions: list[ca.SX], values: dict[str, float]) -> list[_Numbers
         value = values.get(str(s))
         if value is None:
             columns.append(draw.uniform(-_REACH, _REACH, _POINTS))
+        elif str(s) in idle:
+            columns.append(np.zeros(_POINTS))
         elif value == 0.0:
             columns.append(_LITTLE * draw.integers(0, 2, _POINTS).astype(np.float64))
         else:
@@ -84,25 +102,29 @@ def _points(expressions: list[ca.SX], values: dict[str, float]) -> list[_Numbers
     return [np.array([r[n].full() for r in rows]) for n in range(len(expressions))]
 
 
-def _rows(a: ca.SX, at: _Numbers) -> list[_Row]:
+def _rows(a: ca.SX, at: _Numbers, idle: set[str]) -> list[_Row]:
     rows: list[_Row] = [{} for _ in range(a.size1())]
     for i, j in zip(*a.sparsity().get_triplet(), strict=True):
         e = a[i, j]
         if not e.is_zero():
-            rows[i][j] = _Entry(e, at[:, i, j], e.is_constant())
+            alone = bool({str(e), str(-e)} & idle)
+            rows[i][j] = _Entry(e, at[:, i, j], e.is_constant(), alone)
     return rows
 
 
+# CCN 17: counting what fills and choosing by it read the same entries.
 def _pivot(rows: list[_Row], left: list[int], labels: Sequence[str]) -> tuple[int, int]:
     """Row and column of the next pivot: constant, least fill, largest in its row."""
     count: dict[int, int] = {}
     for i in left:
-        for j in rows[i]:
-            count[j] = count.get(j, 0) + 1
+        for j, v in rows[i].items():
+            count[j] = count.get(j, 0) + (not v.idle)
+    width = {i: sum(not v.idle for v in rows[i].values()) for i in left}
     keys = [
-        (not v.constant, (len(rows[i]) - 1) * (count[j] - 1), i, j)
+        (not v.constant, (width[i] - 1) * (count[j] - 1), i, j)
         for i in left
         for j, v in rows[i].items()
+        if not v.idle
     ]
     best: tuple[float, int, int] | None = None
     least = True, 0
@@ -131,6 +153,7 @@ def _over(e: ca.SX, pivot: _Entry) -> ca.SX:
     return e / pivot.e if pivot.constant else e * (1.0 / pivot.e)
 
 
+# CCN 19: whether an entry is idle, constant or gone is decided where it is computed.
 def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
     """Remove unknown j from a row; returns the factor, which the right side needs as well."""
     gone = row.pop(j)
@@ -144,7 +167,15 @@ def _eliminate(row: _Row, by: _Row, j: int) -> ca.SX:
         if e.is_zero():
             row.pop(k, None)
         else:
-            row[k] = _Entry(e, (old.at if old else 0.0) - at * v.at, e.is_constant())
+            none = gone.idle or v.idle
+            idle = (old is None or old.idle) and none
+            if old is not None and old.idle and not idle:
+                del row[k]  # it stands where it would stand if it came now, for sums have an order
+            # What is 0 by an idle parameter leaves a constant pivot what it was.
+            kept = old is None or old.idle or old.constant
+            constant = kept and (none or (gone.constant and by[j].constant and v.constant))
+            constant = constant or e.is_constant()
+            row[k] = _Entry(e, (old.at if old else 0.0) - at * v.at, constant, idle)
     return factor
 
 

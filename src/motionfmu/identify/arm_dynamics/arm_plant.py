@@ -35,6 +35,7 @@ class _ArmLinks(_NamedParts):
     mass: str
     center: str
     inertia: str
+    product: str
     viscous: str
 
 

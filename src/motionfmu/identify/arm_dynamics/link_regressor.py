@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 NAMES = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
+PRODUCTS = [NAMES.index(n) for n in ("Ixy", "Iyz", "Ixz")]  # as a plant has them
 UNITS = ("kg", *3 * ("kg·m",), *6 * ("kg·m²",))
 
 

@@ -1,10 +1,10 @@
 """Values of the plant that make what was found, near to those believed before.
 
-Base parameters leave most masses and centres open, and a plant has bounds and, here, links whose
-products of inertia about their centres are 0. So masses, centres, second moments (moments of
-inertia are their sums in pairs, as a body has them) and inertias of motors are moved as little as
-possible, in units of what they are believed to be wrong by, until the base parameters are those
-found, each weighted by its covariance.
+Base parameters leave most masses and centres open, and a plant has bounds; the links' products of
+inertia about their centres stay as they are. So masses, centres, second moments (moments of inertia
+are their sums in pairs, as a body has them) and inertias of motors are moved as little as possible,
+in units of what they are believed to be wrong by, until the base parameters are those found, each
+weighted by its covariance.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from scipy.optimize import least_squares
 
 from motionfmu.identify.arm_dynamics.arm_plant import ArmPlant
 from motionfmu.identify.arm_dynamics.base_parameters import BaseParameters
-from motionfmu.identify.arm_dynamics.link_regressor import standard
+from motionfmu.identify.arm_dynamics.link_regressor import PRODUCTS, standard
 
 Array = NDArray[np.float64]
 # What is believed before: masses, moments and motors to this share of themselves, centres to this
@@ -49,6 +49,7 @@ class PossibleLinks:
 
 def _standard(plant: ArmPlant, mass: Array, center: Array, inertia: Array, motors: Array) -> Array:
     links = standard(mass, center, inertia)
+    links[:, PRODUCTS] += plant.of(plant.table.links.product)
     load = plant.table.load
     links[-1] += standard(
         plant.of(load.mass).reshape(1),

@@ -1,0 +1,387 @@
+"""Values of a machine for an arm: what its description says, and what is taken where it is silent.
+
+What is taken is that of another machine's arm in the proportion of the two: masses by size, torques
+and what bears them by the torque that the arm's own motion asks for, motors by its inertia.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.arm_machines.machine_arm import (
+    DRIVES,
+    LENGTHS,
+    PLANT,
+    ArmMachine,
+    in_degrees,
+)
+from motionfmu.arms.arm_description import (
+    ArmDescription,
+    ArmJoint,
+    RigidLink,
+    angles_of,
+    joined,
+    placed,
+)
+from motionfmu.arms.arm_geometry import OpwGeometry
+from motionfmu.base.errors import InputError
+
+Array = NDArray[np.float64]
+SIX = 6
+# Masses grow with this power of the reach: an IRB 120 has 25 kg at 0.58 m, an IRB 2600 has 272 kg
+# at 1.65 m.
+MASS_POWER = 2.3
+RATIOS = (30, 50, 80, 100, 120, 160)  # of strain wave gears
+MOTOR_SPEED = 4500.0 / 60.0 * 2.0 * math.pi  # [rad/s] at a joint's highest speed, at most
+ENDLESS = math.radians(3600.0)  # what the controller takes for a joint without ends
+SPARE = 3.0  # torque limit of a motor per what the motion asks for, as servo motors bear at peak
+EXACT = 10  # digits of geometry in degrees
+STATES, SEED = 400, 1  # random states for largest torques and inertias
+# Inner angles at the start: upper arm upright, forearm level, hand down.
+START = np.radians([0.0, 0.0, 90.0, 0.0, 90.0, 0.0])
+
+
+@dataclass(frozen=True)
+class TakenValue:
+    """A value that is not in the description, and why it is this."""
+
+    what: str
+    names: str  # of the parameters
+    value: str  # shown
+    why: str
+
+
+@dataclass(frozen=True)
+class ArmValues:
+    """Values of [set] by group, and what is taken for granted."""
+
+    arm: ArmDescription  # with what was taken
+    groups: dict[str, dict[str, Any]]
+    taken: list[TakenValue]
+    start: Array  # joint angles [rad]
+
+
+def arm_values(arm: ArmDescription, geometry: OpwGeometry, like: ArmMachine) -> ArmValues:
+    """Values for an arm of known lengths, in the proportion of another machine's arm."""
+    return _Values(arm, geometry, like).all()
+
+
+class _Values:
+    """Makes the values group by group; each group needs those before it."""
+
+    def __init__(self, arm: ArmDescription, geometry: OpwGeometry, like: ArmMachine) -> None:
+        self.geometry, self.like = geometry, like
+        self.taken: list[TakenValue] = []
+        self.size = _reach(geometry) / _reach(like.geometry)
+        self.arm = self._moving(self._massive(arm))
+
+    def all(self) -> ArmValues:
+        """All groups."""
+        start = self._start()
+        groups = {
+            "what controller and arm share": self._shared(start),
+            "limits": self._limits(),
+            "links": self._links(),
+            "payload": self._payload(),
+        }
+        groups |= self._drive()
+        return ArmValues(self.arm, groups, self.taken, start)
+
+    def _take(self, what: str, names: str, value: Any, why: str) -> None:
+        self.taken.append(TakenValue(what, names, _shown(value), why))
+
+    def _massive(self, arm: ArmDescription) -> ArmDescription:
+        """With masses for links that have none: those of the other arm by size."""
+        bare = [k for k, j in enumerate(arm.joints) if j.link.mass <= 0.0]
+        if not bare:
+            return arm
+        joints = list(arm.joints)
+        share = self.size**MASS_POWER
+        frames = self._frames(arm)
+        masses = []
+        for k in bare:
+            link = self.like.arm.joints[k].link
+            back = np.linalg.inv(frames[k])  # from the plant's link to the description's
+            own = replace(
+                link,
+                name=joints[k].link.name,
+                mass=round(share * link.mass, 3),
+                center=self.size * link.center,
+                tensor=share * self.size**2 * link.tensor,
+            )
+            shapes = joints[k].link.shapes
+            moved = joined(own.name, [(own, np.asarray(back, dtype=np.float64))])
+            joints[k] = replace(joints[k], link=replace(moved, shapes=shapes))
+            masses.append(own.mass)
+        names = ", ".join(joints[k].link.name for k in bare)
+        self._take(
+            f"mass, centre, inertia of {names}",
+            "arm.mass, arm.center, arm.inertia",
+            masses,
+            f"kg; of {self.like.machine.name} by the reach to the power of {MASS_POWER}",
+        )
+        return replace(arm, joints=tuple(joints))
+
+    def _moving(self, arm: ArmDescription) -> ArmDescription:
+        """With speeds, ranges, accelerations and gears for joints that have none."""
+        joints = [self._limited(k, j) for k, j in enumerate(arm.joints)]
+        name = self.like.machine.name
+        if bare := [k for k, j in enumerate(arm.joints) if math.isinf(j.speed)]:
+            speeds = in_degrees(np.array([j.speed for j in joints]))
+            what = f"speed of joints {_numbered(bare)}"
+            self._take(what, "soft.joint_speed", speeds, f"°/s; of {name}")
+        if any(j.acceleration is None for j in arm.joints):
+            found = in_degrees(np.array([j.acceleration for j in joints]))
+            why = f"°/s²; full speed in the time of {name}, 0.25 to 0.35 s"
+            self._take("acceleration", "soft.joint_acc", found, why)
+        if endless := [k for k, j in enumerate(arm.joints) if math.isinf(j.low)]:
+            what = f"range of joints {_numbered(endless)}, which have none"
+            self._take(what, "soft.joint_low", math.degrees(ENDLESS), "° both ways")
+        if any(j.ratio is None for j in arm.joints):
+            why = "the highest of strain wave gears with 4500 rpm at full speed"
+            names = "soft.gear_ratio, arm.gear_ratio"
+            self._take("gear ratio", names, [j.ratio for j in joints], why)
+        return replace(arm, joints=tuple(joints))
+
+    def _limited(self, k: int, joint: ArmJoint) -> ArmJoint:
+        known = self.like.arm.joints[k]
+        speed = known.speed if math.isinf(joint.speed) else joint.speed
+        fits = [n for n in RATIOS if n * speed <= MOTOR_SPEED]
+        ratio = fits[-1] if fits else max(1, int(MOTOR_SPEED / speed))
+        time = known.speed / float(known.acceleration or 1.0)
+        return replace(
+            joint,
+            speed=speed,
+            low=max(joint.low, -ENDLESS),
+            high=min(joint.high, ENDLESS),
+            acceleration=joint.acceleration or speed / time,
+            ratio=float(joint.ratio or ratio),
+        )
+
+    def _frames(self, arm: ArmDescription) -> list[Array]:
+        """Frames of the links of a description in those of the plant."""
+        geometry = self.geometry
+        straight = np.asarray(geometry.signs) * np.asarray(geometry.offsets)
+        places = np.cumsum(geometry.origins, axis=0)
+        back = np.linalg.inv(geometry.base)
+        return [
+            np.linalg.inv(placed(place)) @ back @ frame
+            for place, frame in zip(places, arm.frames(straight), strict=True)
+        ]
+
+    def _start(self) -> Array:
+        """The start pose as joint angles within their ranges."""
+        signs, offsets = np.asarray(self.geometry.signs), np.asarray(self.geometry.offsets)
+        wanted = signs * (START + offsets)
+        found = []
+        for joint, angle in zip(self.arm.joints, wanted, strict=True):
+            turns = [angle + 2.0 * math.pi * n for n in (0, -1, 1, -2, 2)]
+            within = [a for a in turns if joint.low <= a <= joint.high]
+            margin = 0.05 * (joint.high - joint.low)
+            nearest = min(max(angle, joint.low + margin), joint.high - margin)
+            found.append(min(within, key=abs) if within else nearest)
+        start = np.array(found)
+        fifth = signs[4] * start[4] - offsets[4]
+        if abs(math.sin(fifth)) < 0.1:
+            joint = self.arm.joints[4]
+            start[4] = min(max(start[4] + 0.5, joint.low), joint.high)
+        self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
+                   "°; upper arm upright, forearm level, hand down, within the ranges")  # fmt: skip
+        return start
+
+    def _shared(self, start: Array) -> dict[str, Any]:
+        geometry = self.geometry
+        flange = geometry.flange
+        angles = in_degrees(np.array(angles_of(flange[:3, :3])), EXACT)
+        place = [round(float(x), 12) + 0.0 for x in flange[:3, 3]]
+        tool = [*(round(1e3 * x, 9) + 0.0 for x in place), *angles]
+        return {
+            **{f"*.{n}": v for n, v in zip(LENGTHS, geometry.lengths, strict=True)},
+            "*.joint_sign": list(geometry.signs),
+            "*.joint_offset": in_degrees(np.array(geometry.offsets), EXACT),
+            "*.gear_ratio": [j.ratio for j in self.arm.joints],
+            "*.start_joint": in_degrees(start),
+            "soft.tool": tool,
+            "arm.tool_place": place,
+            "arm.tool_turn": angles,
+            "arm.tool_length": 0.0,
+        }
+
+    def _limits(self) -> dict[str, Any]:
+        joints = self.arm.joints
+        return {
+            "soft.joint_low": in_degrees(np.array([j.low for j in joints])),
+            "soft.joint_high": in_degrees(np.array([j.high for j in joints])),
+            "soft.joint_speed": in_degrees(np.array([j.speed for j in joints])),
+            "soft.joint_acc": in_degrees(np.array([j.acceleration for j in joints])),
+        }
+
+    def _links(self) -> dict[str, Any]:
+        """Masses, centres and tensors in the plant's frames, flat as its parameters are."""
+        masses, centers, moments, products = [], [], [], []
+        for joint, frame in zip(self.arm.joints, self._frames(self.arm), strict=True):
+            link = joined("", [(joint.link, frame)])
+            masses.append(round(link.mass, 9))
+            centers += [_round(x) for x in link.center]
+            moments += [_round(link.tensor[k, k]) for k in range(3)]
+            products += [_round(link.tensor[i, j]) for i, j in ((0, 1), (1, 2), (2, 0))]
+        return {
+            "arm.mass": masses,
+            "arm.center": centers,
+            "arm.inertia": [max(0.0, x) for x in moments],
+            "arm.product": products,
+        }
+
+    def _payload(self) -> dict[str, Any]:
+        mass, center, inertia = self._own_payload()
+        self._take("payload", "arm.payload_mass", mass,
+                   f"kg; of {self.like.machine.name} by the arm's mass")  # fmt: skip
+        return {
+            "arm.payload_mass": mass,
+            "arm.payload_center": [_round(x) for x in center],
+            "arm.payload_inertia": [_round(x) for x in inertia],
+        }
+
+    def _drive(self) -> dict[str, dict[str, Any]]:
+        """Motors, gears, friction and gains in proportion to torques and inertias."""
+        like = self.like
+        loaded = self._loaded(self.arm, self.geometry, self._own_payload())
+        known = self._loaded(like.arm, like.geometry, self._payload_of(like))
+        torque, inertia = _demands(loaded)
+        torque_like, inertia_like = _demands(known)
+        t, m = torque / torque_like, inertia / inertia_like
+        ratio = np.array([j.ratio for j in self.arm.joints], dtype=float)
+        geared = like.of(PLANT, "gear_ratio") / ratio
+        motor, friction, stiff = m * geared**2, t * geared, np.maximum(t, m)
+        slow = np.maximum(1.0, friction / motor)  # keeps friction no steeper than the other's
+
+        def scaled(fmu: str, name: str, share: Array) -> list[float]:
+            values = share * like.of(fmu, name)
+            return [float(f"{x:.4g}") for x in values]
+
+        motors = {
+            "arm.motor_inertia": scaled(PLANT, "motor_inertia", motor),
+            "arm.motor_coulomb": scaled(PLANT, "motor_coulomb", friction),
+            "arm.motor_static": scaled(PLANT, "motor_static", friction),
+            "arm.motor_viscous": scaled(PLANT, "motor_viscous", motor),
+            "arm.motor_rest_speed": scaled(PLANT, "motor_rest_speed", slow),
+        }
+        gears = {
+            **{f"arm.stiffness_{k}": scaled(PLANT, f"stiffness_{k}", stiff) for k in (1, 2, 3)},
+            **{f"arm.knee_{k}": scaled(PLANT, f"knee_{k}", t) for k in (1, 2)},
+            "arm.gear_damping": scaled(PLANT, "gear_damping", stiff),
+            "arm.link_viscous": scaled(PLANT, "link_viscous", t),
+        }
+        moved = self.size * like.of(PLANT, "origin_error").ravel()
+        errors = {"arm.origin_error": [_round(x) for x in moved]}
+        if any(j.damping for j in self.arm.joints):
+            usual = gears["arm.link_viscous"]
+            given = [j.damping or v for j, v in zip(self.arm.joints, usual, strict=True)]
+            gears["arm.link_viscous"] = given
+        gains = {
+            "drives.velocity_gain": scaled(DRIVES, "velocity_gain", motor),
+            "drives.torque_limit": self._torque_limits(torque, motors),
+        }
+        speeds = np.array([j.speed for j in self.arm.joints]) * ratio * 60.0 / (2.0 * math.pi)
+        if max(speeds) > 5000.0:
+            gains["drives.speed_limit"] = [float(round(max(5000.0, 1.1 * s))) for s in speeds]
+        name = like.machine.name
+        self._take("motors, their friction", "arm.motor_*", motors["arm.motor_inertia"],
+                   f"kg·m²; of {name} by inertia and torque of this arm's own motion")  # fmt: skip
+        self._take("stiffness, lost motion, friction of gears", "arm.stiffness_*, arm.lost_motion",
+                   gears["arm.stiffness_1"], f"N·m/rad; of {name} by torque; 3 arcmin")  # fmt: skip
+        self._take("errors of its geometry", "arm.origin_error, arm.zero_error", "",
+                   f"of {name} by size; 0 makes it exact")  # fmt: skip
+        self._take("gains of the drives", "drives.velocity_gain", gains["drives.velocity_gain"],
+                   f"N·m·s/rad; of {name} by the motors' inertia, for margins")  # fmt: skip
+        return {"motors": motors, "gears": gears, "errors": errors, "drives": gains}
+
+    def _torque_limits(self, torque: Array, motors: dict[str, list[float]]) -> list[float]:
+        """Torque limits of the motors: of the description if they bear the motion."""
+        found, weak = [], []
+        for k, joint in enumerate(self.arm.joints):
+            ratio, acceleration = float(joint.ratio or 1.0), float(joint.acceleration or 0.0)
+            rotor = motors["arm.motor_inertia"][k] * ratio * acceleration
+            need = torque[k] / ratio + rotor + motors["arm.motor_static"][k]
+            own = joint.effort / ratio
+            if own >= need:
+                found.append(float(f"{own:.4g}"))
+                continue
+            found.append(float(f"{SPARE * need:.4g}"))
+            if joint.effort:
+                weak.append(f"{joint.name}: {joint.effort:g} of {need * ratio:.4g} N·m")
+        if weak:
+            why = f"N·m of the motors; the description's is too small: {', '.join(weak)}"
+            what = "torque that bears payload and accelerations"
+            self._take(what, "drives.torque_limit", found, why)
+        elif not all(j.effort for j in self.arm.joints):
+            self._take("torque", "drives.torque_limit", found,
+                       "N·m of the motors; three times what the motion asks for")  # fmt: skip
+        return found
+
+    def _own_payload(self) -> tuple[float, Array, Array]:
+        share = self.arm.mass / self.like.arm.mass
+        mass, center, inertia = self._payload_of(self.like)
+        return round(share * mass, 3), self.size * center, share * self.size**2 * inertia
+
+    @staticmethod
+    def _payload_of(like: ArmMachine) -> tuple[float, Array, Array]:
+        names = ("payload_mass", "payload_center", "payload_inertia")
+        mass, center, inertia = (like.of(PLANT, n) for n in names)
+        return float(mass), center, inertia
+
+    def _loaded(
+        self, arm: ArmDescription, geometry: OpwGeometry, payload: tuple[float, Array, Array]
+    ) -> ArmDescription:
+        """The arm with a payload on its flange, which lies before the tip by the tool's frame."""
+        flange = arm.tip_frame @ np.linalg.inv(geometry.flange)
+        mass, center, inertia = payload
+        load = RigidLink("payload", mass, center, np.diag(inertia))
+        last = arm.joints[-1]
+        link = joined(last.link.name, [(last.link, np.eye(4)), (load, flange)])
+        return replace(arm, joints=(*arm.joints[:-1], replace(last, link=link)))
+
+
+def _reach(geometry: OpwGeometry) -> float:
+    """From axis 1 to the centre of the wrist, the arm stretched [m]."""
+    a1, a2, _, _, c2, c3, _ = geometry.lengths
+    return abs(a1) + c2 + math.hypot(a2, c3)
+
+
+def _demands(arm: ArmDescription) -> tuple[Array, Array]:
+    """Largest torque of each joint at its limits, and largest inertia that it feels."""
+    random = np.random.default_rng(SEED)
+    joints = arm.joints
+    q = random.uniform(-math.pi, math.pi, (STATES, SIX))
+    sign = random.choice([-1.0, 1.0], (2, STATES, SIX))
+    v = sign[0] * np.array([j.speed for j in joints])
+    acceleration = sign[1] * np.array([j.acceleration for j in joints], dtype=float)
+    torque = np.abs(arm.inverse_dynamics(q, v, acceleration)).max(axis=0)
+    still = np.zeros_like(q)
+    inertia = [
+        arm.inverse_dynamics(q, still, still + np.eye(SIX)[k], (0, 0, 0))[:, k].max()
+        for k in range(SIX)
+    ]
+    found = np.array(inertia)
+    if min(found) <= 0.0 or min(torque) <= 0.0:
+        told = f"{arm.name}: joint {int(np.argmin(found)) + 1} moves no inertia"
+        raise InputError(f"{told}: its links have masses without size")
+    return torque, found
+
+
+def _round(value: float) -> float:
+    return float(f"{float(value):.10g}") + 0.0
+
+
+def _numbered(places: Sequence[int]) -> str:
+    return ", ".join(str(k + 1) for k in places)
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, list):
+        return ", ".join(_shown(x) for x in value)
+    return f"{value:.5g}" if isinstance(value, int | float) else str(value)

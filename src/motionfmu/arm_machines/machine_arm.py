@@ -1,0 +1,152 @@
+"""The arm of a machine, from the values of its controller and its plant."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.arms.arm_description import (
+    ArmDescription,
+    ArmJoint,
+    RigidLink,
+    placed,
+    turn_of,
+)
+from motionfmu.arms.arm_geometry import OpwGeometry
+from motionfmu.base import units
+from motionfmu.base.errors import InputError
+from motionfmu.run import Machine
+from motionfmu.scenarios.values import settings, start_values
+
+Array = NDArray[np.float64]
+PLANT, CONTROLLER, DRIVES = "robot_arm", "soft_controller", "servo_drives"
+LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+
+
+@dataclass(frozen=True)
+class ArmMachine:
+    """A machine with an arm, and values of its parameters in SI units.
+
+    Attributes
+    ----------
+    machine : Machine
+    tables : mapping
+        Of its file.
+    names : mapping
+        Component by FMU.
+    values : mapping
+        By FMU and variable, such as ``robot_arm.mass``.
+    arm : ArmDescription
+        Without the payload.
+    geometry : OpwGeometry
+    """
+
+    machine: Machine
+    tables: Mapping[str, Any]
+    names: Mapping[str, str]
+    values: Mapping[str, Array]
+    arm: ArmDescription
+    geometry: OpwGeometry
+
+    def of(self, fmu: str, variable: str) -> Array:
+        """Value of a parameter.
+
+        Parameters
+        ----------
+        fmu, variable : str
+
+        Returns
+        -------
+        ndarray
+            In SI units, in its shape.
+        """
+        return self.values[f"{fmu}.{variable}"]
+
+
+def arm_machine(machine: Machine, set: Mapping[str, Any] | None = None) -> ArmMachine:
+    """Read the arm of a machine.
+
+    Parameters
+    ----------
+    machine : Machine
+    set : mapping, optional
+        Values by ``component.variable``, stronger than the machine's.
+
+    Returns
+    -------
+    ArmMachine
+
+    Raises
+    ------
+    InputError
+        It has no arm, or no controller of one; or a value is wrong.
+    """
+    plan = machine.plan()
+    names = {fmu: name for name, fmu in plan.document.body.component.items()}
+    for fmu in (PLANT, CONTROLLER, DRIVES):
+        if fmu not in names:
+            raise InputError(f"{machine.file}: no {fmu} among its components: it has no arm")
+    given = {s.end.name: s.values for s in settings(plan.resolver, set or {})}
+    values = {}
+    for fmu in (PLANT, CONTROLLER, DRIVES):
+        for port in plan.resolver.ports[names[fmu]].values():
+            if port.causality == "parameter" and port.type in ("Float64", "Int32"):
+                own = given.get(f"{names[fmu]}.{port.name}") or start_values(port)
+                factor = units.parse(port.unit or "1").factor
+                found = np.array(own, dtype=np.float64)
+                if found.size == 1:
+                    found = np.full(port.count, found[0])
+                values[f"{fmu}.{port.name}"] = factor * found.reshape(port.shape)
+    geometry = _geometry(values)
+    arm = _arm(machine.name, geometry, values)
+    return ArmMachine(machine, plan.document.tables, names, values, arm, geometry)
+
+
+def _geometry(values: Mapping[str, Array]) -> OpwGeometry:
+    lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
+    turn = values[f"{PLANT}.tool_turn"]
+    frame = placed(values[f"{PLANT}.tool_place"], turn_of(*turn))
+    tip = frame @ placed([0.0, 0.0, float(values[f"{PLANT}.tool_length"])])
+    signs = tuple(int(s) for s in values[f"{PLANT}.joint_sign"])
+    offsets = tuple(float(x) for x in values[f"{PLANT}.joint_offset"])
+    return OpwGeometry(lengths, signs, offsets, np.eye(4), tip)
+
+
+def _arm(name: str, geometry: OpwGeometry, values: Mapping[str, Array]) -> ArmDescription:
+    """Links as the plant has them, limits as the controller has them."""
+    joints = []
+    for k, (origin, axis) in enumerate(geometry.joint_frames):
+        xx, yy, zz = values[f"{PLANT}.inertia"][k]
+        xy, yz, zx = values[f"{PLANT}.product"][k]
+        tensor = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+        ratio = float(values[f"{PLANT}.gear_ratio"][k])
+        joints.append(
+            ArmJoint(
+                name=f"joint_{k + 1}",
+                kind="revolute",
+                origin=origin,
+                axis=axis,
+                low=float(values[f"{CONTROLLER}.joint_low"][k]),
+                high=float(values[f"{CONTROLLER}.joint_high"][k]),
+                speed=float(values[f"{CONTROLLER}.joint_speed"][k]),
+                link=RigidLink(
+                    f"link_{k + 1}",
+                    float(values[f"{PLANT}.mass"][k]),
+                    values[f"{PLANT}.center"][k],
+                    tensor,
+                ),
+                effort=ratio * float(values[f"{DRIVES}.torque_limit"][k]),
+                acceleration=float(values[f"{CONTROLLER}.joint_acc"][k]),
+                ratio=ratio,
+                damping=float(values[f"{PLANT}.link_viscous"][k]),
+            )
+        )
+    return ArmDescription(name, RigidLink("base_link"), tuple(joints), "tool0", geometry.flange)
+
+
+def in_degrees(values: Array, digits: int = 6) -> list[float]:
+    """Angles in degrees without the digits of the arithmetic."""
+    return [round(math.degrees(float(x)), digits) + 0.0 for x in np.ravel(values)]

@@ -1,0 +1,109 @@
+"""Public URDFs by hand: what the import says of each, held against pinocchio and MuJoCo.
+
+    PYTHONPATH=tests/helpers python tests/arms/against_public_urdfs.py FOLDER [--run]
+
+For each URDF in FOLDER: tip and torques at 1000 random states against pinocchio, the URDF and the
+MJCF written and read back, the kind of arm. With --run also the machine that is made of it: all its
+branches by the controller's kinematics, and its example, a joint move and a line.
+"""
+
+import argparse
+import tempfile
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from random_arms import worst_differences
+
+from motionfmu import run
+from motionfmu.arm_machines import arm_machine, make_machine
+from motionfmu.arms import (
+    ArmDescription,
+    NoOpwGeometry,
+    mjcf_text,
+    opw_geometry,
+    urdf_arm,
+    urdf_text,
+)
+from motionfmu.arms.urdf_reader import urdf_text_arm
+from motionfmu.base.errors import InputError
+from motionfmu.virtual.robot import Kinematics
+
+STATES = 1000
+
+
+def checked(file: Path, rng: np.random.Generator) -> ArmDescription:
+    """The arm of a file, after all comparisons; prints their largest differences."""
+    arm = urdf_arm(file)
+    text = file.read_text(encoding="utf-8")
+    place, torque = worst_differences(text, arm, STATES, rng)
+    again = urdf_text_arm(urdf_text(arm), "again.urdf", arm.tip)
+    q = rng.uniform(-3.0, 3.0, (STATES, len(arm.driven)))
+    back = float(np.abs(arm.forward(q) - again.forward(q)).max())
+    own, theirs = worst_differences(urdf_text(arm), again, STATES, rng)
+    mujoco.MjModel.from_xml_string(mjcf_text(arm))
+    assert max(place, torque, back, own, theirs) < 1e-10, file
+    print(
+        f"  {len(arm.driven)} joints to {arm.tip}, {arm.mass:.4g} kg; pinocchio: tip {place:.0e}, "
+    )
+    print(f"  torque {torque:.0e}; written and read back {max(back, own, theirs):.0e}")
+    return arm
+
+
+def driven(arm: ArmDescription, file: Path, rng: np.random.Generator) -> None:
+    """Make the arm a machine, solve all branches, run its example; prints the figures."""
+    with tempfile.TemporaryDirectory() as place:
+        made = make_machine(arm, Path(place) / "machine", file.name)
+        machine = run.machine(made.folder)
+        own = arm_machine(machine)
+        keys = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
+        solver = Kinematics(
+            **dict(zip(keys, made.geometry.lengths, strict=True)),
+            joint_sign=list(made.geometry.signs),
+            joint_offset=list(np.degrees(made.geometry.offsets)),
+            tool=made.values.groups["what controller and arm share"]["soft.tool"],
+        )
+        q = np.degrees(rng.uniform(-3.0, 3.0, (STATES, 6)))
+        branches = solver.inverse(solver.forward(q))
+        there = ~np.isnan(branches).any(axis=-1)
+        wanted = np.broadcast_to(solver.forward(q)[:, None], (*there.shape, 4, 4))
+        off = solver.forward(branches[there]) - wanted[there]
+        apart = float(np.abs(off[..., :3, 3]).max()) / 1e3
+        nearest = np.abs((branches - q[:, None] + 180.0) % 360.0 - 180.0).max(axis=-1)
+        assert apart < 1e-9 and np.nanmin(nearest, axis=1).max() < 1e-4, file
+        assert made.example is not None, file
+        result = machine.run(made.example)
+        joints = result["soft.joint_command"]
+        base = np.linalg.inv(made.geometry.base)
+        tip = (base @ arm.forward(joints))[:, :3, 3]
+        gap = float(np.abs(tip - result["soft.tool_position"]).max())
+        rate = np.abs(result["soft.joint_rate"]) / [j.speed for j in own.arm.joints]
+        within = (joints >= [j.low - 1e-9 for j in own.arm.joints]).all()
+        within &= (joints <= [j.high + 1e-9 for j in own.arm.joints]).all()
+        assert result.ok and within and rate.max() < 1.0 + 1e-6 and gap < 1e-6, file
+        print(f"  branches {apart:.0e} m; ran {result.time[-1]:.2f} s, command {gap:.0e} m from it")
+
+
+def main() -> None:
+    """Go through a folder."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--run", action="store_true")
+    options = parser.parse_args()
+    rng = np.random.default_rng(1)
+    for file in sorted(options.folder.glob("*.urdf")):
+        print(file.name)
+        try:
+            arm = checked(file, rng)
+            found = opw_geometry(arm)
+        except (InputError, NoOpwGeometry) as error:
+            print(f"  {error}")
+            continue
+        lengths = ", ".join(f"{1e3 * x:.4g}" for x in found.lengths)
+        print(f"  spherical wrist: {lengths} mm")
+        if options.run:
+            driven(arm, file, rng)
+
+
+if __name__ == "__main__":
+    main()
