@@ -98,7 +98,7 @@ static void publish_arm(struct vars *v, struct controller *s, const struct contr
     memcpy(v->tool_quaternion, r->pose.turn, sizeof v->tool_quaternion);
     memcpy(v->joint_command, r->joint, sizeof v->joint_command);
     memcpy(v->joint_rate, r->rate, sizeof v->joint_rate);
-    v->configuration = opw_branch(&c->robot.arm.opw, r->joint);
+    v->configuration = manipulator_branch(&c->robot.arm, r->joint);
     robot_factors(r, &c->robot, v->factors);
     const struct limited limited = controller_limited(s, c, panel);
     v->limited_by = limited.by;

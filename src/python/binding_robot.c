@@ -442,7 +442,7 @@ void binding_robot_forward(const struct manipulator *m, int64_t n, const double 
     tool_matrix(m, false, at, turn);
     for (int64_t k = 0; k < n; k++) {
         radians(joint[k], q);
-        opw_forward(&m->opw, q, &flange);
+        manipulator_flange(m, q, &flange);
         behind(&flange, at, (const double(*)[3])turn, &tip);
         memset(matrix[k], 0, sizeof matrix[k]);
         matrix[k][3][3] = 1.0;
@@ -465,7 +465,7 @@ static uint32_t solve(const struct manipulator *m, const double at[3], const dou
         tip.at[i] = matrix[i][3] * MM;
     }
     behind(&tip, at, turn, &flange);
-    return opw_inverse(&m->opw, &flange, near, all);
+    return manipulator_branches(m, &flange, near, 0xff, all);
 }
 
 /* Inverse kinematics: all branches for n matrices; NaN for a branch that does not exist. */
@@ -517,9 +517,9 @@ void binding_robot_factors(const struct manipulator *m, int64_t n, const double 
 
     for (int64_t k = 0; k < n; k++) {
         radians(joint[k], q);
-        opw_factors(&m->opw, q, factor[k]);
+        manipulator_factors(m, q, factor[k]);
         factor[k][0] /= MM;
-        branch[k] = opw_branch(&m->opw, q);
+        branch[k] = manipulator_branch(m, q);
     }
 }
 

@@ -23,6 +23,8 @@ class Kinematics:
     inverse: float = np.inf  # all eight branches
     cycle: float = np.inf  # of a line: path, joints, pose
     plan: float = np.inf  # of a line
+    axes: float = np.inf  # pose of joints of a UR5e by its axes
+    branches: float = np.inf  # joints of a pose, all eight of its branches
     python: float = np.inf  # all eight branches by motionfmu.virtual.robot
     other: float = np.inf  # py-opw-kinematics, all eight branches
 
@@ -40,7 +42,8 @@ class Kinematics:
 
     def __call__(self) -> None:
         figures = map(float, subprocess.check_output([PROGRAM], text=True).split())
-        for name, figure in zip(("forward", "inverse", "cycle", "plan"), figures, strict=True):
+        names = ("forward", "inverse", "cycle", "plan", "axes", "branches")
+        for name, figure in zip(names, figures, strict=True):
             setattr(self, name, min(getattr(self, name), figure))
         start = time.process_time()
         self.bound.inverse(self.matrices)
@@ -60,5 +63,7 @@ class Kinematics:
             ("one solution of the PC that is modelled", MODELLED),
             ("a cycle of 100 us on a line", self.cycle),
             ("a line planned", self.plan),
+            ("a UR5e by its axes: pose of joints", self.axes),
+            ("joints of a pose, all eight branches", self.branches),
         ):
             print(f"  {what:42}{figure * 1e9:8.0f}")

@@ -8,6 +8,7 @@
 #define _POSIX_C_SOURCE 199309L /* clock_gettime */
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 
 #include "robot.h"
@@ -41,6 +42,39 @@ static double uniform(uint64_t *state)
     *state ^= *state >> 7;
     *state ^= *state << 17;
     return (double)(*state >> 11) * 0x1p-52 - 1.0;
+}
+
+/* A UR5e by its axes: [s] of a pose of joints, and of the joints of a pose in all branches. */
+static void by_axes(double cost[2])
+{
+    static const double origin[OPW_JOINTS][3] = { { 0, 0, .1625 },  { 0, 0, 0 },
+                                                  { -.425, 0, 0 },  { -.3922, -.1333, 0 },
+                                                  { 0, 0, -.0997 }, { 0, -.0996, 0 } };
+    static const double axis[OPW_JOINTS][3] = { { 0, 0, 1 },  { 0, -1, 0 }, { 0, -1, 0 },
+                                                { 0, -1, 0 }, { 0, 0, -1 }, { 0, -1, 0 } };
+    struct chain c = { .joints = OPW_JOINTS,
+                       .flange.turn = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
+    static struct chain_pose end[POSES];
+    double all[CHAIN_BRANCHES][CHAIN_JOINTS], q[CHAIN_JOINTS] = { 0.0 };
+    struct chain_form form;
+    uint64_t found = 0;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        memcpy(c.joint[i].origin, origin[i], sizeof origin[i]);
+        memcpy(c.joint[i].axis, axis[i], sizeof axis[i]);
+    }
+    chain_form_of(&c, CHAIN_NONE, &form);
+    double start = now();
+    for (int n = 0; n < POSES; n++) {
+        memcpy(q, joint[n], sizeof joint[n]);
+        chain_forward(&c, q, &end[n]);
+    }
+    cost[0] = (now() - start) / POSES;
+    start = now();
+    for (int n = 0; n < POSES; n++) {
+        found += chain_inverse(&form, &end[n], q, 0xff, all) > 0;
+    }
+    cost[1] = found == POSES ? (now() - start) / POSES : (double)NAN;
 }
 
 int main(void)
@@ -100,7 +134,10 @@ int main(void)
         robot_cycle(&robot, &c);
         cycles++;
     }
-    printf("%.4g %.4g %.4g %.4g\n", forward, inverse, (now() - start) / (double)cycles,
-           plan / LINES);
+    const double cycle = (now() - start) / (double)cycles;
+    double axes[2];
+    by_axes(axes);
+    printf("%.4g %.4g %.4g %.4g %.4g %.4g\n", forward, inverse, cycle, plan / LINES, axes[0],
+           axes[1]);
     return planned == LINES && found > 0 && isfinite(sum) ? 0 : 1;
 }

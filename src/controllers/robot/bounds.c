@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "axes_bounds.h"
 #include "el_extremes.h"
 #include "elementary.h"
 #include "jet.h"
@@ -41,21 +42,24 @@ static struct jet pair(const struct jet *a, const struct jet *b, const struct je
     return sign > 0.0 ? jet_sum(&p, &q) : jet_difference(&p, &q);
 }
 
-/* The tip: straight, or on an arc, whose slope turns evenly. */
+/* How the slope of a path turns: evenly, on a line not at all. [rad/mm] */
+static void arc_turn(const struct path *path, double turn[3])
+{
+    memset(turn, 0, 3 * sizeof *turn);
+    for (int i = 0; i < 3 && path->arc; i++) {
+        turn[i] = path->sweep / path->length
+                  * (path->plane == PATH_TILTED ? path->normal[i] : i == (int)path->plane);
+    }
+}
+
+/* The tip: straight, or on an arc. */
 static void tip(const struct part *p, double half, struct jet at[3])
 {
-    double place[AXES], slope[AXES], turn[3] = { 0.0, 0.0, 0.0 };
+    double place[AXES], slope[AXES], turn[3];
     struct jet along[3];
 
     path_at(p->path, p->middle, place, slope);
-    if (p->path->arc) {
-        const double per = p->path->sweep / p->path->length;
-        for (int i = 0; i < 3; i++) {
-            turn[i] =
-                per
-                * (p->path->plane == PATH_TILTED ? p->path->normal[i] : i == (int)p->path->plane);
-        }
-    }
+    arc_turn(p->path, turn);
     jet_turning(slope, turn, half, along);
     for (int i = 0; i < 3; i++) {
         const double reach = half * jet_most(&along[i].all[0]);
@@ -234,6 +238,34 @@ static bool by_wrist(const struct part *p, double half, struct jet rate[OPW_JOIN
     return true;
 }
 
+/* The derivative of a vector that turns. */
+static void turned(const double by[3], const double v[3], double rate[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const int k = (i + 1) % 3, n = (i + 2) % 3;
+        rate[i] = by[k] * v[n] - by[n] * v[k];
+    }
+}
+
+/* An arm that is known by its axes. */
+static bool by_axes(const struct part *p, double half, struct bounds *b)
+{
+    struct axes_motion motion = { .half = half };
+    double place[AXES], slope[AXES], arc[3];
+
+    path_at(p->path, p->middle, place, slope);
+    arc_turn(p->path, arc);
+    memcpy(motion.at, place, sizeof motion.at);
+    memcpy(motion.slope, slope, sizeof motion.slope);
+    turned(arc, motion.slope, motion.bend);
+    turned(arc, motion.bend, motion.twist);
+    for (int i = 0; i < 3; i++) {
+        motion.turn[i] = p->move->to > p->move->from ? p->move->by[i] / p->path->length : 0.0;
+    }
+    motion.swing = sqrt(arc[0] * arc[0] + arc[1] * arc[1] + arc[2] * arc[2]);
+    return axes_bounds_of(p->g->arm, p->joint, &motion, b);
+}
+
 bool bounds_of(const struct arm_geometry *g, const struct path *path, double from, double to,
                const double joint[OPW_JOINTS], struct bounds *b)
 {
@@ -246,6 +278,9 @@ bool bounds_of(const struct arm_geometry *g, const struct path *path, double fro
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         p.inner[i] = g->arm->opw.sign[i] * joint[i] - g->arm->opw.offset[i];
+    }
+    if (g->arm->by_axes) {
+        return by_axes(&p, half, b);
     }
     if (!(p.move->kind == ARM_MOVE_WRIST ? by_wrist(&p, half, rate) : by_pose(&p, half, rate))) {
         return false;

@@ -1,7 +1,8 @@
 /* bounds - how quickly the joints can turn anywhere on a part of a path.
  *
  * The inverse kinematics of opw is gone through with jets instead of numbers: every length and
- * every direction with its derivatives and the ranges that these have all over the part.
+ * every direction with its derivatives and the ranges that these have all over the part. Arms that
+ * are known by their axes go the other way round (axes_bounds).
  */
 #ifndef BOUNDS_H
 #define BOUNDS_H

@@ -1,6 +1,7 @@
 #include "manipulator.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "el_extremes.h"
@@ -24,17 +25,46 @@ static const double ANY_LOW[OPW_JOINTS] = { -INFINITY, -INFINITY, -INFINITY,
 static const double ANY_HIGH[OPW_JOINTS] = { INFINITY, INFINITY, INFINITY,
                                              INFINITY, INFINITY, INFINITY };
 
+/* Joints as the chain counts them. */
+static void whole(const double joint[OPW_JOINTS], double q[CHAIN_JOINTS])
+{
+    memset(q, 0, CHAIN_JOINTS * sizeof *q);
+    memcpy(q, joint, OPW_JOINTS * sizeof *q);
+}
+
+void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOINTS],
+                        struct opw_pose *flange)
+{
+    struct chain_pose end;
+    double q[CHAIN_JOINTS];
+
+    if (!m->by_axes) {
+        opw_forward(&m->opw, joint, flange);
+        return;
+    }
+    whole(joint, q);
+    chain_forward(&m->axes.chain, q, &end);
+    memcpy(flange->at, end.at, sizeof flange->at);
+    memcpy(flange->turn, end.turn, sizeof flange->turn);
+}
+
 static struct pose flange_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
 {
     struct opw_pose flange;
     struct pose p;
 
-    opw_forward(&m->opw, joint, &flange);
+    manipulator_flange(m, joint, &flange);
     for (int i = 0; i < 3; i++) {
         p.at[i] = flange.at[i] / MM;
     }
     quaternion_of_matrix((const double(*)[3])flange.turn, p.turn);
     return p;
+}
+
+void manipulator_with(const struct manipulator *m, const struct pose *tool, struct manipulator *arm)
+{
+    memcpy(arm, m, m->by_axes ? sizeof *m : offsetof(struct manipulator, axes));
+    arm->tool = *tool;
 }
 
 struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
@@ -43,12 +73,76 @@ struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW
     return pose_product(&flange, &m->tool);
 }
 
-/* Branches on the same side of the elbow as `near`. */
-static uint32_t same_elbow(const struct opw *o, const double near[OPW_JOINTS])
+int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINTS])
 {
-    const double elbow = opw_elbow(o, near);
+    double q[CHAIN_JOINTS];
 
+    if (!m->by_axes) {
+        return opw_branch(&m->opw, joint);
+    }
+    whole(joint, q);
+    return chain_branch(&m->axes, q);
+}
+
+void manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],
+                         double factor[3])
+{
+    double q[CHAIN_JOINTS];
+
+    if (m->by_axes) {
+        whole(joint, q);
+        chain_factors(&m->axes, q, factor);
+    } else {
+        opw_factors(&m->opw, joint, factor);
+    }
+}
+
+int manipulator_open(const struct manipulator *m)
+{
+    return m->by_axes ? chain_form_open(&m->axes) : 3;
+}
+
+double manipulator_reach(const struct manipulator *m)
+{
+    const struct opw *o = &m->opw;
+
+    return 1e3
+           * (m->by_axes ? m->axes.size
+                         : fabs(o->a1) + fabs(o->a2) + fabs(o->b) + o->c1 + o->c2 + o->c3 + o->c4);
+}
+
+/* Branches on the same side of the elbow as `near`. */
+static uint32_t same_elbow(const struct manipulator *m, const double near[OPW_JOINTS])
+{
+    double factor[3];
+
+    if (m->by_axes) {
+        manipulator_factors(m, near, factor);
+    } else {
+        factor[1] = opw_elbow(&m->opw, near);
+    }
+    const double elbow = factor[1];
     return fabs(elbow) < STRETCHED ? 0xff : elbow < 0.0 ? 0xcc : 0x33;
+}
+
+uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose *flange,
+                              const double near[OPW_JOINTS], uint32_t wanted,
+                              double all[OPW_BRANCHES][OPW_JOINTS])
+{
+    double q[CHAIN_JOINTS], joint[CHAIN_BRANCHES][CHAIN_JOINTS];
+    struct chain_pose pose;
+
+    if (!m->by_axes) {
+        return opw_inverse_of(&m->opw, flange, near, wanted, all);
+    }
+    whole(near, q);
+    memcpy(pose.at, flange->at, sizeof pose.at);
+    memcpy(pose.turn, flange->turn, sizeof pose.turn);
+    const uint32_t there = chain_inverse(&m->axes, &pose, q, wanted, joint);
+    for (int n = 0; n < OPW_BRANCHES; n++) {
+        memcpy(all[n], joint[n], sizeof all[n]);
+    }
+    return there;
 }
 
 static uint32_t branches(const struct manipulator *m, const struct pose *pose,
@@ -63,14 +157,14 @@ static uint32_t branches(const struct manipulator *m, const struct pose *pose,
         flange.at[i] = p.at[i] * MM;
     }
     quaternion_matrix(p.turn, flange.turn);
-    return opw_inverse_of(&m->opw, &flange, near, wanted, all);
+    return manipulator_branches(m, &flange, near, wanted, all);
 }
 
 bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
                         double joint[OPW_JOINTS])
 {
     double all[OPW_BRANCHES][OPW_JOINTS], found[OPW_JOINTS];
-    const uint32_t there = branches(m, pose, joint, same_elbow(&m->opw, joint), all);
+    const uint32_t there = branches(m, pose, joint, same_elbow(m, joint), all);
 
     if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH, found) < 0) {
         return false;
@@ -119,8 +213,13 @@ bool manipulator_arm(const struct manipulator *m, const double at[3], double joi
 {
     static const double upright[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
     double all[OPW_BRANCHES][OPW_JOINTS], zero[OPW_JOINTS], found[OPW_JOINTS];
+    struct manipulator forearm = { .opw = m->opw };
     struct opw o = m->opw;
     struct opw_pose tip, wrist;
+
+    if (m->by_axes) {
+        return false;
+    }
 
     /* The tip from the wrist centre in the forearm's frame: forward with joints 1 to 3 of the inner
      * zero and no lengths. */
@@ -142,7 +241,8 @@ bool manipulator_arm(const struct manipulator *m, const double at[3], double joi
     o.c3 += v[2];
     o.c4 = 0.0;
     memcpy(tip.turn, upright, sizeof upright);
-    const uint32_t there = opw_inverse_of(&o, &tip, joint, same_elbow(&o, joint), all);
+    forearm.opw = o;
+    const uint32_t there = opw_inverse_of(&o, &tip, joint, same_elbow(&forearm, joint), all);
     for (int n = 0; n < OPW_BRANCHES; n++) {
         memcpy(&all[n][3], &joint[3], 3 * sizeof joint[0]);
     }
@@ -153,12 +253,36 @@ bool manipulator_arm(const struct manipulator *m, const double at[3], double joi
     return true;
 }
 
+static void jacobian_by_axes(const struct manipulator *m, const double joint[OPW_JOINTS],
+                             const struct pose *tip, double column[OPW_JOINTS][6])
+{
+    struct chain_axes axes;
+    struct chain_pose end;
+    double q[CHAIN_JOINTS];
+
+    whole(joint, q);
+    chain_axes_at(&m->axes.chain, q, &axes, &end);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        for (int k = 0; k < 3; k++) {
+            const int a = (k + 1) % 3, b = (k + 2) % 3;
+            column[i][k] = axes.axis[i][a] * (tip->at[b] - axes.origin[i][b] / MM)
+                           - axes.axis[i][b] * (tip->at[a] - axes.origin[i][a] / MM);
+            column[i][k + 3] = axes.axis[i][k];
+        }
+    }
+}
+
 void manipulator_jacobian(const struct manipulator *m, const double joint[OPW_JOINTS],
                           double column[OPW_JOINTS][6])
 {
     const struct opw *o = &m->opw;
     double th[OPW_JOINTS], axis[OPW_JOINTS][3], origin[OPW_JOINTS][3];
     const struct pose tip = manipulator_pose(m, joint), flange = flange_pose(m, joint);
+
+    if (m->by_axes) {
+        jacobian_by_axes(m, joint, &tip, column);
+        return;
+    }
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         th[i] = o->sign[i] * joint[i] - o->offset[i];
@@ -256,8 +380,8 @@ int manipulator_factor(const struct manipulator *m, const double joint[OPW_JOINT
     double factor[3];
     int least = 0;
 
-    opw_factors(&m->opw, joint, factor);
-    const double arm = m->opw.c2 + m->opw.c3;
+    manipulator_factors(m, joint, factor);
+    const double arm = m->by_axes ? m->axes.size : m->opw.c2 + m->opw.c3;
     for (int i = 1; i < 3; i++) {
         const double other = least == 0 ? fabs(factor[0]) / arm : fabs(factor[least]);
         least = fabs(factor[i]) < other ? i : least;

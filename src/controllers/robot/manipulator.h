@@ -1,11 +1,12 @@
 /* manipulator - an arm with its tool and the limits of its joints.
  *
  *     tool tip in the base frame  <->  flange  <->  joints
- *     [mm], quaternion                 opw          [rad]
+ *     [mm], quaternion             opw or axes      [rad]
  */
 #ifndef MANIPULATOR_H
 #define MANIPULATOR_H
 
+#include "chain_inverse.h"
 #include "opw.h"
 #include "pose.h"
 
@@ -17,9 +18,23 @@ struct manipulator_joint {
 
 struct manipulator {
     struct opw opw;
+    bool by_axes; /* the arm is not opw but axes */
     struct manipulator_joint joint[OPW_JOINTS];
-    struct pose tool; /* pose of its tip in the flange's frame */
+    struct pose tool;       /* pose of its tip in the flange's frame */
+    struct chain_form axes; /* six turning joints; last, as it is large */
 };
+
+/* The arm with another tool; axes are copied if it is by them. */
+void manipulator_with(const struct manipulator *m, const struct pose *tool,
+                      struct manipulator *arm);
+
+/* Pose of the flange for joints [rad]; joints of all wanted branches of one, as opw_inverse_of
+ * gives them. */
+void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOINTS],
+                        struct opw_pose *flange);
+uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose *flange,
+                              const double near[OPW_JOINTS], uint32_t wanted,
+                              double all[OPW_BRANCHES][OPW_JOINTS]);
 
 /* Pose of the tool tip for joints [rad]. */
 struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS]);
@@ -31,7 +46,8 @@ struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW
 bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
                         double joint[OPW_JOINTS]);
 
-/* The same with joints 4 to 6 given in joint[]: joints 1 to 3 bring the tip to its place [mm]. */
+/* The same with joints 4 to 6 given in joint[]: joints 1 to 3 bring the tip to its place [mm]. Of
+ * an arm by axes: false. */
 bool manipulator_arm(const struct manipulator *m, const double at[3], double joint[OPW_JOINTS]);
 
 /* Number of whole turns of a joint that stands for: the nearest. */
@@ -65,7 +81,21 @@ bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINT
 int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINTS],
                         const double joint[OPW_JOINTS]);
 
-/* Which of the factors (opw.h) is nearest to 0, the shoulder's counted in lengths of the arm. */
+/* The branch that joints belong to: a sum of enum opw_flag, or of enum chain_flag, whose numbers
+ * are the same. */
+int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINTS]);
+
+/* How far from singular: shoulder [m], elbow, wrist (opw.h, chain_inverse.h). */
+void manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],
+                         double factor[3]);
+
+/* The joint, from 0, that is free where axes of the wrist are in line. */
+int manipulator_open(const struct manipulator *m);
+
+/* No place of the flange is further from the base. [mm] */
+double manipulator_reach(const struct manipulator *m);
+
+/* Which of the factors is nearest to 0, the shoulder's counted in lengths of the arm. */
 int manipulator_factor(const struct manipulator *m, const double joint[OPW_JOINTS], double *value);
 
 #endif

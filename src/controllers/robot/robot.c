@@ -149,8 +149,8 @@ static void predict(const struct robot *r, const struct robot_config *c, const d
 
 void robot_cycle(struct robot *r, const struct robot_config *c)
 {
-    struct manipulator arm = c->arm;
-    const struct arm_geometry g = robot_geometry(r, &arm);
+    struct manipulator arm;
+    const struct arm_geometry g = { &arm, &r->moves };
     const struct kinematics kinematics = arm_moves_kinematics();
     const struct mechanism m = { .kinematics = &kinematics, .geometry = &g };
     double joint[OPW_JOINTS];
@@ -158,6 +158,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct point point;
 
+    manipulator_with(&c->arm, &r->tool, &arm);
     memcpy(joint, r->joint, sizeof joint);
     if (robot_idle(r)) {
         show(r, c, joint, &pose);
@@ -269,7 +270,7 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
     t->by_joints = true;
     t->turned = true;
     t->pose = r->pose;
-    t->branch = opw_branch(&c->arm.opw, r->joint);
+    t->branch = manipulator_branch(&c->arm, r->joint);
     memcpy(t->joint, r->joint, sizeof t->joint);
     for (int i = 0; i < OPW_JOINTS; i++) {
         t->turn[i] = (int)lround(r->joint[i] / TURN);
@@ -278,5 +279,5 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
 
 void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3])
 {
-    opw_factors(&c->arm.opw, r->joint, factor);
+    manipulator_factors(&c->arm, r->joint, factor);
 }

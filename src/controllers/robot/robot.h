@@ -74,7 +74,8 @@ struct robot_move {
 enum robot_status {
     ROBOT_OK,
     ROBOT_BUSY,         /* not now: the move before is not all in the ring, or the arm moves */
-    ROBOT_PARAMETER,    /* beyond ROBOT_MOST, no number, or of the wrong sign */
+    ROBOT_PARAMETER,    /* beyond ROBOT_MOST, no number, of the wrong sign; by the wrist
+                        * of an arm by its axes */
     ROBOT_FAR,          /* out of reach, at a part of the path */
     ROBOT_OUTSIDE,      /* a joint would leave its limits */
     ROBOT_SINGULAR,     /* a factor is too small */

@@ -61,10 +61,7 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
                                  const double velocity[3], const double turn[3], double way,
                                  struct robot_move *move, struct robot_refusal *why)
 {
-    const struct opw *o = &c->arm.opw;
-    const double reach =
-        1e3 * (fabs(o->a1) + fabs(o->a2) + fabs(o->b) + o->c1 + o->c2 + o->c3 + o->c4)
-        + norm3(r->tool.at);
+    const double reach = manipulator_reach(&c->arm) + norm3(r->tool.at);
     const double v = norm3(velocity), w = norm3(turn);
     const double least = v > 0.0 ? SHORT * (v / el_max(v, w)) : SHORT;
     double length = way > 0.0 ? way : v > 0.0 ? 2.0 * reach : TURNS;

@@ -154,15 +154,16 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
     return status;
 }
 
-/* At the rear axes 4 and 6 are in line, so joint 4 is free; the path needs it elsewhere: joints
- * with which it begins. */
+/* At the rear axes of the wrist are in line, so one joint is free; the path needs it elsewhere:
+ * joints with which it begins. */
 static bool turns_first(const struct robot *r, const struct manipulator *arm,
                         const struct pose *rear, double joint[OPW_JOINTS])
 {
     const struct arm_geometry g = { arm, &r->moves };
     double place[AXES], slope[AXES], q[OPW_JOINTS], factor[3];
+    const int open = manipulator_open(arm);
 
-    opw_factors(&arm->opw, r->rear_joint, factor);
+    manipulator_factors(arm, r->rear_joint, factor);
     if (fabs(factor[2]) > DOUBTFUL) {
         return false;
     }
@@ -172,11 +173,12 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
         if (!arm_moves_kinematics().joints(&g, place, q)) {
             return false;
         }
-        opw_factors(&arm->opw, q, factor);
+        manipulator_factors(arm, q, factor);
         if (fabs(factor[2]) > BENT) {
             memcpy(joint, r->rear_joint, sizeof q);
-            joint[3] = q[3];
-            return fabs(q[3] - r->rear_joint[3]) > JUMP && manipulator_joints(arm, rear, joint);
+            joint[open] = q[open];
+            return fabs(q[open] - r->rear_joint[open]) > JUMP
+                   && manipulator_joints(arm, rear, joint);
         }
     }
     return false;
@@ -187,13 +189,13 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
 static enum robot_status check_end(const struct manipulator *arm, const struct robot_target *t,
                                    const double end[OPW_JOINTS], struct robot_refusal *why)
 {
-    const int branch = t->by_joints ? opw_branch(&arm->opw, t->joint) : t->branch;
+    const int branch = t->by_joints ? manipulator_branch(arm, t->joint) : t->branch;
     double factor[3];
 
-    opw_factors(&arm->opw, end, factor);
+    manipulator_factors(arm, end, factor);
     for (int i = 0; i < 3 && branch != ROBOT_ANY_BRANCH; i++) {
         const int flag = (i == 0 ? OPW_BACK : i == 1 ? OPW_ELBOW : OPW_FLIP) & ~t->open;
-        if (fabs(factor[i]) > DOUBTFUL && ((branch ^ opw_branch(&arm->opw, end)) & flag)) {
+        if (fabs(factor[i]) > DOUBTFUL && ((branch ^ manipulator_branch(arm, end)) & flag)) {
             why->which = flag;
             why->value = factor[i];
             return ROBOT_OTHER_BRANCH;
@@ -444,7 +446,7 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     if (!robot_ready(r)) {
         return ROBOT_BUSY;
     }
-    if (!sound(move)) {
+    if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;
     }
     robot_settle(r, c);

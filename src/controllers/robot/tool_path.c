@@ -60,7 +60,7 @@ static const double LOWERED = 0.5;
 /* Error of a joint by rounding beside a singular place. [rad] */
 static const double LEAP = 1e-4;
 
-/* A factor of opw_factors() below this is 0 within rounding: the place is singular. */
+/* A factor of manipulator_factors() below this is 0 within rounding: the place is singular. */
 static const double MET = 1e-9;
 
 /* The path that is cut, with all that this needs. */
@@ -92,7 +92,7 @@ static bool joints_at(const struct survey *s, double part, double joint[OPW_JOIN
 /* True if joints at two places in a row lie on different sides of a singular place. */
 static bool flips(const struct survey *s, const double a[OPW_JOINTS], const double b[OPW_JOINTS])
 {
-    return opw_branch(&s->g->arm->opw, a) != opw_branch(&s->g->arm->opw, b);
+    return manipulator_branch(s->g->arm, a) != manipulator_branch(s->g->arm, b);
 }
 
 /* The joints flip between parts a and b of the path. True if the path meets the singular place, so
@@ -281,7 +281,7 @@ static bool singular(const struct survey *s, const double joint[OPW_JOINTS])
 {
     double factor[3];
 
-    opw_factors(&s->g->arm->opw, joint, factor);
+    manipulator_factors(s->g->arm, joint, factor);
     return fabs(factor[0]) < MET || fabs(factor[2]) < MET;
 }
 

@@ -51,6 +51,44 @@ static bool refuse(struct controller_wrong *w, const char *name, int32_t index, 
     return false;
 }
 
+/* The arm by its axes: origins and axes at zero, flange behind joint 6. */
+static struct chain axes_of(const struct controller_settings *s)
+{
+    const struct pose flange = pose_of(s->flange, s->flange + 3);
+    struct chain c = { .joints = OPW_JOINTS };
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double *way = s->axis_origin + 3 * i, *axis = s->axis_direction + 3 * i;
+        const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        for (int k = 0; k < 3; k++) {
+            c.joint[i].origin[k] = way[k];
+            c.joint[i].axis[k] = axis[k] / length;
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        c.flange.at[k] = 1e-3 * flange.at[k];
+    }
+    quaternion_matrix(flange.turn, c.flange.turn);
+    return c;
+}
+
+/* Whether an arm by its axes is one that the controller moves. */
+static bool axes_good(const struct controller_settings *s, struct controller_wrong *wrong)
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double *axis = s->axis_direction + 3 * i;
+        if (axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0) {
+            return refuse(wrong, "axis_direction", 3 * i, 0.0, "an axis without direction");
+        }
+        if (s->joint_sign[i] != 1) {
+            return refuse(wrong, "joint_sign", i, s->joint_sign[i],
+                          "1 is wanted, as axis_direction has the sign");
+        }
+    }
+    return s->singular != ROBOT_WRIST
+           || refuse(wrong, "singular", 0, s->singular, "not of an arm by its axes");
+}
+
 bool controller_settings_good(const struct controller_settings *s, struct controller_wrong *wrong)
 {
     const double clocks = s->bus_period * FPGA_CLOCK_HZ;
@@ -72,6 +110,9 @@ bool controller_settings_good(const struct controller_settings *s, struct contro
         if (!(s->joint_low[i] < s->joint_high[i])) {
             return refuse(wrong, "joint_low", i, s->joint_low[i], "not below joint_high");
         }
+    }
+    if (s->arm_by == 1 && !axes_good(s, wrong)) {
+        return false;
     }
     return fpga_slot_most((enum fpga_format)s->pulse_format, s->slot_clocks) >= 1
            || refuse(wrong, "slot_clocks", 0, s->slot_clocks, "too short for a pulse");
@@ -100,6 +141,11 @@ static void set_robot(const struct controller_settings *s, struct robot_config *
                                 .slot = (double)s->slot_clocks / FPGA_CLOCK_HZ,
                                 .slot_pulses = fpga_slot_most((enum fpga_format)s->pulse_format,
                                                               s->slot_clocks) };
+    if (s->arm_by == 1) {
+        const struct chain axes = axes_of(s);
+        chain_form_of(&axes, CHAIN_NONE, &r->arm.axes);
+        r->arm.by_axes = true;
+    }
     for (int i = 0; i < OPW_JOINTS; i++) {
         r->arm.opw.offset[i] = s->joint_offset[i] * DEGREE;
         r->arm.opw.sign[i] = s->joint_sign[i];

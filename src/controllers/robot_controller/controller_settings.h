@@ -51,6 +51,10 @@
     X(double, c2, , "m", 0.700, 1e-3, 10.0) \
     X(double, c3, , "m", 0.795, 1e-3, 10.0) \
     X(double, c4, , "m", 0.085, -10.0, 10.0) \
+    X(int32_t, arm_by, , "", 0, 0, 1) /* its lengths a1 .. c4, or its axes */ \
+    X(double, axis_origin, [18], "m", 0.0, -100.0, 100.0) \
+    X(double, axis_direction, [18], "", 0.0, -1e3, 1e3) \
+    X(double, flange, [6], "mm, deg", 0.0, -1e4, 1e4) \
     X(double, joint_offset, [6], "deg", 0.0, -3600.0, 3600.0) \
     X(int32_t, joint_sign, [6], "", 1, -1, 1) /* not 0 */ \
     X(double, joint_low, [6], "deg", 0.0, -3600.0, 3600.0) \

@@ -7,8 +7,17 @@
 #include "controller_settings.h"
 
 static struct controller_settings s;
-static struct controller_config usual;
+static struct controller_config usual, by_axes;
 static int count;
+
+/* An arm by its axes, whose directions depend on each number. */
+static void with_axes(void)
+{
+    for (int i = 0; i < 18; i++) {
+        s.axis_direction[i] = 1.0 + i;
+    }
+    s.arm_by = 1;
+}
 
 /* Another value within the range, as far from the start as it goes. */
 static double other(double start, double low, double high)
@@ -22,7 +31,11 @@ static void changed(const char *name, size_t element)
     struct controller_wrong wrong;
 
     controller_configure(&s, &c);
-    if (memcmp(&c, &usual, sizeof c) == 0) {
+    const bool counts = memcmp(&c, &usual, sizeof c) != 0;
+    s.arm_by ^= 1; /* what is of the arm by its axes, or by its lengths */
+    controller_configure(&s, &c);
+    s.arm_by ^= 1;
+    if (!counts && memcmp(&c, &by_axes, sizeof c) == 0) {
         check_failures++;
         printf("%s[%d] counts for nothing\n", name, (int)element);
     }
@@ -86,6 +99,9 @@ int main(void)
     controller_configure(&s, &usual);
     /* Where the longest wait is at work it is longer than the least. */
     s.irq_longest = 1e-3;
+    with_axes();
+    controller_configure(&s, &by_axes);
+    s.arm_by = 0;
     controller_configure(&s, &usual);
     CONTROLLER_SETTINGS(EACH)
     CHECK(count > 120);
@@ -93,6 +109,14 @@ int main(void)
     s = controller_defaults();
     s.bus_period = 5.001e-5;
     wrong_together("bus_period", "not a whole number of 25 ns clocks");
+    s.arm_by = 1;
+    wrong_together("axis_direction", "an axis without direction");
+    with_axes();
+    s.joint_sign[2] = -1;
+    wrong_together("joint_sign", "1 is wanted, as axis_direction has the sign");
+    with_axes();
+    s.singular = ROBOT_WRIST;
+    wrong_together("singular", "not of an arm by its axes");
     s.joint_sign[3] = 0;
     wrong_together("joint_sign", "1 or -1 is wanted");
     s.joint_low[2] = s.joint_high[2];

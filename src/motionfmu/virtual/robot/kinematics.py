@@ -86,15 +86,17 @@ def matrix_of(pose: Any) -> np.ndarray:
 
 
 class Kinematics:
-    """Kinematics of six joints with a spherical wrist, on arrays.
+    """Kinematics of six joints, on arrays.
 
-    Brandstoetter, Angerer, Hofbaur, Austrian Robotics Workshop 2014. A branch is a sum of 1 (wrist
-    flipped), 2 (elbow down) and 4 (shoulder back).
+    With a spherical wrist by seven lengths: Brandstoetter, Angerer, Hofbaur, Austrian Robotics
+    Workshop 2014; with `arm_by` = 1 any arm by its axes. A branch is a sum of 1 (wrist flipped),
+    2 (elbow down) and 4 (shoulder back).
 
     Parameters
     ----------
     **settings
-        As in `defaults`: a1 .. c4, joint_offset, joint_sign, joint_low, joint_high, tool.
+        As in `defaults`: a1 .. c4, joint_offset, joint_sign, or arm_by, axis_origin,
+        axis_direction, flange; joint_low, joint_high, tool.
 
     Raises
     ------
