@@ -217,6 +217,32 @@ void binding_robot_arm(const struct robot_station *s, struct manipulator *arm)
     arm->tool = s->tool;
 }
 
+/* Read a job and, by the callback, those that it calls and that are not in it. */
+static int read_jobs(struct robot_program *p, const char *first, int64_t length, binding_file file,
+                     char message[MESSAGE])
+{
+    const char *text[ROBOT_JOB_JOBS] = { first }, *name[ROBOT_JOB_JOBS] = { "" };
+    char found[ROBOT_JOB_MESSAGE_MAX];
+    struct robot_job_report r;
+
+    robot_job_begin_reading(&p->job);
+    int status = robot_job_read_text(&p->job, &p->points, first, length, &r);
+    for (int32_t i = 0; i < p->job.callees && status == 0; i++) {
+        const int32_t n = p->job.texts;
+        if (file && n < ROBOT_JOB_JOBS && robot_job_wanted(&p->job, i)) {
+            text[n] = file(p->job.callee[i].name, &length);
+            name[n] = p->job.callee[i].name;
+            status = text[n] ? robot_job_read_text(&p->job, &p->points, text[n], length, &r) : 0;
+        }
+    }
+    if (status == 0 && robot_job_end_reading(&p->job, &r) == 0) {
+        return 0;
+    }
+    robot_job_message(&r, text[r.text], found);
+    snprintf(message, MESSAGE, "%.40s%s%.360s", name[r.text], r.text ? ": " : "", found);
+    return 1;
+}
+
 /* Read a program (an empty text is none) in one of the languages, and its points. */
 int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
                        bool gcode, binding_file file, char message[MESSAGE])
@@ -236,8 +262,7 @@ int binding_robot_read(struct robot_program *p, const char *const text[2], const
     if (gcode) {
         p->source = binding_source(&p->text);
         p->orders.gcode = &p->source;
-    } else if (robot_job_read(&p->job, &p->points, text[0], length[0], &r) < 0) {
-        robot_job_message(&r, text[0], message);
+    } else if (read_jobs(p, text[0], length[0], file, message)) {
         return 1;
     } else {
         p->orders.job = &p->job;

@@ -131,6 +131,25 @@ def test_a_wait_without_end_is_told(tmp_path: Path) -> None:
     assert not dry_run(scenario, [InputChange(1.0, 3, True)]).fault
 
 
+def test_a_pendants_job_calls_the_one_beside_it(tmp_path: Path) -> None:
+    head = "/JOB\n//NAME {0}\n//POS\n///NPOS 1,0,0,0,0,0\n///TOOL 0\n///POSTYPE PULSE\n///PULSE\n"
+    # Pulses of joints by gear and motor: joint 1 to 10 degrees.
+    pulses = f"C00000={round(10 / 360 * 100 * 2500)},0,0,0,62500,0\n"
+    body = "//INST\n///DATE 2026/01/01 10:00\n///ATTR SC,RW\n///GROUP1 RB1\nNOP\n"
+    (tmp_path / "A.JBI").write_text(f"{head.format('A')}{pulses}{body}CALL JOB:B\nEND\n")
+    move = "MOVJ C00000 VJ=50.00\n"
+    (tmp_path / "B.JBI").write_text(f"{head.format('B')}{pulses}{body}{move}END\n")
+    scenario = motionfmu.machine("robot6").scenario(tmp_path / "A.JBI")
+    dry = dry_run(scenario)
+    assert not dry.fault
+    assert dry.samples["joint"][-1] == pytest.approx([10, 0, 0, 0, 90, 0], abs=1e-3)
+    (tmp_path / "B.JBI").write_text(f"{head.format('B')}{pulses}{body}MOVQ C00000\nEND\n")
+    assert "MOVQ" in dry_run(motionfmu.machine("robot6").scenario(tmp_path / "A.JBI")).fault
+    robot = VirtualRobot()
+    with pytest.raises(RobotError, match="^B: line 13.*MOVQ"):
+        robot.start(tmp_path / "A.JBI")
+
+
 def command(*words: str) -> tuple[int, str]:
     done = CliRunner().invoke(app, ["job", *words])
     return done.exit_code, done.output + (str(done.exception) if done.exception else "")

@@ -92,12 +92,16 @@ def _fault(texts: Callable[[str], bytes], r: Any, axes: Sequence[ControllerAxis]
 
 
 class Texts:
-    """A part program and the files beside it that it calls, as C asks for them.
+    """A program and the files beside it that it calls, as C asks for them.
 
-    `of` has their texts by name, that of the program under an empty one.
+    `of` has their texts by name, that of the program under an empty one; `endings` are those of the
+    files, the first that is there counts.
     """
 
-    def __init__(self, text: str | Path, folder: Path | None = None) -> None:
+    def __init__(
+        self, text: str | Path, folder: Path | None = None, endings: Sequence[str] = (".ngc",)
+    ) -> None:
+        self._endings = endings
         if isinstance(text, Path):
             folder = folder or text.parent
             text = text_in(text)
@@ -120,8 +124,9 @@ class Texts:
     def _at(self, name: bytes, length: Any) -> int | None:
         """Address of the text of a file that is called; none if there is no such file."""
         if (found := name.decode()) not in self.of:
-            file = self._folder / f"{found}.ngc" if self._folder else None
-            if file is None or not is_file(file):
+            beside = [self._folder / f"{found}{e}" for e in self._endings] if self._folder else []
+            file = next(filter(is_file, beside), None)
+            if file is None:
                 return None
             try:
                 self.of[found] = text_of(text_in(file))

@@ -23,6 +23,7 @@ from motionfmu.virtual.robot.refusal import (
 _JOINTS, _LINE, _CIRCLE = range(3)
 _SINGULAR = {"slow": 0, "refuse": 1, "wrist": 2}
 _ANY_BRANCH = -1
+_JOBS = (".JBI", ".jbi", ".job")  # files of the robot language
 
 
 class Commands:
@@ -154,8 +155,8 @@ class Commands:
         """Start a program from its text: the robot language with the text of its points, or G-code.
 
         `language`: inform or gcode; a part program is planned move by move before anything moves.
-        `job`: the one to start with. `folder`: where the files are that a part program calls; a
-        program that is a Path is read from there, and its folder is the default.
+        `job`: the one to start with. `folder`: where the files are that a program calls; a program
+        that is a Path is read from there, and its folder is the default.
         """
         if language not in ("inform", "gcode"):
             raise RobotError(f"language = {language!r}: inform or gcode is wanted")
@@ -164,7 +165,7 @@ class Commands:
         if not self._rests():
             raise RobotError("start: not now: the arm moves", "BUSY")
         read, words = Struct("robot_program"), message()
-        texts = Texts(program, folder)
+        texts = Texts(program, folder, _JOBS if language == "inform" else (".ngc",))
         both = [texts.of[""], text(points)]
         places = (ctypes.c_char_p * 2)(*both)
         lengths = (ctypes.c_int64 * 2)(*map(len, both))
