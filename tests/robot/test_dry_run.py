@@ -146,7 +146,7 @@ def test_a_pendants_job_calls_the_one_beside_it(tmp_path: Path) -> None:
     (tmp_path / "B.JBI").write_text(f"{head.format('B')}{pulses}{body}MOVQ C00000\nEND\n")
     assert "MOVQ" in dry_run(motionfmu.machine("robot6").scenario(tmp_path / "A.JBI")).fault
     robot = VirtualRobot()
-    with pytest.raises(RobotError, match="^B: line 14.*MOVQ"):
+    with pytest.raises(RobotError, match=r"^B: line 14.*MOVQ"):
         robot.start(tmp_path / "A.JBI")
 
 
