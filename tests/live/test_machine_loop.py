@@ -1,6 +1,7 @@
 """What an operator holds, types and asks, by a clock that the test turns."""
 
 import inspect
+import json
 import math
 import threading
 from collections.abc import Iterator
@@ -306,6 +307,16 @@ def test_a_wrong_request_is_told(name: Any, given: Any, told: str) -> None:
 def test_a_text_that_is_no_json_is_told(text: str) -> None:
     with pytest.raises(InputError, match="no JSON"):
         parsed(text)
+
+
+def test_brackets_in_texts_are_not_nested() -> None:
+    line = "G1 X[" * 300 + '\\"'
+    text = json.dumps({"line": line, "rows": [[1], [{"a": []}]] * 40})
+    assert parsed(text) == {"line": line, "rows": [[1], [{"a": []}]] * 40}
+    deep = "[" * 32 + "]" * 32
+    assert isinstance(parsed(deep), list)
+    with pytest.raises(InputError, match="no JSON"):
+        parsed(f"[{deep}]")
 
 
 def test_the_documentation_has_every_request() -> None:

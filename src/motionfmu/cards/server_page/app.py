@@ -1,7 +1,6 @@
 """The page as an ASGI application: cards, commands, jobs, configuration."""
 
 import asyncio
-import json
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any, Protocol
@@ -15,6 +14,7 @@ from starlette.routing import Route, WebSocketRoute
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import Guard
+from motionfmu.base.strange_json import strange_json
 from motionfmu.base.toml_lines import shown
 from motionfmu.cards.config import CardConfig, load
 from motionfmu.cards.server_page.configuration import Configuration
@@ -132,8 +132,8 @@ async def body(request: Request, most: int) -> bytes:
 async def values(request: Request) -> dict[str, Any]:
     """Values of a request, a JSON object; InputError if it is none."""
     try:
-        found = json.loads(await body(request, 1 << 20))
-    except (ValueError, RecursionError):
+        found = strange_json(await body(request, 1 << 20))
+    except ValueError:
         found = None
     if not isinstance(found, dict):
         raise InputError("a JSON object is wanted")

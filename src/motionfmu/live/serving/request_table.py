@@ -12,6 +12,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, WithJsonSchema
 
 from motionfmu.base.errors import InputError, suggestion
+from motionfmu.base.strange_json import strange_json
 from motionfmu.base.toml_lines import shown
 from motionfmu.live.pace import QUICKEST, SLOWEST
 from motionfmu.live.scope_trigger import LONGEST, Kind, Mode
@@ -351,13 +352,9 @@ def checked(name: Any, arguments: Any) -> CheckedRequest:
 def parsed(text: str | bytes) -> Any:
     """A JSON text; an InputError if it is none, or is nested too deeply."""
     try:
-        return json.loads(text, parse_constant=_constant)
-    except (ValueError, RecursionError):
+        return strange_json(text)
+    except ValueError:
         raise InputError("no JSON") from None
-
-
-def _constant(word: str) -> None:
-    raise ValueError(f"{word} is no JSON")
 
 
 def _told(error: ValidationError, kind: type[Request]) -> str:
