@@ -2,8 +2,9 @@
 
     PYTHONPATH=tests/helpers python tests/live/against_cncjs.py [FOLDER]
 
-npm installs it into build/cncjs. What it says is printed, a picture of its page is left in FOLDER;
-ends with an error if something is not what the machine did.
+npm installs it into build/cncjs; it lists ports by udevadm (apt-get install udev). What it says is
+printed, a picture of its page is left in FOLDER; ends with an error if something is not what the
+machine did.
 """
 
 import asyncio
@@ -11,6 +12,7 @@ import contextlib
 import json
 import math
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -241,6 +243,8 @@ async def _work(folder: Path) -> None:
 
 def main() -> None:
     """Install CNCjs, if it is not there, and let it work."""
+    if not shutil.which("udevadm"):
+        sys.exit("CNCjs' page lists no port without udevadm: apt-get install udev")
     PLACE.mkdir(parents=True, exist_ok=True)
     if not (PLACE / "node_modules/cncjs").is_dir():
         command = ["npm", "install", "--no-fund", "--no-audit", f"cncjs@{VERSION}"]
