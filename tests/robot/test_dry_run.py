@@ -183,6 +183,16 @@ def test_wrong_words(words: tuple[str, ...], told: str) -> None:
     assert told in text
 
 
+def test_a_trace_tells_underruns_as_a_run_does() -> None:
+    for run in ("trace", "run"):
+        robot = VirtualRobot(ik_time=1e-3)
+        points = "P000 J1=0 J2=0 J3=0 J4=0 J5=60 J6=0\nP001 X=1000 Y=100 Z=900 A=180 B=0 C=180\n"
+        robot.start("MOVJ P000\nMOVL P001 V=1000.0\nEND\n", points)
+        with pytest.warns(RuntimeWarning, match="underruns of the card") as told:
+            robot.trace(10.0, 1e-3) if run == "trace" else robot.run(10.0)
+        assert {w.filename for w in told} == {__file__}
+
+
 def test_a_trace_needs_a_program() -> None:
     with pytest.raises(RobotError, match="no program has been started"):
         VirtualRobot().trace(1.0, 1e-3)

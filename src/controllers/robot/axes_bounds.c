@@ -25,7 +25,7 @@ struct course {
 struct stand {
     const struct axes_motion *motion;
     double inverse[N][6];  /* A [rad/mm], [1] */
-    double weight[N][2];   /* lengths of its rows: for ways [rad/mm], for turns [1] */
+    double weight[N][2];   /* lengths of the rows of A: for ways [rad/mm], for turns [1] */
     struct course axis[N]; /* of the joints */
     double arm[N][3];      /* [mm] from the joints to the tip */
     double link[N];        /* [mm] length from the joint before */
@@ -107,7 +107,7 @@ static void carried(const struct course *w, struct course *v)
     add_cross(1.0, w->of[0], v->of[1], v->of[2]);
 }
 
-/* A times a way and a turn. */
+/* Rate of joint i at which the tip moves by a way and a turn: its row of A times both. */
 static double by_inverse(const struct stand *s, int i, const double way[3], const double turn[3])
 {
     double sum = 0.0;

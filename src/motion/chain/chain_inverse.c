@@ -112,13 +112,30 @@ static void behind(const struct task *t, double angle, const double place[3], do
     moved(t, 0, -angle, place, out);
 }
 
+/* Branches 2 b and 2 b + 1, one for each angle of joint 3: joint 2 turns what joint 3 has bent to
+ * where the wrist is seen from behind joint 1. */
+static unsigned second_of(const struct task *t, int b, double first, const double third[2],
+                          const double seen[3], double q[4][3])
+{
+    double bent[3];
+
+    for (int e = 0; e < 2; e++) {
+        const int n = 2 * b + e;
+        moved(t, 2, third[e], t->p.centre, bent);
+        q[n][0] = first;
+        q[n][1] = turn_of(t, 1, bent, seen);
+        q[n][2] = third[e];
+    }
+    return 3u << 2 * b;
+}
+
 /* Joints 1 to 3 that bring the centre to its place, for arms whose axes 2 and 3 are in parallel:
  * joint 1 by the height along these, joint 3 by the distance from axis 2. A branch is 2 back +
  * elbow; returns a bit each. */
 static unsigned by_parallel(const struct task *t, double q[4][3])
 {
     const double(*h)[3] = t->p.lines.axis, (*o)[3] = t->p.lines.point;
-    double first[2], third[2], seen[3], bent[3];
+    double first[2], third[2], seen[3];
     unsigned there = 0;
 
     /* h2 . R1^T (w - o1) = h2 . (c - o1), the angle taken of the other side's turn. */
@@ -134,14 +151,7 @@ static unsigned by_parallel(const struct task *t, double q[4][3])
         if (!distance_of(t, 2, t->p.centre, o[1], across2(h[1], o[1], seen), third)) {
             continue;
         }
-        for (int e = 0; e < 2; e++) {
-            const int n = 2 * b + e;
-            moved(t, 2, third[e], t->p.centre, bent);
-            q[n][0] = first[b];
-            q[n][1] = turn_of(t, 1, bent, seen);
-            q[n][2] = third[e];
-            there |= 1u << n;
-        }
+        there |= second_of(t, b, first[b], third, seen, q);
     }
     return there;
 }
@@ -180,7 +190,7 @@ static unsigned by_shoulder(const struct task *t, double q[4][3])
 static unsigned by_elbow(const struct task *t, double q[4][3])
 {
     const double(*h)[3] = t->p.lines.axis, *m = t->p.meeting;
-    double first[2], third[2], seen[3], bent[3];
+    double first[2], third[2], seen[3];
     unsigned there = 0;
     const double square = left_of(t, 0, t->wrist, m, distance2(m, t->p.centre));
 
@@ -198,14 +208,7 @@ static unsigned by_elbow(const struct task *t, double q[4][3])
         if (!level_of(t, 2, t->p.centre, h[1], seen, third)) {
             continue;
         }
-        for (int e = 0; e < 2; e++) {
-            const int n = 2 * b + e;
-            moved(t, 2, third[e], t->p.centre, bent);
-            q[n][0] = first[b];
-            q[n][1] = turn_of(t, 1, bent, seen);
-            q[n][2] = third[e];
-            there |= 1u << n;
-        }
+        there |= second_of(t, b, first[b], third, seen, q);
     }
     return there;
 }

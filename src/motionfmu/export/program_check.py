@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.program_endings import ROBOT_JOBS
 from motionfmu.fmu import places
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.slave import Slave
@@ -21,7 +22,6 @@ _WIDEST: dict[str, Any] = {"active": True, "max_feed": 1e9, "max_rpm": 1e9}
 _WIDEST |= {f"group{n}_channel": [1, 2, 3, 4, 5, 6] for n in range(1, 7)}
 # that reads the same words in one of several ways.
 _SWITCHES = ("fanuc", "rotary_names", "block_delete")
-_ROBOT = (".job", ".jbi")  # programs of the robot language, whose points are in another file
 
 
 def check_scenario(scenario: RunPlan, system: System, given: Mapping[str, Any]) -> None:
@@ -95,7 +95,8 @@ def _of_a_program(error: InputError, settings: Sequence[Setting]) -> bool:
     """Whether an FMU refuses the text of a program that it was given, all of which is here."""
     given = {s.end.port.name: str(s.values[0]) for s in settings}
     for name, file in given.items():
-        robots = Path(file).suffix.lower() in _ROBOT or given.get("language") == "inform"
+        # The points of a robot's job are in another file.
+        robots = Path(file).suffix.lower() in ROBOT_JOBS or given.get("language") == "inform"
         if name.endswith("program") and not (robots and "points" not in given):
             if f": {file}: " in str(error):
                 return True

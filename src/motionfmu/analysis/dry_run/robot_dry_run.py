@@ -1,6 +1,5 @@
 """A robot's program without arm and drives: refusals, times, limits of each move."""
 
-import builtins
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -15,6 +14,7 @@ from motionfmu.analysis.cycle_time import CommandedMotion
 from motionfmu.base.binding import CLOCK_HZ, dtype
 from motionfmu.base.errors import InputError
 from motionfmu.base.motion_rows import NUMBER_OF, ROW
+from motionfmu.base.program_endings import ROBOT_JOBS
 from motionfmu.run import Scenario
 from motionfmu.run.run_plan import Options
 from motionfmu.scenarios.values import values_in
@@ -22,7 +22,6 @@ from motionfmu.virtual.robot import RobotError, VirtualRobot, defaults
 
 AXES = ("J1", "J2", "J3", "J4", "J5", "J6")
 INPUTS, DIGITAL = 32, "di"  # digital inputs of the card, and their name
-JOBS = (".job", ".jbi")  # files in the robot language
 # The longest memory of the card, with which its driver works as seldom as it may; its lines.
 MOST_SLOTS, MOST_LINES = 128, 1000
 PIECE = 5.0  # [s] that are run at once
@@ -191,7 +190,7 @@ class DryRun:
             if key[a:b].size and key[a]:
                 joint = int(left[a:b].min(axis=0).argmin())
                 fastest = int(share[a:b].max(axis=0).argmax())
-                factors = np.abs(s["factors"][a:b]).min(axis=0)
+                shoulder, elbow, wrist = map(float, np.abs(s["factors"][a:b]).min(axis=0))
                 found.append(
                     DryMove(
                         int(key[a]),
@@ -202,7 +201,7 @@ class DryRun:
                         float(left[a:b, joint].min()),
                         fastest + 1,
                         float(share[a:b, fastest].max()),
-                        tuple(map(float, factors)),  # type: ignore[arg-type]
+                        (shoulder, elbow, wrist),
                     )
                 )
         return found
@@ -338,7 +337,7 @@ def _start(robot: VirtualRobot, file: Path, value: Callable[[str], Any]) -> str:
     """Start the program; why it is refused before anything moves, if it is."""
     language = str(value("language"))
     if language == "auto":
-        language = "inform" if file.suffix.lower() in JOBS else "gcode"
+        language = "inform" if file.suffix.lower() in ROBOT_JOBS else "gcode"
     points = str(value("points"))
     try:
         text = Path(points).read_text(encoding="utf-8") if points else ""
@@ -357,7 +356,7 @@ def _traced(
     progress: Callable[[float], None],
 ) -> NDArray[Any]:
     """Samples until the program is over and the arm rests."""
-    parts, left, on = [], list(changes), builtins.set[int]()
+    parts, left, on = [], list(changes), set[int]()
     now = waited = 0.0
     while True:
         while left and left[0].time <= now:

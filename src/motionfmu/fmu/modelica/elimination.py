@@ -27,7 +27,7 @@ class _Entry:
     e: ca.SX
     at: _Numbers
     constant: bool
-    idle: bool = False  # 0 as long as a parameter that may stand for it has its value
+    idle: bool = False  # the coefficient is 0 while parameters have their start values
 
 
 _Row = dict[int, _Entry]

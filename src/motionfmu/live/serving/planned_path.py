@@ -8,15 +8,15 @@ import numpy as np
 from motionfmu.analysis.gcode import read, strokes
 from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.base.errors import InputError
+from motionfmu.base.program_endings import CARD_JOBS, ROBOT_JOBS
 
 # Points that a page is given at most; off by less than this share of the path's extent.
 POINTS, COARSE = 60_000, 3e-4
-OTHERS = (".job", ".jbi", ".mcj")  # programs in another language
 
 
 def planned_path(program: dict[str, Any] | None) -> list[dict[str, Any]]:
     """The strokes of a program up to its first fault: rapid or not, points [mm], lines."""
-    if program is None or Path(program["path"]).suffix.lower() in OTHERS:
+    if program is None or Path(program["path"]).suffix.lower() in (*ROBOT_JOBS, *CARD_JOBS):
         return []
     tools = Path(program["tools"]).read_text("utf-8") if program.get("tools") else ""
     try:

@@ -118,13 +118,17 @@ class VirtualRobot(Commands, Station[RobotReading]):
         program = self._program.pointer if self._program else None
         before = self._state["underruns"]
         library().binding_robot_run(self._state.pointer, until, program)
+        self._tell_underruns(before, 5)
+
+    def _tell_underruns(self, before: int, level: int) -> None:
+        """Warn of underruns since there were so many; `level` is the caller's of `warnings`."""
         if missed := self._state["underruns"] - before:
             when, cycle = self._state["clock"] / CLOCK_HZ, self._state["cycle_time_most"] * 1e6
             warnings.warn(
                 f"{missed} underruns of the card by {when:.6g} s: cycles of the driver "
                 f"take up to {cycle:.4g} µs (ik_time, pitch)",
                 RuntimeWarning,
-                stacklevel=4,
+                stacklevel=level,
             )
 
     def read(self) -> RobotReading:
@@ -172,6 +176,7 @@ class VirtualRobot(Commands, Station[RobotReading]):
         if clocks < 1:
             raise InputError(f"step = {step} s: 25 ns or more wanted")
         last = int(self._state["clock"]) + round(seconds * CLOCK_HZ)
+        before = self._state["underruns"]
         parts: list[np.ndarray] = []
         while not parts or len(parts[-1]) == _ROWS:
             rows = np.zeros(_ROWS, dtype("robot_sample"))
@@ -184,6 +189,7 @@ class VirtualRobot(Commands, Station[RobotReading]):
                 ctypes.c_int64(_ROWS),
             )
             parts.append(rows[:count])
+        self._tell_underruns(before, 3)
         return np.concatenate(parts)
 
     def set_inputs(self, *numbers: int) -> None:
