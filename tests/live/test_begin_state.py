@@ -330,3 +330,22 @@ def test_a_request_and_the_end_save_the_last_seconds(tmp_path: Path) -> None:
     begins = [motionfmu.load(f).begin for f in (asked, ended, short, again)]
     assert [None if b is None else b.ns for b in begins] == [10**9, 2 * 10**9, None, None]
     assert again.parent.name == "short-2"
+
+
+def test_what_ends_as_it_is_is_read_when_it_is_saved(tmp_path: Path) -> None:
+    """Nobody's view of it, which is older: the checks hold in a run of what was saved."""
+    with LiveMachine("circle") as machine:
+        loop = MachineLoop(machine)
+        loop.advance(16_001)
+        ends = {"mcc.position[1]": 1e-9, "card.enc_count[2]": 0.0, "card.err_count[1]": 0.0}
+        loop.do_save(str(tmp_path / "saved"), {"card.err_count[2]": {"max": 10**6}}, None, ends)
+        x, counts, errors = (machine[name] for name in ends)
+        with pytest.raises(InputError, match=r"mcc\.position: it is an array; name an element"):
+            machine.save(tmp_path / "no", ends={"mcc.position": 0.0})
+    plan = motionfmu.load(tmp_path / "saved")
+    saved = plan.document.tables["check"]
+    assert saved.pop("card.err_count[2]") == {"max": 10**6}
+    assert saved == {
+        n: {"final": v} for n, v in zip(ends, ([x - 1e-9, x + 1e-9], counts, errors), strict=True)
+    }
+    assert plan.run().ok

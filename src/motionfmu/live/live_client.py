@@ -376,6 +376,7 @@ class LiveClient:
         folder: str | Path,
         check: Mapping[str, Any] | None = None,
         begin: float | None = None,
+        ends: Mapping[str, float] | None = None,
     ) -> Path:
         """Write what was done as a scenario.
 
@@ -384,6 +385,7 @@ class LiveClient:
         folder : str or Path
         check : mapping, optional
         begin : float, optional
+        ends : mapping, optional
             All as of `LiveMachine.save`.
 
         Returns
@@ -393,6 +395,7 @@ class LiveClient:
         """
         given: dict[str, Any] = {} if check is None else {"check": dict(check)}
         given |= {} if begin is None else {"begin": begin}
+        given |= {} if ends is None else {"ends": dict(ends)}
         return Path(self.ask("save", folder=str(Path(folder).absolute()), **given))
 
     def _component(self, table: str) -> str:

@@ -716,6 +716,17 @@ class LiveMachine:
     def _drop(self, kept: _SavedState) -> None:
         self._refusable(lambda: self._library.call("FreeFMUState", byref(kept.state)))
 
+    def _end_checks(self, rooms: Mapping[str, float]) -> dict[str, dict[str, Any]]:
+        """The [check] of signals that end as they are now."""
+        found: dict[str, dict[str, Any]] = {}
+        for name, room in rooms.items():
+            value = self[name]
+            if isinstance(value, np.ndarray):
+                raise InputError(f"{name}: it is an array; name an element of it")
+            real = self._places[name.partition("[")[0]].type.startswith("Float")
+            found[name] = {"final": [value - room, value + room] if real else value}
+        return found
+
     def as_scenario(self, name: str | None = None) -> Scenario:
         """The scenario that does what was done since it began.
 
@@ -759,6 +770,7 @@ class LiveMachine:
         folder: str | Path,
         check: Mapping[str, Any] | None = None,
         begin: float | None = None,
+        ends: Mapping[str, float] | None = None,
     ) -> Path:
         """Write what was done as a scenario, with the files it reads.
 
@@ -771,6 +783,9 @@ class LiveMachine:
         begin : float, optional
             It begins in the latest state that is kept from this time [s] or before; what was set
             until then is in the state. Else it begins where the machine did.
+        ends : mapping, optional
+            Signals or elements that must end as they are now: by how much a real number may differ;
+            others do not. The scenario is one step longer, at whose begin they are seen.
 
         Returns
         -------
@@ -787,8 +802,10 @@ class LiveMachine:
         there = None if begin is None else self._kept_at(begin, "begin at")
         with new_folder(place) as part:
             plan = self._saved_plan(place.name, there, part)
-            if check:
-                plan = plan.changed(check=check)
+            if check or ends:
+                plan = plan.changed(check={**(check or {}), **self._end_checks(ends or {})})
+            if ends:
+                plan = plan.changed(stop=(self.steps + 1) * self._system.step_ns / 1e9)
             given = plan.document.tables.items()
             tables = {
                 k: v for k, v in given if k not in ("machine", "extends") and v not in ({}, [])

@@ -292,10 +292,14 @@ class MachineLoop:
         return {"ends": ends, "counts": late.counts, "worst": late.worst}
 
     def do_save(
-        self, folder: str, check: Mapping[str, Any] | None = None, begin: float | None = None
+        self,
+        folder: str,
+        check: Mapping[str, Any] | None = None,
+        begin: float | None = None,
+        ends: Mapping[str, float] | None = None,
     ) -> str:
         """Save what was done as a scenario."""
-        return str(self.machine.save(folder, check, begin))
+        return str(self.machine.save(folder, check, begin, ends))
 
     def do_checks(self, names: list[str] | None = None) -> dict[str, Any]:
         """Figures of which checks are made: present values; least and largest ones in the scope."""

@@ -24,6 +24,7 @@ Name = Annotated[str, Field(max_length=256)]
 Names = Annotated[list[Name], Field(max_length=_NAMES)]
 Whole = Annotated[int, Field(ge=-_LARGEST, le=_LARGEST)]
 Number = Annotated[float, Field(allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
 Text = Annotated[str, Field(max_length=4096)]
 
 
@@ -196,6 +197,10 @@ class AskSave(Request):
         None,
         description="the scenario begins in the latest state kept from then [s] or before, else at"
         " the beginning",
+    )
+    ends: dict[Name, NotNegative] | None = Field(
+        None,
+        description="signals that must end as they are now: by how much a real number may differ",
     )
 
 

@@ -59,24 +59,14 @@ const MINUTE = 60;
 
 // By how much a number may differ at the end, until somebody says it: a share of it, or a little.
 const SHARE = 1e-3, LEAST = 1e-6;
-export const usualRoom = (now) => Number(Math.max(LEAST, SHARE * Math.abs(now)).toPrecision(1));
-
-// The [check] table: what ends as it is now; a number of which only so much is known, within that.
-export function checkTable(names, value, room) {
-  return Object.fromEntries(names.map((name) => {
-    const now = value(name);
-    if (typeof now !== "number" || Number.isInteger(now)) return [name, { final: now }];
-    const apart = room(name) ?? usualRoom(now);
-    return [name, { final: [now - apart, now + apart] }];
-  }));
-}
+export const usualRoom = (now) => Number(Math.max(LEAST, SHARE * Math.abs(Number(now) || 0)).toPrecision(1));
 
 part("save").addEventListener("submit", async (event) => {
   event.preventDefault();
   const ticked = [...checks].filter(([, on]) => on).map(([name]) => name);
-  const check = checkTable(ticked, present, (name) => rooms.get(name));
+  const ends = Object.fromEntries(ticked.map((name) => [name, rooms.get(name) ?? usualRoom(present(name))]));
   const last = Number(part("save-begin").value), begin = last ? frame.time - last : null;
-  const place = await act("save", { folder: part("folder").value.trim(), check, begin });
+  const place = await act("save", { folder: part("folder").value.trim(), begin, ends });
   if (place) told(`Saved: ${place}`, "good");
 });
 
