@@ -12,6 +12,7 @@ from motionfmu.identify import AxisRecord, ColumnUse, IdentifyOptions, identify,
 from motionfmu.identify.ground import ground
 from motionfmu.identify.loop_motion import LoopMotion
 from motionfmu.identify.shooting import Guess
+from motionfmu.identify.tellable import start_values
 
 NOISE = 0.01  # of the torque, as a share of its RMS
 BASE = ["table_mass", "table_coulomb", "table_viscous", "force"]
@@ -144,3 +145,17 @@ def test_wrong_names_are_told(short):
             identify(truth.scenario(), record, options)
     with pytest.raises(InputError, match="offset"):
         identify(truth.scenario(), record, IdentifyOptions(COLUMNS, laws=["ofset"]))
+
+
+def test_a_quantity_that_a_rigid_axis_does_not_show_leaves_the_others_their_start_values():
+    """A stiffness between motor and table: it moves the drive by rounding alone, and stays."""
+    truth, record = record_of(4, 3.0)
+    names = (*BASE, "table_viscous_asymmetry", "screw_damping", "screw_stiffness")
+    own = ground(truth.scenario(), record, IdentifyOptions(COLUMNS, free=names, laws=[]), ({}, {}))
+    free = own.free(names)
+    values, deviations = start_values(own, free)
+    alone, _ = start_values(own, own.free(names[:-2]))
+    assert values[:-2] == pytest.approx(alone, rel=1e-6)
+    assert values[-2:].tolist() == free.start[-2:].tolist()
+    assert np.isinf(deviations[-2:]).all() and np.isfinite(deviations[:-2]).all()
+    assert abs(values[0] - truth.values["machine.table_mass"]) < 0.02 * values[0]

@@ -22,6 +22,8 @@ _NEWTON = 6
 # Directions of start values that inverse dynamics tell with less than this share of the clearest
 # one stay as they are: the rest of a law at low speeds.
 _CLEAR = 1e-3
+# A quantity whose whole size makes less than this share of the drive leaves rounding alone there.
+_ROUNDING = 1e-9
 
 
 def start_values(own: Ground, free: FreeParameters) -> tuple[Array, Array]:
@@ -30,16 +32,21 @@ def start_values(own: Ground, free: FreeParameters) -> tuple[Array, Array]:
     if not len(values) or own.still or len(own.points) < 10 * len(values):
         return values, np.full(len(values), np.inf)
     deviations = np.full(len(values), np.inf)
+    sizes = np.where(free.start == 0.0, 1.0, np.abs(free.start))
+    drive = float(np.linalg.norm(own.force[own.points]))
     for _ in range(_NEWTON):
         found = own.follow(free, values, own.points)
         rest = own.force[own.points] - found.drive
         with np.errstate(over="ignore"):  # values that run away are seen below
-            scale = np.maximum(np.linalg.norm(found.slopes, axis=0), 1e-300)
-        u, s, v = np.linalg.svd(found.slopes / scale, full_matrices=False)
+            lengths = np.linalg.norm(found.slopes, axis=0)
+        heard = lengths * sizes > _ROUNDING * drive
+        scale = np.where(heard, np.maximum(lengths, 1e-300), 1.0)
+        u, s, v = np.linalg.svd(np.where(heard, found.slopes / scale, 0.0), full_matrices=False)
         inverse = np.where(s > _CLEAR * s[0], 1.0 / np.maximum(s, 1e-300), 0.0)
         step = v.T @ (inverse * (u.T @ rest)) / scale
         new = np.clip(values + step, free.low, free.high)
         deviations = np.sqrt(np.sum((v.T * inverse) ** 2, axis=1) * np.mean(rest**2)) / scale
+        deviations[~heard] = np.inf
         moved, values = np.abs(new - values), new
         if (moved <= 1e-6 * deviations).all():
             break
