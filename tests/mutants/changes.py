@@ -114,7 +114,7 @@ def _of_line(bare: str, line: str, python: bool, whole: bool) -> Iterator[str]:
     if python:
         if whole and (m := _IF_PYTHON.match(bare)):
             yield f"{m[1]}not ({line[m.start(2) : m.end(2)]}):"
-        elif whole and indent and not _HEAD_OR_END.match(line):
+        elif whole and indent and not _HEAD_OR_END.match(line) and not line.endswith(": ..."):
             yield f"{indent}pass"
     else:
         if m := _IF_C.match(bare):

@@ -66,6 +66,7 @@ def judged(folder: Path, seed: int) -> None:
     assert (dry.fault_line, line) == (at, at), f"seed {seed}: {dry.fault}, {words}"
     assert word in dry.fault
     assert dry.fault == (f"line {line}: {words}" if line else "")
+    assert dry.collisions == [], f"seed {seed}: {dry.faults}"
     assert abs(dry.time - time) <= 0.01 * time, f"seed {seed}"
 
 

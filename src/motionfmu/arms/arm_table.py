@@ -34,7 +34,7 @@ from motionfmu.arms.arm_description import (
 )
 from motionfmu.arms.arm_geometry import OpwGeometry
 from motionfmu.base.errors import InputError
-from motionfmu.base.toml_lines import Lines, shown, tables_of, text_of
+from motionfmu.base.toml_lines import faults_of, tables_of, text_of
 
 MM = 1e-3
 _X, _, _Z = np.eye(3)
@@ -127,21 +127,8 @@ def table_arm(file: str | Path) -> ArmDescription:
     try:
         table = _TableFile.model_validate(tables_of(text, file))
     except ValidationError as error:
-        raise InputError(*_told(error, Lines(text), str(file))) from None
+        raise InputError(*faults_of(error.errors(), text, str(file))) from None
     return _opw_arm(table) if table.opw is not None else _dh_arm(table)
-
-
-def _told(error: ValidationError, lines: Lines, file: str) -> list[str]:
-    found = []
-    for one in error.errors():
-        place = [str(p) for p in one["loc"]]
-        table = ".".join(place[:2]) if place[:1] == ["joint"] else ".".join(place[:1])
-        key = place[2] if len(place) > 2 else (place[-1] if place else "")
-        line = lines.of("", key) if len(place) == 1 else lines.of(table, key)
-        told = one["msg"].removeprefix("Value error, ")
-        value = "" if isinstance(one["input"], dict) else f" = {shown(one['input'])}"
-        found.append(f"{file}:{line}: {'.'.join(place)}{value}: {told}")
-    return found
 
 
 def _dh_arm(table: _TableFile) -> ArmDescription:

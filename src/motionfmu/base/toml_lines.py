@@ -3,7 +3,7 @@
 import re
 import stat
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -181,6 +181,20 @@ def ordered(lines: Iterable[str], files: Iterable[str]) -> list[str]:
         return names.index(place[1]), int(place[2])
 
     return sorted(lines, key=order)
+
+
+def faults_of(errors: Iterable[Mapping[str, Any]], text: str, file: str | Path) -> list[str]:
+    """What pydantic found in the tables of a text, each ``file:line: key = value: what``."""
+    lines, found = Lines(text), []
+    for one in errors:
+        place = [str(p) for p in one["loc"] if p != "[key]"]
+        rows = 2 if len(place) > 1 and place[1].isdigit() else 1  # a table of an array
+        key = place[rows] if len(place) > rows else (place[-1] if place else "")
+        line = lines.of("", key) if len(place) == 1 else lines.of(".".join(place[:rows]), key)
+        told = one["msg"].removeprefix("Value error, ")
+        value = "" if isinstance(one["input"], dict) else f" = {shown(one['input'])}"
+        found.append(f"{file}:{line}: {'.'.join(place)}{value}: {told}".replace(": : ", ": "))
+    return found
 
 
 def shown(value: Any) -> str:

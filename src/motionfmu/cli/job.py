@@ -43,11 +43,15 @@ def job(  # noqa: PLR0913  (each is an option of the command)
             "--input", metavar="N=on@SECONDS", help="A digital input that changes, as IN#(N)."
         ),
     ] = [],  # noqa: B006
+    cell: Annotated[
+        Path | None,
+        typer.Option("--cell", metavar="FILE", help="Bodies around the arm, its thickness: TOML."),
+    ] = None,
     set_: Set = [],  # noqa: B006
     folder: Folder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
 ) -> None:
-    """Judge a robot's program before it moves: reach, branch, limits, cycle time, line by line.
+    """Judge a robot's program before it moves: reach, limits, collisions, cycle time, by line.
 
     It is run dry: by the controller that drives the arm, a hundred times as fast, without the arm.
     Inputs are those that the scenario drives, or those of --input.
@@ -55,13 +59,13 @@ def job(  # noqa: PLR0913  (each is an option of the command)
     changes = [_change(text) for text in input_]
     scenario = loaded(path, machine)
     target = folder or results(scenario.name, "job")
-    run = _run(scenario, changes, settings(set_))
+    run = _run(scenario, changes, settings(set_), cell)
     if as_json:
         give(json.dumps(run.numbers(), indent=1, allow_nan=False))
     else:
         _tell(run)
         _write(run, target)
-    if run.fault:
+    if run.faults:
         raise typer.Exit(FAILED)
 
 
@@ -75,17 +79,21 @@ def _change(text: str) -> "InputChange":
     return InputChange(float(found[3] or 0.0), int(found[1]), found[2] == "on")
 
 
-def _run(scenario: "Scenario", changes: "list[InputChange]", given: dict[str, object]) -> "DryRun":
+def _run(
+    scenario: "Scenario", changes: "list[InputChange]", given: dict[str, object], cell: Path | None
+) -> "DryRun":
     """Run it dry with the time so far, which shows on a terminal only."""
+    from motionfmu.analysis.collisions import read_cell
     from motionfmu.analysis.dry_run import dry_run
 
+    around = read_cell(cell) if cell else None
     with progress_bar() as bar:
         task = bar.add_task(scenario.name, total=None)
 
         def told(seconds: float) -> None:
             bar.update(task, description=f"{scenario.name}: {seconds:.0f} s")
 
-        return dry_run(scenario, changes, given, told)
+        return dry_run(scenario, changes, given, told, around)
 
 
 def _tell(run: "DryRun") -> None:
@@ -93,7 +101,7 @@ def _tell(run: "DryRun") -> None:
     from motionfmu.report.jobs.dry_run_page import HEADS, line_cells
     from motionfmu.report.jobs.gcode_page import clock
 
-    for text in run.fault.split("\n") if run.fault else ():
+    for text in run.faults:
         out.print(f"{run.file}: {text}", markup=False, soft_wrap=True)
     if not len(run.samples):
         return
@@ -110,7 +118,7 @@ def _tell(run: "DryRun") -> None:
         lines = sorted(sorted(lines, key=lambda x: x.nearest.left)[:SHOWN], key=lambda x: x.line)
     table = bare_table(*HEADS)
     for x in lines:
-        table.add_row(*line_cells(x, run.axes))
+        table.add_row(*line_cells(x, run))
     out.print(table)
 
 

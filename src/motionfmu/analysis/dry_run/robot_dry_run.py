@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.collisions import Approach, ArmParts, Cell, approaches
 from motionfmu.analysis.cycle_time import CommandedMotion
 from motionfmu.base.binding import CLOCK_HZ, dtype
 from motionfmu.base.errors import InputError
@@ -131,6 +132,8 @@ class DryRun:
         0: none.
     axes : tuple of str
         Names of the joints.
+    approaches : tuple of Approach
+        How near the arm comes to itself and to its cell, by line.
     """
 
     file: Path
@@ -141,6 +144,28 @@ class DryRun:
     fault: str
     fault_line: int
     axes: tuple[str, ...]
+    approaches: tuple[Approach, ...] = ()
+
+    @property
+    def collisions(self) -> list[Approach]:
+        """What comes too near, by line and time."""
+        return [a for a in self.approaches if a.near]
+
+    @cached_property
+    def nearest(self) -> dict[int, Approach]:
+        """Of each line the two that come nearest to each other."""
+        found: dict[int, Approach] = {}
+        for a in self.approaches:
+            if a.line not in found or a.distance < found[a.line].distance:
+                found[a.line] = a
+        return found
+
+    @property
+    def faults(self) -> list[str]:
+        """Why it cannot run as it is: a refusal, then collisions."""
+        refused = self.fault.split("\n") if self.fault else []
+        near = [f"line {a.line}: {a.words}" if a.line else a.words for a in self.collisions]
+        return refused + near
 
     @property
     def time(self) -> float:
@@ -227,7 +252,11 @@ class DryRun:
         """Verdict, cycle time, where it goes, all moves, for JSON."""
         found = {"fault": self.fault, "fault_line": self.fault_line, "waits": self.waits}
         moves = [asdict(m) for m in self.moves]
-        return found | self.motion.numbers() | {"time": self.time, "moves": moves}
+        near = {
+            "collisions": [asdict(a) for a in self.collisions],
+            "nearest": [asdict(a) for a in self.nearest.values()],
+        }
+        return found | self.motion.numbers() | {"time": self.time, "moves": moves} | near
 
 
 def dry_run(
@@ -235,6 +264,7 @@ def dry_run(
     inputs: Sequence[InputChange] = (),
     set: Mapping[str, Any] | None = None,
     progress: Callable[[float], None] = lambda seconds: None,
+    cell: Cell | None = None,
 ) -> DryRun:
     """Run a robot's program without arm and drives.
 
@@ -251,6 +281,8 @@ def dry_run(
         Values by ``component.variable``, stronger than the scenario's.
     progress : callable, optional
         Called with the time simulated so far [s].
+    cell : Cell, optional
+        What the arm may not touch, and how thick it is; without one it is looked at by itself.
 
     Returns
     -------
@@ -285,7 +317,9 @@ def dry_run(
     number = re.match(r"line (\d+): ", fault)
     low, high, top = (np.asarray(settings[f"joint_{n}"], float) for n in ("low", "high", "speed"))
     line = int(number[1]) if number else 0
-    return DryRun(file, samples, low, high, top, fault, line, AXES)
+    cell = cell or Cell()
+    near = approaches(samples, ArmParts.of(settings, cell.radii), cell) if len(samples) else []
+    return DryRun(file, samples, low, high, top, fault, line, AXES, tuple(near))
 
 
 def _values(scenario: Scenario, set: Mapping[str, Any]) -> Callable[[str], Any]:

@@ -1,7 +1,6 @@
 """The page of a robot's program that was run dry: verdict, times, joints and their reserves."""
 
 import math
-from collections.abc import Sequence
 from html import escape
 
 import numpy as np
@@ -23,22 +22,25 @@ FOOTER = (
 )
 HEADS = (
     "line", "passes", "s", "way [mm]", "to an end [°]", "speed [%]", "shoulder [mm]", "elbow [°]",
-    "wrist [°]",
+    "wrist [°]", "apart [mm]",
 )  # fmt: skip
 
 
-def line_cells(x: LineReserve, axes: Sequence[str]) -> tuple[str, ...]:
+def line_cells(x: LineReserve, run: DryRun) -> tuple[str, ...]:
     """Texts of a line by `HEADS`."""
+    axes = run.axes
+    near = run.nearest.get(x.line)
     return (
         str(x.line),
         str(x.passes),
         f"{x.time:.3f}",
         f"{x.way:.1f}",
-        f"{axes[x.nearest.joint - 1]} {x.nearest.left:.1f}",
+        f"{axes[x.nearest.joint - 1]} {round(x.nearest.left, 1) + 0.0:.1f}",
         f"{axes[x.fastest.fastest - 1]} {100.0 * x.fastest.share:.1f}",
         f"{x.singular[0]:.0f}",
         f"{x.singular[1]:.1f}",
         f"{x.singular[2]:.1f}",
+        f"{near.distance:.0f}" if near else "",
     )
 
 
@@ -64,26 +66,30 @@ def page_text(run: DryRun) -> str:
     """The whole HTML page."""
     page = Page()
     lines = run.lines
-    verdict = [Verdict("it runs through", "", math.nan, not run.fault, run.fault)]
+    verdict = [Verdict("it runs through", "", math.nan, not run.faults, " ".join(run.faults))]
     rows = [
         ("Cycle time", clock(run.time), f"{clock(run.waits)} of it waits for inputs"),
         ("Moves", f"{len(run.moves)}", f"of {len(lines)} lines"),
         ("Way of the tool", metres(sum(x.way for x in lines)), ""),
     ]
     if lines:
-        near = min(lines, key=lambda x: x.nearest.left)
+        joint = min(lines, key=lambda x: x.nearest.left)
         rows.append(
             (
                 "Least room of a joint",
-                f"{near.nearest.left:.1f}°",
-                f"{run.axes[near.nearest.joint - 1]}, line {near.line}",
+                f"{round(joint.nearest.left, 1) + 0.0:.1f}°",
+                f"{run.axes[joint.nearest.joint - 1]}, line {joint.line}",
             )
         )
         bent = min(lines, key=lambda x: x.singular[2])
         rows.append(("Joint 5 from singular", f"{bent.singular[2]:.1f}°", f"line {bent.line}"))
-    if run.fault:
-        told = "".join(f"<p><b>{escape(text)}</b></p>" for text in run.fault.split("\n"))
-        page.section("It does not run through", "", told)
+    if run.approaches:
+        near = min(run.approaches, key=lambda a: a.distance)
+        which = f"{near.first} and {near.second}, line {near.line}"
+        rows.append(("Least distance of parts", f"{near.distance:.0f} mm", which))
+    if run.faults:
+        told = "".join(f"<p><b>{escape(text)}</b></p>" for text in run.faults)
+        page.section("It cannot run as it is", "", told)
     page.sections.append(cards(rows))
     if len(run.samples):
         add_cycle_time(page, run.motion)
@@ -93,9 +99,10 @@ def page_text(run: DryRun) -> str:
         note = (
             "The least of all passes of a line: the joint that comes nearest to an end of its"
             " range, the one with the largest share of its speed; how far the arm stays from"
-            " singular: wrist centre from axis 1, elbow from stretched, joint 5 from straight."
+            " singular: wrist centre from axis 1, elbow from stretched, joint 5 from straight;"
+            " how near parts of arm and cell come to each other."
         )
-        cells = [tuple(map(escape, line_cells(x, run.axes))) for x in lines]
+        cells = [tuple(map(escape, line_cells(x, run))) for x in lines]
         page.section("Lines", note, table(HEADS, cells, numeric=0))
     about = "A robot's program, run dry"
     return page.text(PageFrame(run.file.name, about, "dry run", verdict, FOOTER))

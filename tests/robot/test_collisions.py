@@ -1,0 +1,226 @@
+"""Distances of an arm from itself and its cell against coal, kinematics, dense points; verdicts."""
+
+from pathlib import Path
+from typing import Any
+
+import coal
+import numpy as np
+import pytest
+from conftest import ROOT
+from public_arms import Array, universal
+from scipy.spatial.transform import Rotation
+from typer.testing import CliRunner
+
+import motionfmu
+from motionfmu import InputError
+from motionfmu.analysis.collisions import ArmParts, Cell, CellBody, read_cell
+from motionfmu.analysis.collisions.arm_parts import NAMES
+from motionfmu.analysis.collisions.clearance import FLOOR, distances
+from motionfmu.analysis.collisions.distances import between_segments, from_box
+from motionfmu.analysis.dry_run import dry_run
+from motionfmu.cli import app
+from motionfmu.virtual.robot import Kinematics, defaults
+
+POSES = 1000
+CELL = """
+clearance = 10
+floor = -200
+
+[radius]
+"link 2" = 90
+tool = 20
+
+[[body]]
+name = "table"
+box = [600, 900, 300]
+at = [1100, 0, 150, 0, 0, 30]
+
+[[body]]
+name = "post"
+bar = [[0, 800, 0], [300, 900, 2000]]
+radius = 60
+"""
+
+
+def settings(**more: Any) -> dict[str, Any]:
+    return {name: value for name, (value, _) in defaults().items()} | more
+
+
+def axes_of_ur5e() -> dict[str, Any]:
+    arm = universal((0.1625, 0.1333, 0.0997, 0.0996), (-0.425, -0.3922))
+    origins, axes, place, turn = arm.straight()
+    pose = [*(1e3 * place), *Rotation.from_matrix(turn).as_euler("xyz", degrees=True)]
+    more = {"axis_origin": origins.ravel(), "axis_direction": axes.ravel(), "flange": pose}
+    ranges = {"joint_low": [-360.0] * 6, "joint_high": [360.0] * 6}
+    return {"arm_by": 1, "joint_acc": 100.0, "joint_speed": 50.0, **more, **ranges}
+
+
+@pytest.mark.parametrize("kind", ["lengths", "signs", "axes"])
+def test_parts_end_where_kinematics_have_the_flange(kind: str) -> None:
+    more = {
+        "lengths": {},
+        "signs": {
+            "b": 0.05,
+            "joint_sign": [1, -1, 1, -1, 1, -1],
+            "joint_offset": [10.0, -20.0, 30.0, 5.0, 7.0, -50.0],
+        },
+        "axes": axes_of_ur5e(),
+    }[kind]
+    rng = np.random.default_rng(1)
+    joints = rng.uniform(-70.0, 70.0, (POSES, 6))
+    want = Kinematics(**more).forward(joints)[:, :3, 3]
+    points = ArmParts.of(settings(**more)).points(joints, want)
+    assert points[:, 7] == pytest.approx(want, abs=1e-9)
+    # Bars keep their lengths, and each joint leaves what is before it where it was.
+    lengths = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    assert np.ptp(lengths, axis=0).max() < 1e-9
+    turned = ArmParts.of(settings(**more)).points(joints + np.eye(6)[3] * 20.0, want)
+    assert turned[:, :5] == pytest.approx(points[:, :5], abs=1e-9)
+
+
+def placed_bar(ends: Array, radius: float) -> tuple[Any, Any]:
+    """A capsule of coal, along z about its middle."""
+    way = ends[1] - ends[0]
+    length = float(np.linalg.norm(way))
+    turn = np.eye(3)
+    if length > 1e-9:
+        turn = Rotation.align_vectors([way / length], [[0, 0, 1]])[0].as_matrix()
+    return coal.Capsule(radius, length), coal.Transform3s(turn, ends.mean(axis=0))
+
+
+def by_coal(a: tuple[Any, Any], b: tuple[Any, Any]) -> float:
+    result = coal.DistanceResult()
+    return float(coal.distance(a[0], a[1], b[0], b[1], coal.DistanceRequest(True), result))
+
+
+def test_a_thousand_poses_are_as_far_from_everything_as_coal_says(tmp_path: Path) -> None:
+    """Each pair of parts, each body, the floor; where two are inside each other both say so."""
+    (tmp_path / "cell.toml").write_text(CELL)
+    cell = read_cell(tmp_path / "cell.toml")
+    tool = {"tool": [30.0, 0.0, 150.0, 0.0, 20.0, 0.0]}
+    parts = ArmParts.of(settings(**tool), cell.radii)
+    assert parts.radii[[2, 7]].tolist() == [90.0, 20.0]
+    rng = np.random.default_rng(2)
+    low, high = (np.asarray(settings()[n]) for n in ("joint_low", "joint_high"))
+    joints = rng.uniform(low, high, (POSES, 6))
+    tip = Kinematics(**tool).forward(joints)[:, :3, 3]
+    points = parts.points(joints, tip)
+    table, post = cell.bodies
+    bodies = {
+        "table": (coal.Box(600, 900, 300), coal.Transform3s(table.turn, table.center)),
+        "post": placed_bar(np.asarray(post.bar), post.radius),
+        FLOOR: (coal.Halfspace(np.array([0.0, 0.0, 1.0]), -200.0), coal.Transform3s()),
+    }
+    seen = {"apart": 0, "inside": 0}
+    for first, second, ours in distances(parts, cell, joints, tip):
+        k = NAMES.index(first)
+        for row in range(POSES):
+            own = placed_bar(points[row, k : k + 2], parts.radii[k])
+            if second in NAMES:
+                m = NAMES.index(second)
+                other = placed_bar(points[row, m : m + 2], parts.radii[m])
+            else:
+                other = bodies[second]
+            theirs = by_coal(own, other)
+            if ours[row] > 1e-3:
+                assert theirs == pytest.approx(ours[row], abs=1e-3), (first, second, row)
+                seen["apart"] += 1
+            elif ours[row] < -1e-3:
+                assert theirs < 1e-3, (first, second, row)
+                seen["inside"] += 1
+    assert seen["apart"] > 20 * POSES and seen["inside"] > POSES // 2
+
+
+def test_segments_and_boxes_by_dense_points() -> None:
+    """Also of no length, parallel, crossing, inside a box, along a face."""
+    rng = np.random.default_rng(3)
+    n, share = 400, np.linspace(0.0, 1.0, 401)
+    ends = rng.integers(-3, 4, (4, n, 3)).astype(float) * rng.choice([0.0, 1.0, 1.0], (1, n, 3))
+    a, b, half = (ends[0], ends[1]), (ends[2], ends[3]), np.array([1.0, 2.0, 0.5])
+    on_a = a[0][:, None] + share[:, None] * (a[1] - a[0])[:, None]
+    on_b = b[0][:, None] + share[:, None] * (b[1] - b[0])[:, None]
+    step = np.linalg.norm(a[1] - a[0], axis=1) / 400 + np.linalg.norm(b[1] - b[0], axis=1) / 400
+    lines, boxes = between_segments(a, b), from_box(a, half)
+    for k in range(n):
+        dense = np.linalg.norm(on_a[k][:, None] - on_b[k][None], axis=2).min()
+        assert dense - step[k] - 1e-9 <= lines[k] <= dense + 1e-9
+        outside = np.abs(on_a[k]) - half
+        dense = np.linalg.norm(np.maximum(outside, 0.0), axis=1).min()
+        assert dense - step[k] - 1e-9 <= boxes[k] <= dense + 1e-9
+    assert (lines == 0.0).any() and (boxes == 0.0).any() and (boxes > 1.0).any()
+
+
+def fold(folder: Path) -> Path:
+    """A job that folds the arm onto its own base."""
+    (folder / "fold.job").write_text("NOP\nMOVJ P000 VJ=50.00\nMOVJ P001 VJ=50.00\nEND\n")
+    rows = ("P000 J1=0 J2=0 J3=0 J4=0 J5=60 J6=0", "P001 J1=0 J2=-155 J3=75 J4=0 J5=0 J6=0")
+    (folder / "fold.points").write_text("\n".join([*rows, ""]))
+    return folder / "fold.job"
+
+
+def test_a_fold_onto_the_base_is_refused_with_its_links(tmp_path: Path) -> None:
+    file = fold(tmp_path)
+    run = dry_run(motionfmu.machine("robot6").scenario(file))
+    assert not run.fault  # no joint leaves its range
+    pairs = {(a.first, a.second) for a in run.collisions}
+    assert ("base", "link 3") in pairs and {a.line for a in run.collisions} == {3}
+    first = run.collisions[0]
+    assert first.time == min(a.time for a in run.collisions)
+    at = int(np.argmin(np.abs(run.samples["time"] - first.time)))
+    assert first.joint == pytest.approx(run.samples["joint"][at])
+    shown = CliRunner().invoke(app, ["job", str(file), "--machine", "robot6", "--json"])
+    assert shown.exit_code == 1 and '"collisions": [' in shown.output
+    page = ["job", str(file), "--machine", "robot6", "--out", str(tmp_path / "out")]
+    shown = CliRunner().invoke(app, page)
+    assert shown.exit_code == 1
+    assert f"fold.job: line 3: base runs into link 3 at {first.time:.3f} s" in shown.output
+    assert "base runs into link 3" in (tmp_path / "out/report.html").read_text()
+
+
+def test_what_runs_is_not_refused_and_a_body_in_the_way_is(tmp_path: Path) -> None:
+    """The pick and place touches nothing; a box put over a place of its own path is told."""
+    scenario = motionfmu.load(ROOT / "scenarios/robot_pick")
+    free = dry_run(scenario)
+    assert free.faults == [] and min(a.distance for a in free.approaches) > 100.0
+    line = free.moves[4]
+    s = free.samples
+    middle = s[int(np.searchsorted(s["time"], 0.5 * (line.begin + line.end)))]
+    box = CellBody("box", np.full(3, 5.0), center=middle["place"].astype(float))
+    hit = dry_run(scenario, cell=Cell((box,)))
+    assert line.line in {a.line for a in hit.collisions}
+    assert {a.second for a in hit.collisions} == {"box"}
+    # A clearance is wanted beside that: twice the room to a body that nothing touches.
+    aside = CellBody("aside", np.full(3, 5.0), center=middle["place"] - [0.0, 0.0, 2000.0])
+    far = dry_run(scenario, cell=Cell((aside,)))
+    room = min(a.distance for a in far.approaches if a.second == "aside")
+    assert far.faults == [] and room > 0.0
+    near = dry_run(scenario, cell=Cell((aside,), clearance=2.0 * room))
+    told = [a for a in near.collisions if a.second == "aside"]
+    assert min(a.distance for a in told) == pytest.approx(room)
+    assert "comes within" in told[0].words and "of the aside" in told[0].words
+    floor = float(min(s["place"][:, 2]))
+    assert dry_run(scenario, cell=Cell(floor=floor + 1.0)).collisions[0].second == FLOOR
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("clearance = -1\n", "cell.toml:1: clearance = -1: "),
+        ("floor = nan\n", "cell.toml:1: floor = nan: "),
+        ("\n[radius]\n'link 7' = 3\n", "cell.toml:3: radius.link 7 = 'link 7': "),
+        ("[radius]\ntool = 0\n", "cell.toml:2: radius.tool = 0: "),
+        ("[[body]]\nname = 'a'\n", "cell.toml:1: body.0: a box or a bar is wanted"),
+        ("[[body]]\nname = 'a'\nbox = [1, 2]\n", "cell.toml:3: body.0.box"),
+        ("[[body]]\nname = 'a'\nbox = [1, 2, 0]\n", "cell.toml:1: body.0: lengths of a box"),
+        ("[[body]]\nname = 'a'\nbar = [[0,0,0],[0,0,1]]\n", "bar and radius belong together"),
+        ("[[body]]\nname = 'a'\nbox = [1, 1, 1]\nhight = 3\n", "cell.toml:4: body.0.hight = 3: "),
+        ("[wall]\n", "cell.toml:1: wall: "),
+    ],
+)
+def test_a_wrong_cell_is_told_with_its_line(tmp_path: Path, text: str, told: str) -> None:
+    file = tmp_path / "cell.toml"
+    file.write_text(text)
+    with pytest.raises(InputError) as error:
+        read_cell(file)
+    assert told in str(error.value)
+    assert len(str(error.value).splitlines()) == 1
