@@ -181,6 +181,8 @@ def test_what_runs_is_not_refused_and_a_body_in_the_way_is(tmp_path: Path) -> No
     """The pick and place touches nothing; a box put over a place of its own path is told."""
     scenario = motionfmu.load(ROOT / "scenarios/robot_pick")
     free = dry_run(scenario)
+    tip = Kinematics(tool=[0.0, 0.0, 150.0, 0.0, 0.0, 0.0]).forward(free.samples["joint"][50::50])
+    assert free.samples["place"][50::50] == pytest.approx(tip[:, :3, 3], abs=1e-6)
     assert free.faults == [] and min(a.distance for a in free.approaches) > 100.0
     line = free.moves[4]
     s = free.samples
