@@ -200,6 +200,9 @@ def test_what_runs_is_not_refused_and_a_body_in_the_way_is(tmp_path: Path) -> No
     told = [a for a in near.collisions if a.second == "aside"]
     assert min(a.distance for a in told) == pytest.approx(room)
     assert "comes within" in told[0].words and "of the aside" in told[0].words
+    start = CellBody("start", np.full(3, 5.0), center=s["place"][0] + [0.0, 0.0, -20.0])
+    told = dry_run(scenario, cell=Cell((start,))).collisions
+    assert (told[0].line, told[0].second) == (0, "start") and told[0].time == s["time"][0]
     floor = float(min(s["place"][:, 2]))
     assert dry_run(scenario, cell=Cell(floor=floor + 1.0)).collisions[0].second == FLOOR
 
