@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from motionfmu.arms.arm_description import (
     PRISMATIC,
@@ -33,8 +33,7 @@ from motionfmu.arms.arm_description import (
     turn_of,
 )
 from motionfmu.arms.arm_geometry import OpwGeometry
-from motionfmu.base.errors import InputError
-from motionfmu.base.toml_lines import faults_of, tables_of, text_of
+from motionfmu.base.toml_lines import model_of
 
 MM = 1e-3
 _X, _, _Z = np.eye(3)
@@ -123,11 +122,7 @@ def table_arm(file: str | Path) -> ArmDescription:
     InputError
         Something in it is wrong; the message has its line and value.
     """
-    text = text_of(file)
-    try:
-        table = _TableFile.model_validate(tables_of(text, file))
-    except ValidationError as error:
-        raise InputError(*faults_of(error.errors(), text, str(file))) from None
+    table = model_of(file, _TableFile)
     return _opw_arm(table) if table.opw is not None else _dh_arm(table)
 
 

@@ -1,4 +1,4 @@
-"""Endings of programs by their language, in small letters."""
+"""Endings of the names of program files by language, in lower case."""
 
 ROBOT_JOBS = (".job", ".jbi")  # the robot language
 CARD_JOBS = (".mcj",)  # a network card's own

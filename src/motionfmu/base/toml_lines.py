@@ -3,12 +3,16 @@
 import re
 import stat
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from motionfmu.base.errors import InputError
 
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
+Model = TypeVar("Model", bound="BaseModel")
 # Limits of a file. Files that people write are far below; beyond, reading could take hours or all
 # memory.
 SIZE_MAX = 1 << 20  # bytes
@@ -183,18 +187,25 @@ def ordered(lines: Iterable[str], files: Iterable[str]) -> list[str]:
     return sorted(lines, key=order)
 
 
-def faults_of(errors: Iterable[Mapping[str, Any]], text: str, file: str | Path) -> list[str]:
-    """What pydantic found in the tables of a text, each ``file:line: key = value: what``."""
+def model_of(file: str | Path, model: type[Model]) -> Model:
+    """A file's tables as a model of pydantic; else each fault ``file:line: key = value: what``."""
+    from pydantic import ValidationError
+
+    text = text_of(file)
+    try:
+        return model.model_validate(tables_of(text, file))
+    except ValidationError as error:
+        faults = error.errors()
     lines, found = Lines(text), []
-    for one in errors:
+    for one in faults:
         place = [str(p) for p in one["loc"] if p != "[key]"]
         rows = 2 if len(place) > 1 and place[1].isdigit() else 1  # a table of an array
         key = place[rows] if len(place) > rows else (place[-1] if place else "")
         line = lines.of("", key) if len(place) == 1 else lines.of(".".join(place[:rows]), key)
         told = one["msg"].removeprefix("Value error, ")
         value = "" if isinstance(one["input"], dict) else f" = {shown(one['input'])}"
-        found.append(f"{file}:{line}: {'.'.join(place)}{value}: {told}".replace(": : ", ": "))
-    return found
+        found.append(": ".join(x for x in (f"{file}:{line}", ".".join(place) + value, told) if x))
+    raise InputError(*found)
 
 
 def shown(value: Any) -> str:

@@ -717,7 +717,7 @@ class LiveMachine:
         self._refusable(lambda: self._library.call("FreeFMUState", byref(kept.state)))
 
     def _end_checks(self, rooms: Mapping[str, float]) -> dict[str, dict[str, Any]]:
-        """The [check] of signals that end as they are now."""
+        """The table [check] by which signals must end with their present values."""
         found: dict[str, dict[str, Any]] = {}
         for name, room in rooms.items():
             value = self[name]

@@ -9,7 +9,7 @@ tool     = 20
 
 [[body]]
 name = "table"
-box  = [800, 600, 300]           # lengths [mm]
+box  = [800, 600, 300]           # lengths along x, y, z [mm]
 at   = [900, 0, 150, 0, 0, 30]   # X Y Z [mm], A B C [deg] of its centre, in the arm's base
 
 [[body]]
@@ -24,10 +24,9 @@ from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from motionfmu.base.errors import InputError
-from motionfmu.base.toml_lines import faults_of, tables_of, text_of
+from motionfmu.base.toml_lines import model_of
 
 Array = NDArray[np.float64]
 Three = tuple[float, float, float]
@@ -126,11 +125,7 @@ def read_cell(file: str | Path) -> Cell:
     InputError
         Something in it is wrong; the message has its line and value.
     """
-    text = text_of(file)
-    try:
-        found = _CellFile.model_validate(tables_of(text, file))
-    except ValidationError as error:
-        raise InputError(*faults_of(error.errors(), text, str(file))) from None
+    found = model_of(file, _CellFile)
     bodies = tuple(_body(row) for row in found.body)
     return Cell(bodies, found.floor, found.clearance, {str(n): r for n, r in found.radius.items()})
 

@@ -13,12 +13,12 @@ from motionfmu.analysis.collisions.distances import between_segments, from_box
 
 Array = NDArray[np.float64]
 FLOOR = "floor"
-_PIECE = 20_000  # positions that are looked at together
+_PIECE = 20_000  # positions of the arm whose distances are computed at once
 
 
 @dataclass(frozen=True)
 class Approach:
-    """The least distance of two in a line's moves.
+    """Least distance of two parts or bodies in the moves of a line.
 
     Attributes
     ----------
@@ -30,7 +30,9 @@ class Approach:
     first, second : str
         A part of the arm; another one, or a body of the cell.
     joint : tuple of float
-        There [deg].
+        Then [deg].
+    near : bool
+        Whether they come too near: they touch, or are closer than the clearance that is wanted.
     """
 
     line: int
@@ -76,7 +78,7 @@ def _from_body(bar: tuple[Array, Array], body: CellBody) -> Array:
 
 
 def approaches(samples: NDArray[Any], parts: ArmParts, cell: Cell) -> list[Approach]:
-    """The least distance of each two in each line's moves.
+    """The least distance of each two parts or bodies, line by line.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ def line_cells(x: LineReserve, run: DryRun) -> tuple[str, ...]:
         str(x.passes),
         f"{x.time:.3f}",
         f"{x.way:.1f}",
-        f"{axes[x.nearest.joint - 1]} {round(x.nearest.left, 1) + 0.0:.1f}",
+        f"{axes[x.nearest.joint - 1]} {x.nearest.left:z.1f}",
         f"{axes[x.fastest.fastest - 1]} {100.0 * x.fastest.share:.1f}",
         f"{x.singular[0]:.0f}",
         f"{x.singular[1]:.1f}",
@@ -77,14 +77,14 @@ def page_text(run: DryRun) -> str:
         rows.append(
             (
                 "Least room of a joint",
-                f"{round(joint.nearest.left, 1) + 0.0:.1f}°",
+                f"{joint.nearest.left:z.1f}°",
                 f"{run.axes[joint.nearest.joint - 1]}, line {joint.line}",
             )
         )
         bent = min(lines, key=lambda x: x.singular[2])
         rows.append(("Joint 5 from singular", f"{bent.singular[2]:.1f}°", f"line {bent.line}"))
     if run.approaches:
-        near = min(run.approaches, key=lambda a: a.distance)
+        near = min(run.nearest.values(), key=lambda a: a.distance)
         which = f"{near.first} and {near.second}, line {near.line}"
         rows.append(("Least distance of parts", f"{near.distance:.0f} mm", which))
     if run.faults:
