@@ -46,6 +46,8 @@ class TuningLimits(BaseModel):
     # Largest way past the ends of the scenario's own move while a `trial` is made [mm].
     beyond: float | None = Field(default=None, gt=0.0)
     peak: dict[str, float] = Field(default_factory=dict)  # largest magnitude on the path, by output
+    # Largest |link/command| of an arm's joint at any frequency, without feed-forward.
+    swing: float = Field(default=1.3, gt=1.0)
 
 
 class Problem(BaseModel):
@@ -89,6 +91,8 @@ class Problem(BaseModel):
         points spread over the range.
     check : int
         Evaluations of the global search; 0 for none.
+    poses : int
+        Of an arm: poses between the ends of its joints from which the worst are looked for.
     """
 
     model_config = _STRICT
@@ -109,6 +113,7 @@ class Problem(BaseModel):
     judged: float = Field(default=60.0, ge=1.0)
     starts: int = Field(default=2, ge=1, le=50)
     check: int = Field(default=40, ge=0, le=100_000)
+    poses: int = Field(default=170, ge=20, le=10_000)
 
     def plants(self) -> list[dict[str, float]]:
         """The nominal plant, then every corner of the family.
