@@ -195,7 +195,6 @@ class _DriveLaw:
     def __call__(self, gains: Array, z: Complex) -> tuple[Complex, Complex]:
         a, b, c, d = self._matrices(gains)
         inner = z[:, None, None] * np.eye(len(a)) - a
-        found = (
-            c @ np.linalg.solve(inner, np.broadcast_to(b.astype(complex), (len(z), *b.shape))) + d
-        )
+        sides = np.broadcast_to(b.astype(complex), (len(z), *b.shape))
+        found: Complex = np.asarray(c @ np.linalg.solve(inner, sides) + d, dtype=np.complex128)
         return -found[:, 0, 0], found[:, 0, 1]
