@@ -37,7 +37,7 @@ static void come_to_rest(struct robot *r, const struct robot_config *c)
     r->rear_zone = 0.0;
     r->tool_path.count = r->tool_path.next = 0;
     r->jogging = r->lost = false;
-    flow_clear(&r->flow);
+    joint_flow_clear(&r->flow);
     trajectory_stand(&r->trajectory, &PLACES, r->rear);
 }
 
@@ -53,19 +53,19 @@ void robot_start(struct robot *r, const struct robot_config *c, const double joi
 bool robot_idle(const struct robot *r)
 {
     return !trajectory_busy(&r->trajectory) && r->ring.count == 0
-           && r->tool_path.next >= r->tool_path.count && !flow_busy(&r->flow);
+           && r->tool_path.next >= r->tool_path.count && !joint_flow_busy(&r->flow);
 }
 
 /* Whether the moves that flow stand, and go on by nothing but a hold's or an override's end. */
 static bool flow_halts(const struct robot *r)
 {
-    return flow_busy(&r->flow) && (r->trajectory.hold || r->trajectory.override[0] <= 0.0)
-           && !r->trajectory.abort && flow_rests(&r->flow);
+    return joint_flow_busy(&r->flow) && (r->trajectory.hold || r->trajectory.override[0] <= 0.0)
+           && !r->trajectory.abort && joint_flow_rests(&r->flow);
 }
 
 bool robot_rests(const struct robot *r)
 {
-    if (flow_busy(&r->flow)) {
+    if (joint_flow_busy(&r->flow)) {
         return flow_halts(r);
     }
     return trajectory_resting(&r->trajectory, &r->ring)
@@ -76,7 +76,7 @@ bool robot_ready(const struct robot *r)
 {
     return r->tool_path.next >= r->tool_path.count && !r->trajectory.abort
            && (!r->jogging || robot_idle(r)) && r->ring.count < RING_SIZE - ROBOT_ROOM
-           && flow_room(&r->flow);
+           && joint_flow_room(&r->flow);
 }
 
 uint32_t robot_branches(const struct robot_target *t)
@@ -164,17 +164,17 @@ static void flow_cycle(struct robot *r, const struct robot_config *c, const stru
 {
     const struct trajectory *t = &r->trajectory;
     const double override = t->hold || t->abort ? 0.0 : t->override[0];
-    const double left = flow_advance(&r->flow, override, c->cycle);
+    const double left = joint_flow_advance(&r->flow, override, c->cycle);
     double joint[OPW_JOINTS];
 
-    const struct flow_piece *p = flow_joints(&r->flow, joint);
+    const struct joint_flow_piece *p = joint_flow_joints(&r->flow, joint);
     const struct pose pose = manipulator_pose(arm, joint);
     show(r, c, joint, &pose);
     r->solved += p->solved ? r->speed * c->cycle : 0.0;
     r->line = p->line;
     if (left > 0.0) {
-        flow_clear(&r->flow);
-    } else if (t->abort && flow_rests(&r->flow)) {
+        joint_flow_clear(&r->flow);
+    } else if (t->abort && joint_flow_rests(&r->flow)) {
         robot_stop(r);
     }
 }
@@ -196,7 +196,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         show(r, c, joint, &pose);
         return;
     }
-    if (flow_busy(&r->flow)) {
+    if (joint_flow_busy(&r->flow)) {
         flow_cycle(r, c, &arm);
         return;
     }
@@ -270,18 +270,18 @@ void robot_hold(struct robot *r, bool on)
 void robot_abort(struct robot *r)
 {
     r->tool_path.next = r->tool_path.count;
-    if (flow_busy(&r->flow) && !flow_rests(&r->flow)) {
+    if (joint_flow_busy(&r->flow) && !joint_flow_rests(&r->flow)) {
         r->trajectory.abort = true;
         return;
     }
-    flow_clear(&r->flow);
+    joint_flow_clear(&r->flow);
     trajectory_abort(&r->trajectory, &r->ring);
 }
 
 void robot_stop(struct robot *r)
 {
     r->tool_path.next = r->tool_path.count;
-    flow_clear(&r->flow);
+    joint_flow_clear(&r->flow);
     trajectory_stop(&r->trajectory, &r->ring);
 }
 

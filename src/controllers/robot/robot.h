@@ -10,7 +10,7 @@
 #ifndef ROBOT_H
 #define ROBOT_H
 
-#include "flow.h"
+#include "joint_flow.h"
 #include "trajectory.h"
 
 /* A target that says nothing of its branch; of the whole turns of a joint. */
@@ -105,7 +105,7 @@ struct robot {
     struct ring ring;
     struct lookahead_mean mean;
     struct arm_moves moves;
-    struct flow flow;           /* if moves flow */
+    struct joint_flow flow;     /* if moves flow */
     struct pose tool;           /* in force */
     struct tool_path tool_path; /* of the latest move; its segments go into the ring one by one */
     struct robot_move move;     /* that move */

@@ -11,8 +11,9 @@
 /* Farthest that the tip may be from where the inverse kinematics bring it. [mm] */
 static const double OFF = 1e-4;
 
-/* Share of a joint's limits that is used: the rest is for rounding. */
-static const double USED = 1.0 - 1e-9;
+/* Share of a joint's limits that is used, the rest is for rounding: without a limit of jerk a joint
+ * that turns back at a rest in the middle of a cycle brakes to it by the last digits of a long way. */
+static const double USED = 1.0 - 1e-9, USED_AT_ONCE = 1.0 - 1e-3;
 
 bool robot_flows(const struct robot *r, const struct robot_config *c, const struct robot_move *move)
 {
@@ -25,7 +26,8 @@ static struct speed_limits limits_of(const struct robot_config *c)
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         l.speed[i] = USED * JOINT_CURVE_LEVER * robot_joint_speed(c, i);
-        l.acc[i] = USED * JOINT_CURVE_LEVER * c->arm.joint[i].acc;
+        l.acc[i] =
+            (c->smooth > 0.0 ? USED : USED_AT_ONCE) * JOINT_CURVE_LEVER * c->arm.joint[i].acc;
         l.jerk[i] = c->smooth > 0.0 ? l.acc[i] / c->smooth : 0.0;
     }
     return l;
@@ -37,12 +39,12 @@ static void add(struct robot *r, const struct robot_config *c, const struct robo
 {
     const struct speed_limits l = limits_of(c);
     const double part = move->part > 0.0 ? move->part : 0.5;
-    const struct flow_move m = { { zone, part }, move->line, solved };
+    const struct joint_flow_move m = { { zone, part }, move->line, solved };
     struct manipulator arm;
 
     manipulator_with(&c->arm, &r->tool, &arm);
     if (count > 0) {
-        flow_add(&r->flow, &arm, &l, &m, count, piece);
+        joint_flow_add(&r->flow, &arm, &l, &m, count, piece);
     }
     r->tool_path.count = r->tool_path.next = 0;
     r->rear_zone = 0.0;

@@ -462,7 +462,7 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
         return ROBOT_PARAMETER;
     }
     if (robot_flows(r, c, move) ? trajectory_busy(&r->trajectory) || r->ring.count > 0
-                                : flow_busy(&r->flow)) {
+                                : joint_flow_busy(&r->flow)) {
         return ROBOT_BUSY;
     }
     robot_settle(r, c);

@@ -69,9 +69,11 @@ static void drive(const struct robot_config *c, int moves, struct seen *s)
             const double v = (x[3] - x[2]) / CYCLE, a = (x[3] - 2 * x[2] + x[1]) / CYCLE / CYCLE;
             const double j = (x[3] - 3 * x[2] + 3 * x[1] - x[0]) / CYCLE / CYCLE / CYCLE;
             const struct manipulator_joint *l = &c->arm.joint[i];
+            const double noise = 8.0 * 0x1p-52 * fmax(1.0, fabs(x[3])) / CYCLE / CYCLE / CYCLE;
+            if (getenv("DBG") && fabs(a) > l->acc * (1 + 1e-6)) printf("  t %.4f joint %d acc %.9f rates %.9f %.9f %.9f\n", k*CYCLE, i, a/l->acc, (x[1]-x[0])/CYCLE, (x[2]-x[1])/CYCLE, v);
             s->speed = fmax(s->speed, fabs(v) / l->speed);
             s->acc = fmax(s->acc, fabs(a) / l->acc);
-            s->jerk = fmax(s->jerk, c->smooth > 0.0 ? fabs(j) / (l->acc / c->smooth) : 0.0);
+            s->jerk = fmax(s->jerk, c->smooth > 0.0 ? (fabs(j) - noise) / (l->acc / c->smooth) : 0.0);
         }
     }
     for (int k = 0; k < n; k += 7) {
@@ -81,6 +83,7 @@ static void drive(const struct robot_config *c, int moves, struct seen *s)
             const double zone = fmax(zone_of[m], zone_of[m + 1]);
             off = fmin(off, fmax(0.0, off_way(at, way[m]) - 2e-3) / fmax(zone, 1e-9));
         }
+        if (getenv("DBG") && off > 1.0) { int bm=0; double bd=1e9; for (int m=0;m<moves;m++){double d=off_way(at,way[m]); if(d<bd){bd=d;bm=m;}} printf("  t %.4f off %.4f nearest %d d %.3f zones %.3f %.3f line %d\n", k*CYCLE, off, bm, bd, zone_of[bm], zone_of[bm+1], 0);}
         s->off = fmax(s->off, off);
     }
 }
@@ -187,7 +190,7 @@ int main(int argc, char **argv)
     const int number = argc > 1 ? atoi(argv[1]) : 10;
 
     c.flow = true;
-    for (int kinds = 0; kinds < 3; kinds++) {
+    for (int kinds = argc > 2 ? atoi(argv[2]) : 0; kinds < (argc > 2 ? atoi(argv[2]) + 1 : 3); kinds++) {
         c.smooth = 0.05;
         chains(&c, number, kinds);
         c.smooth = 0.0;

@@ -1,4 +1,4 @@
-#include "flow.h"
+#include "joint_flow.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,13 +9,15 @@
 /* Room that a move finds: its pieces, two more where it is cut, a corner. */
 enum { ROOM = JOINT_CURVE_PIECES + 3 };
 
-/* Places of a corner, and of the ways that it replaces, at which the tip is compared. */
-enum { PLACES = 32, WAYS = 24 };
+/* Places of a corner, and of each of the two ways that it replaces, at which the tip is compared;
+ * parts into which the two steps about the worst place are divided then: where the nearer way
+ * changes the distance has a peak. */
+enum { PLACES = 32, WAYS = 24, FINER = 16 };
 
 /* The largest corner is found by so many halvings, to a part of it. */
 enum { HALVINGS = 10 };
 
-/* Share of the zone that is used, for what lies between the places that are compared. */
+/* Share of the zone that is used: the rest is for what lies between the places. */
 static const double USED = 0.99;
 
 /* Directions that differ by more turn back: the curve would come to a point. */
@@ -35,17 +37,17 @@ static const double SLIVER = 0.1;
 enum { GRACE = 2 };
 static const double WAIT = 0.05;
 
-static struct flow_piece *piece_of(struct flow *f, int64_t n)
+static struct joint_flow_piece *piece_of(struct joint_flow *f, int64_t n)
 {
-    return &f->piece[n % FLOW_PIECES];
+    return &f->piece[n % JOINT_FLOW_PIECES];
 }
 
-static const struct flow_piece *piece_at(const struct flow *f, int64_t n)
+static const struct joint_flow_piece *piece_at(const struct joint_flow *f, int64_t n)
 {
-    return &f->piece[n % FLOW_PIECES];
+    return &f->piece[n % JOINT_FLOW_PIECES];
 }
 
-void flow_clear(struct flow *f)
+void joint_flow_clear(struct joint_flow *f)
 {
     f->made = f->joined = f->at = f->held = 0;
     f->open = false;
@@ -54,18 +56,18 @@ void flow_clear(struct flow *f)
     f->profile.count = 0;
 }
 
-bool flow_busy(const struct flow *f)
+bool joint_flow_busy(const struct joint_flow *f)
 {
     return f->made > 0;
 }
 
-bool flow_room(const struct flow *f)
+bool joint_flow_room(const struct joint_flow *f)
 {
-    return f->made - f->at + ROOM <= FLOW_PIECES;
+    return f->made - f->at + ROOM <= JOINT_FLOW_PIECES;
 }
 
 /* Give the speed profile the pieces that are known, up to one that ends at rest. */
-static void join(struct flow *f)
+static void join(struct joint_flow *f)
 {
     const int64_t last = f->open ? f->held : f->made;
 
@@ -77,7 +79,7 @@ static void join(struct flow *f)
 }
 
 /* A profile begins with the piece that comes next, at rest. */
-static void set_out(struct flow *f, const struct speed_limits *l)
+static void set_out(struct joint_flow *f, const struct speed_limits *l)
 {
     f->at = f->joined;
     f->base = 0.0;
@@ -85,7 +87,7 @@ static void set_out(struct flow *f, const struct speed_limits *l)
 }
 
 /* The latest move ends at rest. */
-static void close(struct flow *f)
+static void close(struct joint_flow *f)
 {
     f->open = false;
     piece_of(f, f->made - 1)->curve.rest = true;
@@ -100,7 +102,7 @@ struct corner {
 
 /* The place `way` [mm] before the end of piece n (sign -1) or behind its start; *n goes to its
  * piece. */
-static double find(const struct flow *f, int64_t *n, double way, int sign)
+static double find(const struct joint_flow *f, int64_t *n, double way, int sign)
 {
     while (way > piece_at(f, *n)->curve.length && (sign < 0 || *n + 1 < f->made)) {
         way -= piece_at(f, *n)->curve.length;
@@ -140,12 +142,27 @@ static double off_chord(const double x[3], const double a[3], const double b[3])
     return sum;
 }
 
+/* Squared distance of the tip, at a part of a curve, from the ways. [mm^2] */
+static double off_ways(const struct manipulator *arm, const struct segment *p, double part,
+                       const double way[2 * WAYS + 1][3])
+{
+    double at[3], nearest = INFINITY;
+
+    tip_of(arm, p, part * p->length, at);
+    for (int i = 0; i < 2 * WAYS; i++) {
+        nearest = el_min(nearest, off_chord(at, way[i], way[i + 1]));
+    }
+    return nearest;
+}
+
 /* Whether the tip is within `off` of the ways that a corner replaces, and the joints within their
  * limits, or no further out than these ways. */
-static bool within(const struct flow *f, const struct manipulator *arm, int64_t vertex, double half,
-                   double off, const struct corner *c)
+static bool within(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
+                   double half, double off, const struct corner *c)
 {
-    double way[2 * WAYS + 1][3], at[3];
+    const double limit = USED * off * USED * off;
+    double way[2 * WAYS + 1][3], most = 0.0;
+    int worst = 1;
 
     for (int k = 0; k <= 2 * WAYS; k++) {
         const double d = half * (k - WAYS) / WAYS;
@@ -154,14 +171,18 @@ static bool within(const struct flow *f, const struct manipulator *arm, int64_t 
         tip_of(arm, &piece_at(f, n)->curve, u, way[k]);
     }
     for (int k = 1; k < PLACES; k++) {
-        double nearest = INFINITY;
-        tip_of(arm, &c->curve, c->curve.length * k / PLACES, at);
-        for (int i = 0; i < 2 * WAYS; i++) {
-            nearest = el_min(nearest, off_chord(at, way[i], way[i + 1]));
+        const double d = off_ways(arm, &c->curve, (double)k / PLACES, way);
+        if (d > most) {
+            most = d;
+            worst = k;
         }
-        if (!(nearest <= USED * off * USED * off)) {
-            return false;
-        }
+    }
+    for (int k = 1; k < 2 * FINER && most <= limit; k++) {
+        const double part = (worst - 1 + (double)k / FINER) / PLACES;
+        most = el_max(most, off_ways(arm, &c->curve, part, way));
+    }
+    if (!(most <= limit)) {
+        return false;
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double low = JOINT_CURVE_LEVER * arm->joint[i].low;
@@ -178,7 +199,7 @@ static bool within(const struct flow *f, const struct manipulator *arm, int64_t 
 }
 
 /* A quintic from about `half` before a vertex, the start of a piece, to as much behind it. */
-static bool attempt(const struct flow *f, const struct manipulator *arm, int64_t vertex,
+static bool attempt(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
                     double half, double off, struct corner *c)
 {
     const struct shape_way none = { .points = 0 };
@@ -210,8 +231,8 @@ static bool smooth(const struct segment_state *in, const struct segment_state *o
 }
 
 /* The largest corner about a vertex, between these states, that keeps its zone. False: none does. */
-static bool corner(const struct flow *f, const struct manipulator *arm, int64_t vertex, double room,
-                   const struct segment_state *in, const struct segment_state *out,
+static bool corner(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
+                   double room, const struct segment_state *in, const struct segment_state *out,
                    struct corner *c)
 {
     const double off = f->zone.off;
@@ -238,7 +259,7 @@ static bool corner(const struct flow *f, const struct manipulator *arm, int64_t 
 }
 
 /* Take the least of the limits of the pieces that a corner cuts. */
-static void obey(const struct flow *f, struct corner *c)
+static void obey(const struct joint_flow *f, struct corner *c)
 {
     c->curve.feed = c->curve.cap = INFINITY;
     for (int64_t n = c->first; n <= c->last; n++) {
@@ -248,10 +269,10 @@ static void obey(const struct flow *f, struct corner *c)
 }
 
 /* Put a corner in the place of what it cuts; the move before ends with it. */
-static void insert(struct flow *f, int64_t vertex, const struct corner *c)
+static void insert(struct joint_flow *f, int64_t vertex, const struct corner *c)
 {
-    struct flow_piece whole = *piece_at(f, c->last);
-    struct flow_piece middle = *piece_at(f, vertex);
+    struct joint_flow_piece whole = *piece_at(f, c->last);
+    struct joint_flow_piece middle = *piece_at(f, vertex);
     int64_t to = c->first;
 
     shape_cut(&piece_of(f, c->first)->curve, 0.0, c->from);
@@ -273,7 +294,7 @@ static void insert(struct flow *f, int64_t vertex, const struct corner *c)
     f->made += shift;
 }
 
-static double length_from(const struct flow *f, int64_t first)
+static double length_from(const struct joint_flow *f, int64_t first)
 {
     double sum = 0.0;
 
@@ -284,7 +305,7 @@ static double length_from(const struct flow *f, int64_t first)
 }
 
 /* The latest move, of which `way` is left behind its corner, keeps its end back. */
-static void hold_back(struct flow *f, int64_t first, double way)
+static void hold_back(struct joint_flow *f, int64_t first, double way)
 {
     double left = length_from(f, first) - way;
     int64_t n = first;
@@ -307,7 +328,8 @@ static void hold_back(struct flow *f, int64_t first, double way)
 
 /* Round the vertex, with what has been held back of the move before it. Returns the first piece
  * behind the corner. */
-static int64_t round_off(struct flow *f, const struct manipulator *arm, int64_t vertex, double room)
+static int64_t round_off(struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
+                         double room)
 {
     const struct segment *before = &piece_at(f, vertex - 1)->curve;
     struct corner c = { .curve = { .even = true } };
@@ -327,8 +349,9 @@ static int64_t round_off(struct flow *f, const struct manipulator *arm, int64_t 
     return c.first + 1 + (c.from > 0.0);
 }
 
-void flow_add(struct flow *f, const struct manipulator *arm, const struct speed_limits *l,
-              const struct flow_move *move, int32_t count, const struct segment *piece)
+void joint_flow_add(struct joint_flow *f, const struct manipulator *arm,
+                    const struct speed_limits *l, const struct joint_flow_move *move, int32_t count,
+                    const struct segment *piece)
 {
     int64_t vertex = f->made;
 
@@ -336,7 +359,7 @@ void flow_add(struct flow *f, const struct manipulator *arm, const struct speed_
         set_out(f, l);
     }
     for (int32_t n = 0; n < count; n++) {
-        *piece_of(f, f->made++) = (struct flow_piece){ piece[n], move->line, move->solved };
+        *piece_of(f, f->made++) = (struct joint_flow_piece){ piece[n], move->line, move->solved };
     }
     const double length = length_from(f, vertex);
     if (f->open) {
@@ -353,13 +376,13 @@ void flow_add(struct flow *f, const struct manipulator *arm, const struct speed_
     }
 }
 
-static bool starves(const struct flow *f)
+static bool starves(const struct joint_flow *f)
 {
     return f->open && f->idle > GRACE
            && speed_profile_nears_end(&f->profile, WAIT * f->profile.at.rate);
 }
 
-double flow_advance(struct flow *f, double override, double dt)
+double joint_flow_advance(struct joint_flow *f, double override, double dt)
 {
     if (starves(f)) {
         close(f);
@@ -377,7 +400,7 @@ double flow_advance(struct flow *f, double override, double dt)
     return !f->open && f->joined == f->made && speed_profile_at_end(&f->profile) ? dt : 0.0;
 }
 
-const struct flow_piece *flow_joints(struct flow *f, double joint[OPW_JOINTS])
+const struct joint_flow_piece *joint_flow_joints(struct joint_flow *f, double joint[OPW_JOINTS])
 {
     const double way = f->profile.at.way;
     struct segment_state s;
@@ -385,7 +408,7 @@ const struct flow_piece *flow_joints(struct flow *f, double joint[OPW_JOINTS])
     while (way >= f->base + piece_at(f, f->at)->curve.length && f->at + 1 < f->joined) {
         f->base += piece_at(f, f->at++)->curve.length;
     }
-    const struct flow_piece *p = piece_at(f, f->at);
+    const struct joint_flow_piece *p = piece_at(f, f->at);
     segment_at(&p->curve, el_min(el_max(way - f->base, 0.0), p->curve.length), &s);
     for (int i = 0; i < OPW_JOINTS; i++) {
         joint[i] = s.point[i] / JOINT_CURVE_LEVER;
@@ -393,7 +416,7 @@ const struct flow_piece *flow_joints(struct flow *f, double joint[OPW_JOINTS])
     return p;
 }
 
-bool flow_rests(const struct flow *f)
+bool joint_flow_rests(const struct joint_flow *f)
 {
     return f->profile.at.rate == 0.0;
 }
