@@ -5,7 +5,8 @@
 
 #include "el_extremes.h"
 
-/* Steps of a piece in which its quintic is compared; parts of a step by which its length is summed. */
+/* Steps of a piece in which its quintic is compared; parts of a step by which its length is
+ * summed. */
 enum { STEPS = 8, SUMS = 4 };
 
 /* Derivatives at a node come from places this part of a piece apart. */

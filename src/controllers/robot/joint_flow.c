@@ -32,6 +32,9 @@ static const double LEAST = 1e-3;
 /* A cut leaves at least this part of a curve: a sliver's derivatives would be rounding. */
 static const double SLIVER = 0.1;
 
+/* A way of the tip this long has its direction. [mm] */
+static const double NEAR = 1e-2;
+
 /* A motion that has not got a next move for so many cycles, and will not get this much further [s]
  * before it has to brake, waits no longer. */
 enum { GRACE = 2 };
@@ -230,12 +233,33 @@ static bool smooth(const struct segment_state *in, const struct segment_state *o
     return same;
 }
 
-/* The largest corner about a vertex, between these states, that keeps its zone. False: none does. */
+/* How far an arc of a radius leaves the tip's two ways that it joins at a vertex. [mm] */
+static double off_arc(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
+                      double radius)
+{
+    const struct segment *in = &piece_at(f, vertex - 1)->curve, *out = &piece_at(f, vertex)->curve;
+    double at[3], before[3], behind[3], a[3], b[3], cosine = 0.0, aa = 0.0, bb = 0.0;
+
+    tip_of(arm, out, 0.0, at);
+    tip_of(arm, in, in->length - el_min(NEAR, 0.5 * in->length), before);
+    tip_of(arm, out, el_min(NEAR, 0.5 * out->length), behind);
+    for (int i = 0; i < 3; i++) {
+        a[i] = at[i] - before[i];
+        b[i] = behind[i] - at[i];
+        cosine += a[i] * b[i];
+        aa += a[i] * a[i];
+        bb += b[i] * b[i];
+    }
+    cosine = aa > 0.0 && bb > 0.0 ? el_max(-1.0, cosine / sqrt(aa * bb)) : 1.0;
+    return radius * (1.0 - sqrt(el_max(0.0, 0.5 * (1.0 + cosine))));
+}
+
+/* The largest corner about a vertex, between these states, that keeps its zone; false: none. */
 static bool corner(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
                    double room, const struct segment_state *in, const struct segment_state *out,
                    struct corner *c)
 {
-    const double off = f->zone.off;
+    const double off = f->zone.radius > 0.0 ? off_arc(f, arm, vertex, f->zone.radius) : f->zone.off;
     double turn = 0.0, good = 0.0, bad = room;
     struct corner tried;
 
@@ -369,7 +393,7 @@ void joint_flow_add(struct joint_flow *f, const struct manipulator *arm,
     f->idle = 0;
     f->zone = move->zone;
     f->room = move->zone.part * length;
-    if (move->zone.off > 0.0) {
+    if (move->zone.off > 0.0 || move->zone.radius > 0.0) {
         hold_back(f, vertex, f->room);
     } else {
         close(f);
@@ -419,4 +443,9 @@ const struct joint_flow_piece *joint_flow_joints(struct joint_flow *f, double jo
 bool joint_flow_rests(const struct joint_flow *f)
 {
     return f->profile.at.rate == 0.0;
+}
+
+bool joint_flow_feeds(const struct joint_flow *f, double share)
+{
+    return f->profile.at.rate >= share * piece_at(f, f->at)->curve.feed;
 }

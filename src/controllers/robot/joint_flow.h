@@ -15,10 +15,11 @@
 
 enum { JOINT_FLOW_PIECES = 1024 };
 
-/* Where a corner may leave the way: the nearer of both. */
+/* How far a corner leaves the way, the least of what is asked. */
 struct joint_flow_zone {
-    double off;  /* [mm] most that the tip leaves its path by; 0: an exact stop */
-    double part; /* 0..0.5 most of a move that a corner takes */
+    double off; /* [mm] most that the tip leaves its path by; 0, without a radius: an exact stop */
+    double radius; /* [mm] instead: as far as an arc of this radius between both paths; 0: none */
+    double part;   /* 0..0.5 most of a move that a corner takes */
 };
 
 struct joint_flow_piece {
@@ -67,6 +68,9 @@ double joint_flow_advance(struct joint_flow *f, double override, double dt);
 
 /* Joints where the motion is [rad], and the piece it is on. */
 const struct joint_flow_piece *joint_flow_joints(struct joint_flow *f, double joint[OPW_JOINTS]);
+
+/* Whether it goes at this share of the programmed feed, or faster. */
+bool joint_flow_feeds(const struct joint_flow *f, double share);
 
 /* Whether it stands. */
 bool joint_flow_rests(const struct joint_flow *f);

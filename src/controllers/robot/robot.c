@@ -233,12 +233,42 @@ static int most_taken(const double share[OPW_JOINTS])
     return most;
 }
 
+/* The same of moves that flow: what is neither speed, feed nor acceleration is jerk. */
+static struct limited flow_limited(const struct robot *r, const struct robot_config *c, double feed)
+{
+    const struct trajectory *t = &r->trajectory;
+    double speed[OPW_JOINTS], turn[OPW_JOINTS];
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
+        turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
+    }
+    const int fast = most_taken(speed), bent = most_taken(turn);
+    struct limited told = { .by = LIMITED_JERK, .axis = bent + 1 };
+
+    if (t->hold || t->abort) {
+        told = (struct limited){ .by = LIMITED_WAIT };
+    } else if (speed[fast] > WHOLE) {
+        told = (struct limited){ .by = LIMITED_SPEED, .axis = fast + 1 };
+    } else if (joint_flow_feeds(&r->flow, WHOLE * t->override[0])) {
+        told.by = LIMITED_FEED;
+        told.axis = 0;
+    } else if (turn[bent] > WHOLE || c->smooth <= 0.0) {
+        told.by = LIMITED_ACCELERATION;
+    }
+    told.feed = feed;
+    return told;
+}
+
 struct limited robot_limited(struct robot *r, const struct robot_config *c, double feed)
 {
     const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct limited told = { .by = LIMITED_STOP };
     double speed[OPW_JOINTS], turn[OPW_JOINTS];
 
+    if (joint_flow_busy(&r->flow)) {
+        return flow_limited(r, c, feed);
+    }
     if (!robot_idle(r)) {
         told = trajectory_limited(&r->trajectory, &beside, &PLACES);
     }

@@ -68,6 +68,7 @@ struct robot_move {
     double spin;                 /* [rad/s] of the tool's turning; 0 the highest */
     double share;                /* > 0..1 of the joints' speeds; of a move of joints */
     double zone;                 /* [mm] tolerance of the corner with the next move; 0 exact stop */
+    double radius;               /* [mm] instead: of the corner, if moves flow; 0: by the zone */
     double part;                 /* 0..0.5 most of either move that the corner takes if moves flow;
                                   * 0 is 0.5 */
     enum robot_singular singular;

@@ -12,7 +12,8 @@
 static const double OFF = 1e-4;
 
 /* Share of a joint's limits that is used, the rest is for rounding: without a limit of jerk a joint
- * that turns back at a rest in the middle of a cycle brakes to it by the last digits of a long way. */
+ * that turns back at a rest in the middle of a cycle brakes to it by the last digits of a long
+ * way. */
 static const double USED = 1.0 - 1e-9, USED_AT_ONCE = 1.0 - 1e-3;
 
 bool robot_flows(const struct robot *r, const struct robot_config *c, const struct robot_move *move)
@@ -35,11 +36,13 @@ static struct speed_limits limits_of(const struct robot_config *c)
 
 /* The pieces join; the tool path, now among them, is done. */
 static void add(struct robot *r, const struct robot_config *c, const struct robot_move *move,
-                double zone, bool solved, int32_t count, const struct segment *piece)
+                bool stop, bool solved, int32_t count, const struct segment *piece)
 {
     const struct speed_limits l = limits_of(c);
     const double part = move->part > 0.0 ? move->part : 0.5;
-    const struct joint_flow_move m = { { zone, part }, move->line, solved };
+    const struct joint_flow_zone none = { 0.0, 0.0, part },
+                                 zone = { move->zone, move->radius, part };
+    const struct joint_flow_move m = { stop ? none : zone, move->line, solved };
     struct manipulator arm;
 
     manipulator_with(&c->arm, &r->tool, &arm);
@@ -52,7 +55,7 @@ static void add(struct robot *r, const struct robot_config *c, const struct robo
 
 void robot_flow_line(struct robot *r, const struct robot_config *c, const struct robot_move *move,
                      const double from[OPW_JOINTS], const double to[OPW_JOINTS], double share,
-                     double zone)
+                     bool stop)
 {
     double speed[OPW_JOINTS];
     struct segment piece;
@@ -61,7 +64,7 @@ void robot_flow_line(struct robot *r, const struct robot_config *c, const struct
         speed[i] = robot_joint_speed(c, i);
     }
     const int32_t count = joint_curve_line(from, to, share, speed, &piece);
-    add(r, c, move, zone, false, count, &piece);
+    add(r, c, move, stop, false, count, &piece);
 }
 
 bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct robot_move *move,
@@ -83,6 +86,6 @@ bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct
     if (count == 0) {
         return false;
     }
-    add(r, c, move, move->zone, true, count, piece);
+    add(r, c, move, false, true, count, piece);
     return true;
 }

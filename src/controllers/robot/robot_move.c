@@ -60,7 +60,7 @@ static bool sound(const struct robot_move *m)
            && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1)
            && (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed)
            && m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone)
-           && m->part >= 0.0 && m->part <= 0.5
+           && m->radius >= 0.0 && isfinite(m->radius) && m->part >= 0.0 && m->part <= 0.5
            && (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0))
            && t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
 }
@@ -317,7 +317,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     }
     if (flows) {
         if (first.index > 0) {
-            robot_flow_line(r, c, move, began, start, 1.0, 0.0);
+            robot_flow_line(r, c, move, began, start, 1.0, true);
         }
         if (!robot_flow_path(r, c, move, start, l.feed)) {
             why->which = manipulator_factor(&arm, start, &why->value);

@@ -38,11 +38,11 @@ uint32_t robot_branches(const struct robot_target *t);
 bool robot_flows(const struct robot *r, const struct robot_config *c,
                  const struct robot_move *move);
 
-/* The joints go straight from one place to another [rad], at a share of their speeds, with a zone
- * [mm] at the end; this flows with the moves before. */
+/* The joints go straight from one place to another [rad], at a share of their speeds, and stop or
+ * have the move's zone there; this flows with the moves before. */
 void robot_flow_line(struct robot *r, const struct robot_config *c, const struct robot_move *move,
                      const double from[OPW_JOINTS], const double to[OPW_JOINTS], double share,
-                     double zone);
+                     bool stop);
 
 /* So does the path of r->tool_path, which begins with these joints [rad] and has a feed [mm/s].
  * False: it needs more pieces than there are. */
