@@ -132,7 +132,7 @@ static double size_of(const double d[OPW_JOINTS])
 }
 
 /* The quintic with r, r' and r'' of both ends. */
-static void hermite(const double a[3][OPW_JOINTS], const double b[3][OPW_JOINTS], double length,
+static void hermite(double a[3][OPW_JOINTS], double b[3][OPW_JOINTS], double length,
                     struct segment *p)
 {
     const double fifth = length / 5.0, second = length * length / 20.0;

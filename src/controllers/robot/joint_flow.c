@@ -147,7 +147,7 @@ static double off_chord(const double x[3], const double a[3], const double b[3])
 
 /* Squared distance of the tip, at a part of a curve, from the ways. [mm^2] */
 static double off_ways(const struct manipulator *arm, const struct segment *p, double part,
-                       const double way[2 * WAYS + 1][3])
+                       double way[2 * WAYS + 1][3])
 {
     double at[3], nearest = INFINITY;
 

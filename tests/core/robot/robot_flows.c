@@ -306,7 +306,7 @@ static void radius(void)
     struct robot_refusal why;
 
     for (int n = 0; n < 3; n++) {
-        const double r = n == 0 ? 30.0 : 40.0, part = n == 2 ? 0.1 : 0.0;
+        const double r = n == 0 ? 30.0 : 20.0, part = n == 2 ? 0.1 : 0.0;
         double off = 1e9;
         rig_start(&c, from, abc);
         for (int k = 0; k < 2; k++) {
@@ -322,7 +322,7 @@ static void radius(void)
             CHECK(n < 2 || (x > -20.0 || fabs(y) < 1e-3));
         }
         /* on the bisector an arc is r (sqrt 2 - 1) from the corner */
-        CHECK(n == 2 ? off < 10.0 : fabs(off - r * (sqrt(2.0) - 1.0)) < 0.02 * r);
+        CHECK(n == 2 ? off < 5.0 : fabs(off - r * (sqrt(2.0) - 1.0)) < 0.02 * r);
     }
 }
 
