@@ -120,7 +120,7 @@ static struct robot_move some_move(const struct robot_config *c, const double fr
     struct robot_move m = { .kind = (enum robot_kind)draw(0.0, 3.0), .share = draw(0.3, 1.0) };
     const bool turns = chance(0.1);
 
-    m.feed = chance(0.5) ? draw(20.0, 2500.0) : 0.0;
+    m.feed = chance(0.5) ? draw(150.0, 2500.0) : 0.0;
     m.zone = chance(0.2) ? 0.0 : chance(0.1) ? 500.0 : draw(0.2, 60.0);
     m.part = chance(0.3) ? draw(0.01, 0.5) : 0.0;
     m.target.branch = ROBOT_ANY_BRANCH;
