@@ -15,7 +15,9 @@ static int end_job(struct robot_job_reading *in)
     if (robot_job_move_arc_over(in) || robot_job_block_all_closed(in)) {
         return -1;
     }
-    return in->end_line > 0 || robot_job_reading_add(in, ROBOT_JOB_OP_RET) ? 0 : -1;
+    return in->end_line > 0 || robot_job_reading_add(in, ROBOT_JOB_OP_RET)
+               ? 0
+               : robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_TOO_MANY, in->last_at);
 }
 
 static int begin_job(struct robot_job_reading *in, const char *name, int32_t length)
@@ -183,6 +185,7 @@ static int read_line(struct robot_job_reading *in)
         status = robot_job_positions_line(in);
     }
     in->last = in->s.line;
+    in->last_at = (struct robot_job_span){ in->s.begin, in->s.end - in->s.begin };
     return status == 0 ? robot_job_words(in) : status < 0 ? -1 : 0;
 }
 
@@ -190,12 +193,12 @@ int robot_job_read_text(struct robot_job_program *p, const struct robot_job_poin
                         const char *text, int64_t length, struct robot_job_report *r)
 {
     struct robot_job_reading in = { .p = p, .points = points, .first = p->count, .jobs = p->jobs };
-    int status;
+    int status = robot_job_scan_begin(&in.s, text, length, r);
 
-    if (robot_job_scan_begin(&in.s, text, length, r)) {
+    r->text = p->texts;
+    if (status) {
         return -1;
     }
-    r->text = p->texts;
     while ((status = robot_job_scan_line(&in.s)) > 0) {
         if (read_line(&in)) {
             return -1;

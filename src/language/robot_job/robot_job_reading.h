@@ -37,6 +37,7 @@ struct robot_job_reading {
     int32_t blocks;
     int32_t end_line; /* of END of this job, or 0 */
     int32_t last;     /* latest line of this job so far */
+    struct robot_job_span last_at;
     int32_t arc;      /* number of MOVC of one point in a row so far: 0 .. 3 */
     int32_t arc_line; /* line of the latest of them */
     struct robot_job_span arc_at;

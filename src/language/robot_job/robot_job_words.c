@@ -322,7 +322,7 @@ static int32_t callee(struct robot_job_reading *in, struct robot_job_span name)
     struct robot_job_scan *s = &in->s;
     struct robot_job_callee one = { .text = p->texts,
                                     .line = s->line,
-                                    .column = name.at - s->begin + 1,
+                                    .column = robot_job_scan_column(s, name.at),
                                     .offset = name.at,
                                     .length = name.length };
     memcpy(one.name, s->text + name.at, (size_t)name.length);

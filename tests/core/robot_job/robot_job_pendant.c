@@ -241,6 +241,8 @@ static void several_texts(void)
     CHECK_EQ(robot_job_read_text(&program, &points, TEXTS[2], (int64_t)strlen(TEXTS[2]), &report),
              -1);
     CHECK(report.text == 2 && report.line == 3 && report.fault == ROBOT_JOB_BAD_POINT_TWICE);
+    CHECK_EQ(robot_job_read_text(&program, &points, TEXTS[2], ROBOT_JOB_TEXT_MAX + 1, &report), -1);
+    CHECK(report.text == 2 && report.fault == ROBOT_JOB_BAD_TEXT_LENGTH);
     program.callees = 1; /* as if nobody called C */
     program.instruction[program.job[1].start + 2].op = ROBOT_JOB_OP_NOP;
     program.jobs = 2;
