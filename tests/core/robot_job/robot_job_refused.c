@@ -34,7 +34,7 @@ static const struct {
     { "MOVJ C00000 VJ=50.00", "line 1: position not in this job \"C00000\"" },
     { "MOVJ P000 + VJ=50.00", "line 1: unexpected \"+\"" },
     { "MOVJ P000 P001", "line 1: unknown word \"P001\"" },
-    { "MOVL P000 V=fast", "line 1: unexpected \"fast\"" },
+    { "MOVL P000 V=fast", "line 1: unknown word \"fast\"" },
     { "MOVL P000 V=1e2", "line 1: unknown word \"e2\"" },
     { "NOP NOP", "line 1: unexpected \"NOP\"" },
     { "END END", "line 1: unexpected \"END\"" },
