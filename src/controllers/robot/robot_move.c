@@ -60,6 +60,7 @@ static bool sound(const struct robot_move *m)
            && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1)
            && (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed)
            && m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone)
+           && m->radius >= 0.0 && isfinite(m->radius) && m->part >= 0.0 && m->part <= 0.5
            && (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0))
            && t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
 }
@@ -263,10 +264,12 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
                                   .smooth = c->smooth,
                                   .refuse = move->singular == ROBOT_REFUSE };
     struct command first = { .index = 0 };
-    double joint[OPW_JOINTS];
+    double joint[OPW_JOINTS], began[OPW_JOINTS], start[OPW_JOINTS];
     struct tool_path_fault fault = { 0 };
+    const bool flows = robot_flows(r, c, move);
     struct pose rear;
 
+    memcpy(began, r->rear_joint, sizeof began);
     memcpy(rear.at, r->rear, sizeof rear.at);
     rear_turn(r, &arm, rear.turn);
     bool chained =
@@ -294,12 +297,13 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     }
     l.feed = feed_of(r, c, move, by);
     l.zone[0] = chained ? r->rear_zone : 0.0;
-    l.zone[1] = move->singular != ROBOT_WRIST ? move->zone : 0.0; /* which none joins */
+    l.zone[1] = move->singular == ROBOT_WRIST || flows ? 0.0 : move->zone; /* which none joins */
     for (int i = 0; i < OPW_JOINTS; i++) {
         l.speed[i] = robot_joint_speed(c, i);
         l.turn[i] = c->arm.joint[i].acc;
     }
     memcpy(joint, r->rear_joint, sizeof joint);
+    memcpy(start, joint, sizeof start);
     status = told(&arm, tool_path_plan(&r->tool_path, &g, &l, joint, &fault), &fault, why);
     if (status == ROBOT_OK && !r->jogging) {
         why->part = 1.0;
@@ -311,7 +315,15 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         memcpy(why->place, place, sizeof why->place);
         return status;
     }
-    if (first.index > 0) {
+    if (flows) {
+        if (first.index > 0) {
+            robot_flow_line(r, c, move, began, start, 1.0, true);
+        }
+        if (!robot_flow_path(r, c, move, start, l.feed)) {
+            why->which = manipulator_factor(&arm, start, &why->value);
+            return ROBOT_SINGULAR;
+        }
+    } else if (first.index > 0) {
         ring_push(&r->ring, &first);
         r->index++;
     }
@@ -324,7 +336,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     memcpy(r->rear, r->tool_path.path.end, sizeof r->rear);
     memcpy(r->rear_joint, joint, sizeof joint);
     r->rear_kind = move->singular == ROBOT_WRIST ? ARM_MOVE_WRIST : ARM_MOVE_POSE;
-    r->rear_zone = r->tool_path.stop[1] ? 0.0 : move->zone;
+    r->rear_zone = r->tool_path.stop[1] || flows ? 0.0 : move->zone;
     return ROBOT_OK;
 }
 
@@ -448,6 +460,10 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     }
     if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;
+    }
+    if (robot_flows(r, c, move) ? trajectory_busy(&r->trajectory) || r->ring.count > 0
+                                : joint_flow_busy(&r->flow)) {
+        return ROBOT_BUSY;
     }
     robot_settle(r, c);
     return robot_plan(r, c, move, NULL, NULL, why);

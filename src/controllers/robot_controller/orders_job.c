@@ -59,6 +59,7 @@ static void job_move(struct order *order, const struct robot_job_run *run,
     m->feed = r->tag == ROBOT_JOB_V ? r->speed : 0.0;
     m->spin = r->tag == ROBOT_JOB_VR ? r->speed * DEGREE : 0.0;
     m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
+    m->radius = r->corner;
     order->until = r->until + 1;
     order->until_on = r->until_on;
     const struct robot_job_point *p = robot_job_place(run, t->job, t->points, r->point);
