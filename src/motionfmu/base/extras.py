@@ -29,6 +29,7 @@ EXTRAS = {
     "live": Extra(("starlette", "uvicorn", "websockets"), "a live machine"),
     "opcua": Extra(("asyncua",), "an OPC UA server"),
     "drawing": Extra(("ezdxf", "lxml", "svgelements"), "a drawing in SVG or DXF"),
+    "ros": Extra(("yaml",), "a joint trajectory in YAML"),
     "export": Extra(("ziglang",), "compiling for other platforms"),
 }
 

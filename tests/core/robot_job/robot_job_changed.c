@@ -81,6 +81,11 @@ static const struct {
       "MOVJ P44 VJ=4",
       "J10,6,30,40,50,60 T0 U0 2;J11,8,33,44,55,66 T0 U0 3;J11,8,33,44,55,66 T0 U0 3;"
       "J11,8,33,44,55,66 T0 U0 4;reach 4;" },
+    { "//NAME A\n//POS\n///TOOL 1\n///RCONF 1,0,0,0,0,0\n///POSTYPE JOINT\nC0=-3600,2.5,0,0,0,1\n"
+      "//INST\nMOVJ C0 VJ=1",
+      "J-3600,2.5,0,0,0,1 T1 U0 1;reach 1;" },
+    { "//NAME A\n//POS\n///POSTYPE JOINT\nC0=0,2.5,0,3601,0,1", "line 4: value out of range "
+                                                                "\"3601\" (-3600 to 3600)" },
     /* GETS waits until the arm rests */
     { "MOVL P2 V=9\nGETS PX012 $PX001\nMOVL P012 V=9\nGETS PX3 $PX000\nGETE D000 PX003 (6)\n"
       "SET B000 D000\nDOUT OG#(1) B000",
