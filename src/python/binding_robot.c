@@ -144,7 +144,8 @@ static const struct field move_fields[] = {
     MOVE(target.branch, ""), ROW(robot_move, via, "via", "mm"),
     MOVE(feed, "mm/s"),      MOVE(spin, "deg/s"),
     MOVE(share, ""),         MOVE(zone, "mm"),
-    MOVE(part, ""),          MOVE(singular, ""),
+    MOVE(radius, "mm"),      MOVE(part, ""),
+    MOVE(singular, ""),
 };
 
 static const struct field refusal_fields[] = {

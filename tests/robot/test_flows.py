@@ -1,4 +1,4 @@
-"""Moves that flow: as quick as toppra's bound along the way that is driven, and quicker than stops."""
+"""Moves that flow: nearly as quick as toppra's bound along their way, quicker than stops."""
 
 import numpy as np
 import pytest
@@ -66,7 +66,9 @@ def bound(joints: np.ndarray) -> float:
             np.c_[-ACC, ACC], constraint.DiscretizationType.Interpolation
         ),
     ]
-    solver = algorithm.TOPPRA(limits, path, np.linspace(0.0, way[-1], 1200), solver_wrapper="seidel")
+    solver = algorithm.TOPPRA(
+        limits, path, np.linspace(0.0, way[-1], 1200), solver_wrapper="seidel"
+    )
     speed = solver.compute_parameterization(0, 0)[1]
     return float((2 * np.diff(solver.gridpoints) / (speed[1:] + speed[:-1])).sum())
 
@@ -81,3 +83,50 @@ def test_toppra() -> None:
     assert 0.99 * least <= took <= 1.1 * least
     stopping = sum(len(s) for s in moving(pick_and_place(50.0))) * CYCLE
     assert took <= 0.75 * stopping
+
+
+JOB = """NOP
+MOVJ P001 VJ=100.00 PL=8
+MOVJ P002 VJ=100.00 PL=8
+MOVL P003 V=1000.0 CR=40.0
+MOVJ P001 VJ=100.00
+END
+"""
+POINTS = """P001 J1=-20 J2=10 J3=-10 J4=0 J5=80 J6=0
+P002 J1=20 J2=10 J3=-10 J4=0 J5=80 J6=0
+P003 J1=30 J2=20 J3=-5 J4=10 J5=70 J6=0
+"""
+
+
+def job_time(flow: bool) -> float:
+    """Time of the job to its end. [s]"""
+    robot = VirtualRobot(flow=flow, ik_time=1e-6)
+    robot.start(JOB, POINTS)
+    return float(robot.run_until_stop().time)
+
+
+def test_a_job_flows() -> None:
+    """PL of joint moves and CR count; the pose at its end is the same."""
+    assert job_time(True) < 0.85 * job_time(False)
+
+
+@pytest.mark.parametrize("wrong", [{"part": 0.6}, {"radius": -1.0}, {"zone": np.inf}])
+def test_wrong_corners_are_refused(wrong: dict[str, float]) -> None:
+    """A message with the value; nothing moves."""
+    robot = VirtualRobot(flow=True)
+    with pytest.raises(RobotError, match=next(iter(wrong))):
+        robot.move_joints([10, 0, 0, 0, 90, 0], **wrong)
+    assert robot.read().move == 0
+
+
+def test_a_move_by_the_wrist_waits_for_rest() -> None:
+    """It does not flow: not now, until the arm rests."""
+    robot = VirtualRobot(flow=True)
+    robot.move_joints([10, 0, 0, 0, 90, 0], zone=10)
+    target = robot.kinematics.forward([12, 0, 0, 0, 90, 0])
+    with pytest.raises(RobotError) as told:
+        robot.move_line(target, singular="wrist")
+    assert told.value.status == "BUSY"
+    robot.run_until_stop()
+    robot.move_line(target, singular="wrist")
+    assert np.allclose(robot.run_until_stop().pose[:3], target[:3, 3], atol=0.1)
