@@ -56,6 +56,17 @@ static enum robot_job_point_kind place_of(const struct robot_job_run *run, int32
     return robot_job_place(run, &program, &points, number)->kind;
 }
 
+static void check_move(const struct robot_job_request *r, const struct robot_job_run *run)
+{
+    const enum robot_job_point_kind kind = place_of(run, r->point);
+    HOLDS(kind != ROBOT_JOB_NO_POINT);
+    HOLDS(r->path != ROBOT_JOB_CIRCLE || place_of(run, r->via) != ROBOT_JOB_NO_POINT);
+    HOLDS(r->increment == ROBOT_JOB_NOT_BY
+          || (kind == ROBOT_JOB_POSE && r->increment >= ROBOT_JOB_BY_TOOL
+              && r->increment < ROBOT_JOB_FRAMES && r->shift < 0));
+    HOLDS(r->until >= -1 && r->until < ROBOT_JOB_SIGNALS);
+}
+
 /* What may be asked for. */
 static void check_request(const struct robot_job_request *r, const struct robot_job_run *run,
                           int64_t moves)
@@ -67,13 +78,7 @@ static void check_request(const struct robot_job_request *r, const struct robot_
                   || r->answer == ROBOT_JOB_FAULT)));
     HOLDS(run->moves == moves + (r->answer == ROBOT_JOB_MOVE));
     if (r->answer == ROBOT_JOB_MOVE) {
-        const enum robot_job_point_kind kind = place_of(run, r->point);
-        HOLDS(kind != ROBOT_JOB_NO_POINT);
-        HOLDS(r->path != ROBOT_JOB_CIRCLE || place_of(run, r->via) != ROBOT_JOB_NO_POINT);
-        HOLDS(r->increment == ROBOT_JOB_NOT_BY
-              || (kind == ROBOT_JOB_POSE && r->increment >= ROBOT_JOB_BY_TOOL
-                  && r->increment < ROBOT_JOB_FRAMES && r->shift < 0));
-        HOLDS(r->until >= -1 && r->until < ROBOT_JOB_SIGNALS);
+        check_move(r, run);
         HOLDS(points.user[r->shift_user].defined);
         HOLDS((r->tag == ROBOT_JOB_VJ) == (r->path == ROBOT_JOB_JOINT) && r->speed > 0.0);
         HOLDS(r->level >= 0 && r->level <= ROBOT_JOB_LEVELS && r->corner >= 0.0);

@@ -96,7 +96,7 @@ static void begin(struct robot_job_point *q, const struct robot_job_point *like)
     }
 }
 
-/* Turns to ranges that a position's elements have. */
+/* Whether elements of a position are numbers that D variables can have. */
 static enum robot_job_fault checked(const struct robot_job_point *q)
 {
     bool good = true;
@@ -127,7 +127,8 @@ static enum robot_job_fault take(struct robot_job_run *run, const struct robot_j
     return robot_job_store(run, &c->left, round(q->value[c->level] * per(q, c->level)));
 }
 
-/* The position that SET, ADD, SUB, GETE look at, in *q: a copy, as it may be the one that changes. */
+/* The position that SET, ADD, SUB, GETE look at, in *q: a copy, as it may be the one that
+ * changes. */
 static enum robot_job_fault source(struct robot_job_run *run, const struct robot_job_program *p,
                                    const struct robot_job_points *points,
                                    const struct robot_job_instruction *c, struct robot_job_point *q)

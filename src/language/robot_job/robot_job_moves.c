@@ -39,8 +39,8 @@ const char *robot_job_idle_name(enum robot_job_idle_word w)
     return w == ROBOT_JOB_ACC ? "ACC" : "DEC";
 }
 
-/* Take VJ, V or VR and its value, a number or a variable, which is then c->right. 1: taken, 0: there
- * is none. */
+/* Take VJ, V or VR and its value, a number or a variable, which is then c->right. 1: taken, 0:
+ * there is none. */
 static int speed_tag(struct robot_job_reading *in, struct robot_job_span w,
                      struct robot_job_instruction *c)
 {
@@ -102,7 +102,7 @@ static int idle_tag(struct robot_job_reading *in, struct robot_job_span w)
     return 0;
 }
 
-/* CCN 17: a case for each tag. */
+/* CCN 18: a case for each tag. */
 static int take_tag(struct robot_job_reading *in, struct robot_job_span w,
                     struct robot_job_instruction *c)
 {

@@ -67,8 +67,8 @@ enum {
  * allowed. */
 int robot_job_operand(struct robot_job_reading *in, uint32_t kinds, struct robot_job_operand *o);
 
-/* Read [n] or [variable] behind the letter of an array of `most` elements, if it stands here: 1, 0 or
- * -1. */
+/* Read [n] or [variable] behind the letter of an array of `most` elements, if it stands here: 1, 0
+ * or -1. */
 int robot_job_operand_element(struct robot_job_reading *in, int32_t most, int32_t *index,
                               struct robot_job_by *by);
 

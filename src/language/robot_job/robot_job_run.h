@@ -9,7 +9,8 @@
  *    stop;
  *  - a move that an input may end (UNTIL) keeps what follows waiting until it is over: it is
  *    reached where it ends, too;
- *  - what looks at inputs, at the arm (GETS) or at time (IF and WAIT on IN# or AI#, DIN, AIN, TIMER, PAUSE, the end)
+ *  - what looks at inputs, at the arm (GETS) or at time (IF and WAIT on IN# or AI#, DIN, AIN,
+ *    TIMER, PAUSE, the end)
  *    waits until all moves before it are reached: ROBOT_JOB_REACH. The caller may count a move as
  *    reached where its zone begins.
  * Call until the answer is none of MOVE, DOUT, AOUT, or the queue is full; then again next cycle.

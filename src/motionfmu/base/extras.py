@@ -34,6 +34,10 @@ EXTRAS = {
 }
 
 
+# What pip calls a package whose name is another one.
+PROJECTS = {"yaml": "pyyaml"}
+
+
 class Missing(InputError, ImportError):
     """An extra is not installed; the text says which one, and how to install it."""
 
@@ -73,7 +77,7 @@ def install(extra: str) -> str:
     own = metadata.distribution("motionfmu")
     told = json.loads(own.read_text("direct_url.json") or "{}")
     if "dir_info" in told:  # from its sources
-        return f"pip install {' '.join(EXTRAS[extra].packages)}"
+        return f"pip install {' '.join(PROJECTS.get(p, p) for p in EXTRAS[extra].packages)}"
     url = urlsplit(told.get("url", ""))
     file = Path(url2pathname(url.path))
     there = url.scheme == "file" and file.suffix == ".whl" and file.is_file()

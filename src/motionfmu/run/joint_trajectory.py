@@ -5,7 +5,6 @@ import io
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -66,26 +65,32 @@ def _number(file: Path, line: int, name: str, given: str) -> float:
     return value
 
 
+# CCN 18: a row of ways in which a header is wrong.
+def _columns(file: Path, line: int, head: list[str]) -> tuple[list[str], list[str]]:
+    """Joints of a header, and the columns of their velocities; none if it has none."""
+    if head[0] != TIME:
+        _refuse(file, line, f"{head[0]!r}: {TIME} [s] wanted first, then the joints [rad]")
+    for name in head:
+        if head.count(name) > 1 or not name:
+            _refuse(file, line, f"{name!r}: a name for each column wanted, each once")
+    joints = [name for name in head[1:] if not name.endswith(VELOCITY)]
+    rates = [name + VELOCITY for name in joints]
+    given = [name for name in head[1:] if name.endswith(VELOCITY)]
+    if strange := [name for name in given if name not in rates]:
+        _refuse(file, line, f"{strange[0]!r}: no such joint")
+    left = [name for name in rates if name not in given]
+    if given and left:
+        _refuse(file, line, f"{left[0]!r} is missing: velocities of all joints or of none")
+    return joints, rates if given else []
+
+
 def _of_csv(file: Path, text: str) -> JointTrajectory:
     rows = csv.reader(io.StringIO(text), skipinitialspace=True)
     table = [(rows.line_num, [cell.strip() for cell in row]) for row in rows if any(row)]
     if not table:
         raise InputError(f"{file}: no header: {TIME} and the names of the joints wanted")
     line, head = table[0]
-    if head[0] != TIME:
-        _refuse(file, line, f"{head[0]!r}: {TIME} [s] wanted first, then the joints [rad]")
-    twice = [name for name in head if head.count(name) > 1]
-    if twice or "" in head:
-        _refuse(file, line, f"{(twice or [''])[0]!r}: a name for each column wanted, each once")
-    joints = [name for name in head[1:] if not name.endswith(VELOCITY)]
-    rates = [name + VELOCITY for name in joints]
-    for name in head[1:]:
-        if name.endswith(VELOCITY) and name not in rates:
-            _refuse(file, line, f"{name!r}: no such joint")
-    has_rates = any(name in head for name in rates)
-    for name in rates if has_rates else []:
-        if name not in head:
-            _refuse(file, line, f"{name!r} is missing: velocities of all joints or of none")
+    joints, rates = _columns(file, line, head)
     values = []
     for line, row in table[1:]:
         if len(row) != len(head):
@@ -100,12 +105,12 @@ def _of_csv(file: Path, text: str) -> JointTrajectory:
         joints,
         all_values[:, 0],
         columns(joints),
-        columns(rates) if has_rates else None,
+        columns(rates) if rates else None,
         [line for line, _ in table[1:]],
     )
 
 
-class _Node:
+class _YamlPlace:
     """A place in a YAML text, whose parts are looked for with their lines."""
 
     def __init__(self, file: Path, node: Any) -> None:
@@ -115,21 +120,21 @@ class _Node:
     def line(self) -> int:
         return int(self.node.start_mark.line) + 1
 
-    def parts(self) -> "dict[str, _Node]":
+    def parts(self) -> "dict[str, _YamlPlace]":
         if self.node.id != "mapping":
             _refuse(self.file, self.line, "names with values wanted")
-        return {str(k.value): _Node(self.file, v) for k, v in self.node.value}
+        return {str(k.value): _YamlPlace(self.file, v) for k, v in self.node.value}
 
-    def get(self, name: str) -> "_Node":
+    def get(self, name: str) -> "_YamlPlace":
         parts = self.parts()
         if name not in parts:
             _refuse(self.file, self.line, f"{name} is missing")
         return parts[name]
 
-    def items(self, name: str) -> "Iterator[_Node]":
+    def items(self, name: str) -> "Iterator[_YamlPlace]":
         if self.node.id != "sequence":
             _refuse(self.file, self.line, f"{name}: a list wanted")
-        return (_Node(self.file, part) for part in self.node.value)
+        return (_YamlPlace(self.file, part) for part in self.node.value)
 
     def number(self, name: str) -> float:
         if self.node.id != "scalar":
@@ -156,9 +161,11 @@ class _Node:
         raise AssertionError
 
 
+# CCN 22: what a text, a message and its points may be, one after another.
 def _of_yaml(file: Path, text: str) -> JointTrajectory:
     needed("ros")
-    yaml: Any = import_module("yaml")
+    import yaml
+
     try:
         texts = [t for t in yaml.compose_all(text, Loader=yaml.SafeLoader) if t is not None]
     except yaml.YAMLError as why:
@@ -169,7 +176,7 @@ def _of_yaml(file: Path, text: str) -> JointTrajectory:
         raise InputError(f"{file}: empty")
     if len(texts) > 1 and texts[1].id == "mapping":
         _refuse(file, texts[1].start_mark.line + 1, "a second message: one trajectory wanted")
-    top = _Node(file, texts[0])
+    top = _YamlPlace(file, texts[0])
     while inside := next((name for name in _INSIDE if name in top.parts()), None):
         top = top.get(inside)
     names = top.get("joint_names")

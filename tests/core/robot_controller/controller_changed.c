@@ -71,8 +71,9 @@ static void here(void)
     }
 }
 
-/* A line of 200 mm from P001 to P003 at V=100 with an input that comes `after` cycles in it. Returns
- * where the move has ended, from its begin; *braked: what the tool went after the input. [mm] */
+/* A line of 200 mm from P001 to P003 at V=100 with an input that comes `after` cycles in it.
+ * Returns where the move has ended, from its begin; *braked: what the tool went after the input.
+ * [mm] */
 static double searched(const char *job, int after, double *braked)
 {
     double there = 0.0;

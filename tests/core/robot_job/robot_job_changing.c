@@ -13,8 +13,8 @@ static const struct robot_job_point HERE[2] = {
     { .value = { 700.5, -20.25, 300, 180, 0, -90 }, .kind = ROBOT_JOB_POSE, .tool = 1 },
 };
 
-/* The moves of a program: path, values of the position, tool, user frame, speed; UNTIL and frames of
- * increments; its outputs. A move is reached when somebody asks. */
+/* The moves of a program: path, values of the position, tool, user frame, speed; UNTIL and frames
+ * of increments; its outputs. A move is reached when somebody asks. */
 static const char *run_text(const char *text)
 {
     struct robot_job_inputs in = { .here = { HERE[0], HERE[1] } };
