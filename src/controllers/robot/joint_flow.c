@@ -318,42 +318,28 @@ static void insert(struct joint_flow *f, int64_t vertex, const struct corner *c)
     f->made += shift;
 }
 
-static double length_from(const struct joint_flow *f, int64_t first)
+/* The last `way` of the latest move is kept back. */
+static void hold_back(struct joint_flow *f, double way)
 {
-    double sum = 0.0;
+    int64_t n = f->made - 1;
+    const double left = find(f, &n, way, -1), length = piece_at(f, n)->curve.length;
 
-    for (int64_t n = first; n < f->made; n++) {
-        sum += piece_at(f, n)->curve.length;
-    }
-    return sum;
-}
-
-/* The latest move, of which `way` is left behind its corner, keeps its end back. */
-static void hold_back(struct joint_flow *f, int64_t first, double way)
-{
-    double left = length_from(f, first) - way;
-    int64_t n = first;
-
-    while (n + 1 < f->made && left >= piece_at(f, n)->curve.length) {
-        left -= piece_at(f, n++)->curve.length;
-    }
     f->open = true;
     f->held = n;
-    if (left > LEAST && piece_at(f, n)->curve.length - left > LEAST) {
+    if (left > LEAST && length - left > LEAST) {
         for (int64_t k = f->made; k > n; k--) {
             *piece_of(f, k) = *piece_at(f, k - 1);
         }
         f->made++;
         shape_cut(&piece_of(f, n)->curve, 0.0, left);
-        shape_cut(&piece_of(f, n + 1)->curve, left, piece_at(f, n + 1)->curve.length);
+        shape_cut(&piece_of(f, n + 1)->curve, left, length);
         f->held = n + 1;
     }
 }
 
-/* Round the vertex, with what has been held back of the move before it. Returns the first piece
- * behind the corner. */
-static int64_t round_off(struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
-                         double room)
+/* Round the vertex, with what has been held back of the move before it, or rest there. */
+static void round_off(struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
+                      double room)
 {
     const struct segment *before = &piece_at(f, vertex - 1)->curve;
     struct corner c = { .curve = { .even = true } };
@@ -362,39 +348,39 @@ static int64_t round_off(struct joint_flow *f, const struct manipulator *arm, in
     segment_at(before, before->length, &in);
     segment_at(&piece_at(f, vertex)->curve, 0.0, &out);
     if (smooth(&in, &out)) {
-        return vertex;
+        return;
     }
-    if (!corner(f, arm, vertex, room, &in, &out, &c)) {
+    if (corner(f, arm, vertex, room, &in, &out, &c)) {
+        obey(f, &c);
+        insert(f, vertex, &c);
+    } else {
         piece_of(f, vertex - 1)->curve.rest = true;
-        return vertex;
     }
-    obey(f, &c);
-    insert(f, vertex, &c);
-    return c.first + 1 + (c.from > 0.0);
 }
 
 void joint_flow_add(struct joint_flow *f, const struct manipulator *arm,
                     const struct speed_limits *l, const struct joint_flow_move *move, int32_t count,
                     const struct segment *piece)
 {
-    int64_t vertex = f->made;
+    const int64_t vertex = f->made;
+    double length = 0.0;
 
     if (f->made == 0) {
         set_out(f, l);
     }
     for (int32_t n = 0; n < count; n++) {
         *piece_of(f, f->made++) = (struct joint_flow_piece){ piece[n], move->line, move->solved };
+        length += piece[n].length;
     }
-    const double length = length_from(f, vertex);
     if (f->open) {
-        vertex = round_off(f, arm, vertex, el_min(f->room, f->zone.part * length));
+        round_off(f, arm, vertex, el_min(f->room, f->zone.part * length));
     }
     f->open = false;
     f->idle = 0;
     f->zone = move->zone;
     f->room = move->zone.part * length;
     if (move->zone.off > 0.0 || move->zone.radius > 0.0) {
-        hold_back(f, vertex, f->room);
+        hold_back(f, f->room);
     } else {
         close(f);
     }

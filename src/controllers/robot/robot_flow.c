@@ -50,7 +50,6 @@ static void add(struct robot *r, const struct robot_config *c, const struct robo
         joint_flow_add(&r->flow, &arm, &l, &m, count, piece);
     }
     r->tool_path.count = r->tool_path.next = 0;
-    r->rear_zone = 0.0;
 }
 
 void robot_flow_line(struct robot *r, const struct robot_config *c, const struct robot_move *move,

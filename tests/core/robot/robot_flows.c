@@ -174,8 +174,8 @@ static void points_of(const struct robot_config *c, const struct robot_move *m,
     }
 }
 
-/* Holds, overrides and an abort, at random times. */
-static void meddle(bool aborts)
+/* Holds, overrides and an abort, at random times; whether it is aborted. */
+static bool meddle(bool aborts)
 {
     if (chance(2e-4)) {
         robot_hold(&robot, true);
@@ -189,7 +189,9 @@ static void meddle(bool aborts)
     }
     if (aborts && chance(3e-4)) {
         robot_abort(&robot);
+        return true;
     }
+    return false;
 }
 
 static struct robot_config flowing(double smooth)
@@ -241,18 +243,12 @@ static struct outcome sequence(int32_t number)
         }
         for (int n = late && chance(0.5) ? (int)draw(0.0, 8000.0) : 0; n > 0; n--) {
             cycle(&c);
-            if (meddles) {
-                meddle(aborts);
-            }
-            aborted = aborted || robot.trajectory.abort;
+            aborted = (meddles && meddle(aborts)) || aborted;
         }
     }
     while (!robot_idle(&robot) && cycles < CYCLES) {
         cycle(&c);
-        if (meddles) {
-            meddle(aborts);
-        }
-        aborted = aborted || robot.trajectory.abort;
+        aborted = (meddles && meddle(aborts)) || aborted;
     }
     cycle(&c);
     CHECK(!robot.lost);
