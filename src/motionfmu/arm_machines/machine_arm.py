@@ -114,14 +114,14 @@ def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
     turn = values[f"{PLANT}.tool_turn"]
     frame = placed(values[f"{PLANT}.tool_place"], turn_of(*turn))
     tip = frame @ placed([0.0, 0.0, float(values[f"{PLANT}.tool_length"])])
+    if f"{PLANT}.axis_origin" in values:
+        axes = values[f"{PLANT}.axis_direction"]
+        axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+        return AxesGeometry(values[f"{PLANT}.axis_origin"], axes, tip)
+    lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
     signs = tuple(int(s) for s in values[f"{PLANT}.joint_sign"])
     offsets = tuple(float(x) for x in values[f"{PLANT}.joint_offset"])
-    if f"{PLANT}.axis_origin" not in values:
-        lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
-        return OpwGeometry(lengths, signs, offsets, np.eye(4), tip)
-    axes = values[f"{PLANT}.axis_direction"]
-    axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
-    return AxesGeometry(values[f"{PLANT}.axis_origin"], axes, tip, signs, offsets)
+    return OpwGeometry(lengths, signs, offsets, np.eye(4), tip)
 
 
 def _arm(name: str, geometry: OpwGeometry, values: Mapping[str, Array]) -> ArmDescription:

@@ -26,17 +26,21 @@ class AxesGeometry:
         Unit vectors.
     flange : (4, 4) ndarray
         The arm's tip from the origin of joint 6 [m].
-    signs : tuple of 6 ints
-    offsets : tuple of 6 floats
-        Inner angle = sign * joint angle - offset, and the axes lie so at inner 0 [rad].
     """
 
     origins: Array
     axes: Array
     flange: Array
-    signs: tuple[int, ...] = (1,) * SIX
-    offsets: tuple[float, ...] = (0.0,) * SIX
-    deviation: float = 0.0  # none: the axes are the chain
+    @property
+    def deviation(self) -> float:
+        """None: the axes are the chain."""
+        return 0.0
+
+    @property
+    def straight(self) -> Array:
+        """Joint angles at which all frames are parallel to the base."""
+        return np.zeros(SIX)
+
 
     @property
     def base(self) -> Array:
@@ -46,16 +50,15 @@ class AxesGeometry:
     @property
     def joint_frames(self) -> list[tuple[Array, Array]]:
         """Frame of each joint at 0 in the link before, and its axis."""
-        rows = zip(self.origins, self.axes, self.signs, self.offsets, strict=True)
-        return [(placed(o, about(a, -turn)), sign * a) for o, a, sign, turn in rows]
+        return [(placed(o), a) for o, a in zip(self.origins, self.axes, strict=True)]
 
     def frames(self, q: Array) -> list[Array]:
         """Frames of the links, (..., 4, 4) each, by joint angles (..., 6) [rad]."""
-        inner = np.asarray(self.signs) * np.asarray(q, float) - np.asarray(self.offsets)
-        frame, found = np.broadcast_to(np.eye(4), (*inner.shape[:-1], 4, 4)), []
+        q = np.asarray(q, float)
+        frame, found = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)), []
         for k, (origin, axis) in enumerate(zip(self.origins, self.axes, strict=True)):
             step = np.broadcast_to(placed(origin), frame.shape).copy()
-            step[..., :3, :3] = about(axis, inner[..., k])
+            step[..., :3, :3] = about(axis, q[..., k])
             frame = frame @ step
             found.append(frame)
         return found
@@ -64,8 +67,7 @@ class AxesGeometry:
         """Velocity and angular velocity of the tip by joint speeds, (..., 6, 6)."""
         frames = self.frames(q)
         tip = (frames[-1] @ self.flange)[..., :3, 3]
-        axes = np.asarray(self.signs)[:, None] * self.axes
-        turns = [f[..., :3, :3] @ a for f, a in zip(frames, axes, strict=True)]
+        turns = [f[..., :3, :3] @ a for f, a in zip(frames, self.axes, strict=True)]
         ways = [np.cross(t, tip - f[..., :3, 3]) for t, f in zip(turns, frames, strict=True)]
         return np.concatenate([np.stack(ways, -1), np.stack(turns, -1)], -2)
 
