@@ -12,7 +12,6 @@ from motionfmu import run
 from motionfmu.arm_machines import arm_machine
 from motionfmu.arms import (
     AxesGeometry,
-    NoOpwGeometry,
     OpwGeometry,
     axes_geometry,
     driven_geometry,
@@ -76,14 +75,19 @@ def test_what_drives_an_arm(file: Path) -> None:
     assert by_axes.reach == pytest.approx(np.hypot(small.reach, small.lengths[2]), rel=0.01)
     assert isinstance(driven_geometry(urdf_arm(file)), AxesGeometry)
     # Lengths that miss the tip by more than 1 mm are none: axis 5 is 0.1 degrees from upright.
-    text = SMALL.read_text(encoding="utf-8").replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0.0018"/>')
+    text = SMALL.read_text(encoding="utf-8").replace(
+        '<axis xyz="0 1 0"/>', '<axis xyz="0 1 0.0018"/>'
+    )
     text = text.replace('<origin xyz="0 0 0.04"/><axis', '<origin xyz="0 0 0.94"/><axis')
-    assert isinstance(driven_geometry(urdf_text_arm(text, "rounded.urdf", None)), AxesGeometry)
+    rounded = driven_geometry(urdf_text_arm(text, "rounded.urdf", "flange"))
+    assert isinstance(rounded, AxesGeometry)
+    assert "its seven lengths are off by " in rounded.why
 
 
 def test_the_machine_has_the_axes_once(folder: Path) -> None:
     shown = (folder.parent / "told").read_text(encoding="utf-8")
     assert "small_arm to flange, six joints" in shown
+    assert "driven by its axes, as an arm of six joints; axes 5 and 6 are at 53.13°" in shown
     assert "start pose: " in shown and "far from singular" in shown
     tables = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))
     assert tables["component"]["arm"] == "axes_arm"
@@ -207,6 +211,3 @@ def test_axes_that_leave_no_pose_to_move_from_are_refused(tmp_path: Path) -> Non
     (tmp_path / "flat.urdf").write_text(f'<robot name="flat"><link name="l0"/>{rows}</robot>')
     shown = refused("import", tmp_path / "flat.urdf", "-o", tmp_path / "flat")
     assert "its axes leave the hand fewer than six ways to move" in shown
-    with pytest.raises(NoOpwGeometry):
-        driven_geometry(urdf_text_arm(SMALL.read_text(encoding="utf-8").replace(
-            'name="waist" type="revolute"', 'name="waist" type="prismatic"'), "x.urdf", None))  # fmt: skip

@@ -91,6 +91,8 @@ def _given(values: ArmValues) -> set[str]:
 
 
 def _notes(geometry: ArmGeometry) -> Iterator[str]:
+    if isinstance(geometry, AxesGeometry):
+        yield f"driven by its axes, as {geometry.why}"
     if geometry.deviation > ROUNDING:
         off = f"{1e3 * geometry.deviation:.3g} mm"
         yield f"its lengths are off by {off} at the tip, for the angles of the file are rounded"

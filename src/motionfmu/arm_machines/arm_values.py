@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.arm_machines.bent_pose import bent_pose
 from motionfmu.arm_machines.machine_arm import (
     DRIVES,
     LENGTHS,
@@ -28,7 +29,6 @@ from motionfmu.arms.arm_description import (
     joined,
     placed,
 )
-from motionfmu.arm_machines.bent_pose import bent_pose
 from motionfmu.base.errors import InputError
 
 Array = NDArray[np.float64]

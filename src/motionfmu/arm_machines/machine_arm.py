@@ -124,7 +124,7 @@ def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
     return OpwGeometry(lengths, signs, offsets, np.eye(4), tip)
 
 
-def _arm(name: str, geometry: OpwGeometry, values: Mapping[str, Array]) -> ArmDescription:
+def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDescription:
     """Links as the plant has them, limits as the controller has them."""
     joints = []
     for k, (origin, axis) in enumerate(geometry.joint_frames):

@@ -1,6 +1,6 @@
 """An arm of six turning joints by the lines of its axes, whatever its kind."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,11 +26,15 @@ class AxesGeometry:
         Unit vectors.
     flange : (4, 4) ndarray
         The arm's tip from the origin of joint 6 [m].
+    why : str
+        What keeps it from being an arm by seven lengths.
     """
 
     origins: Array
     axes: Array
     flange: Array
+    why: str = ""
+
     @property
     def deviation(self) -> float:
         """None: the axes are the chain."""
@@ -40,7 +44,6 @@ class AxesGeometry:
     def straight(self) -> Array:
         """Joint angles at which all frames are parallel to the base."""
         return np.zeros(SIX)
-
 
     @property
     def base(self) -> Array:
@@ -121,11 +124,14 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
     """
     try:
         geometry = opw_geometry(arm)
-    except NoOpwGeometry:
+    except NoOpwGeometry as error:
         if any(j.slides or j.follows for j in arm.joints) or len(arm.joints) != SIX:
             raise NoOpwGeometry(f"{kind_of(arm)}; {_missing(arm)}") from None
-        return axes_geometry(arm)
-    return geometry if geometry.deviation <= MOST_DEVIATION else axes_geometry(arm)
+        return replace(axes_geometry(arm), why=str(error))
+    if geometry.deviation <= MOST_DEVIATION:
+        return geometry
+    why = f"its seven lengths are off by {1e3 * geometry.deviation:.3g} mm at the tip"
+    return replace(axes_geometry(arm), why=why)
 
 
 def _missing(arm: ArmDescription) -> str:
