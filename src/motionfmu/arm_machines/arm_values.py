@@ -188,7 +188,7 @@ class _Values:
         if isinstance(self.geometry, AxesGeometry):
             start = bent_pose(self.geometry, self.arm)
             self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
-                       "°; far from singular, the hand down if that is within the ranges")  # fmt: skip
+                       "°; far from singular, the hand down if the ranges let it")  # fmt: skip
             return start
         signs, offsets = np.asarray(self.geometry.signs), np.asarray(self.geometry.offsets)
         wanted = signs * (START + offsets)
