@@ -144,6 +144,7 @@ static const struct field move_fields[] = {
     MOVE(target.branch, ""), ROW(robot_move, via, "via", "mm"),
     MOVE(feed, "mm/s"),      MOVE(spin, "deg/s"),
     MOVE(share, ""),         MOVE(zone, "mm"),
+    MOVE(radius, "mm"),      MOVE(part, ""),
     MOVE(singular, ""),
 };
 

@@ -86,6 +86,11 @@ enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
         why->limit = why->value > j->high ? j->high : j->low;
         return ROBOT_OUTSIDE;
     }
+    double from[OPW_JOINTS];
+    memcpy(from, r->rear_joint, sizeof from);
     robot_plan_joints(r, c, target, move->share);
+    if (robot_flows(r, c, move)) {
+        robot_flow_line(r, c, move, from, target, move->share, false);
+    }
     return ROBOT_OK;
 }

@@ -37,6 +37,7 @@ static void come_to_rest(struct robot *r, const struct robot_config *c)
     r->rear_zone = 0.0;
     r->tool_path.count = r->tool_path.next = 0;
     r->jogging = r->lost = false;
+    joint_flow_clear(&r->flow);
     trajectory_stand(&r->trajectory, &PLACES, r->rear);
 }
 
@@ -52,11 +53,21 @@ void robot_start(struct robot *r, const struct robot_config *c, const double joi
 bool robot_idle(const struct robot *r)
 {
     return !trajectory_busy(&r->trajectory) && r->ring.count == 0
-           && r->tool_path.next >= r->tool_path.count;
+           && r->tool_path.next >= r->tool_path.count && !joint_flow_busy(&r->flow);
+}
+
+/* Whether the moves that flow stand, and go on by nothing but a hold's or an override's end. */
+static bool flow_halts(const struct robot *r)
+{
+    return joint_flow_busy(&r->flow) && (r->trajectory.hold || r->trajectory.override[0] <= 0.0)
+           && !r->trajectory.abort && joint_flow_rests(&r->flow);
 }
 
 bool robot_rests(const struct robot *r)
 {
+    if (joint_flow_busy(&r->flow)) {
+        return flow_halts(r);
+    }
     return trajectory_resting(&r->trajectory, &r->ring)
            && (r->tool_path.next >= r->tool_path.count || r->trajectory.hold);
 }
@@ -64,7 +75,8 @@ bool robot_rests(const struct robot *r)
 bool robot_ready(const struct robot *r)
 {
     return r->tool_path.next >= r->tool_path.count && !r->trajectory.abort
-           && (!r->jogging || robot_idle(r)) && r->ring.count < RING_SIZE - ROBOT_ROOM;
+           && (!r->jogging || robot_idle(r)) && r->ring.count < RING_SIZE - ROBOT_ROOM
+           && joint_flow_room(&r->flow);
 }
 
 uint32_t robot_branches(const struct robot_target *t)
@@ -147,6 +159,26 @@ static void predict(const struct robot *r, const struct robot_config *c, const d
     }
 }
 
+/* A cycle of moves that flow. */
+static void flow_cycle(struct robot *r, const struct robot_config *c, const struct manipulator *arm)
+{
+    const struct trajectory *t = &r->trajectory;
+    const double override = t->hold || t->abort ? 0.0 : t->override[0];
+    const double left = joint_flow_advance(&r->flow, override, c->cycle);
+    double joint[OPW_JOINTS];
+
+    const struct joint_flow_piece *p = joint_flow_joints(&r->flow, joint);
+    const struct pose pose = manipulator_pose(arm, joint);
+    show(r, c, joint, &pose);
+    r->solved += p->solved ? r->speed * c->cycle : 0.0;
+    r->line = p->line;
+    if (left > 0.0) {
+        joint_flow_clear(&r->flow);
+    } else if (t->abort && joint_flow_rests(&r->flow)) {
+        robot_stop(r);
+    }
+}
+
 void robot_cycle(struct robot *r, const struct robot_config *c)
 {
     struct manipulator arm;
@@ -162,6 +194,10 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     memcpy(joint, r->joint, sizeof joint);
     if (robot_idle(r)) {
         show(r, c, joint, &pose);
+        return;
+    }
+    if (joint_flow_busy(&r->flow)) {
+        flow_cycle(r, c, &arm);
         return;
     }
     robot_feed(r);
@@ -197,12 +233,42 @@ static int most_taken(const double share[OPW_JOINTS])
     return most;
 }
 
+/* The same of moves that flow: what is neither speed, feed nor acceleration is jerk. */
+static struct limited flow_limited(const struct robot *r, const struct robot_config *c, double feed)
+{
+    const struct trajectory *t = &r->trajectory;
+    double speed[OPW_JOINTS], turn[OPW_JOINTS];
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
+        turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
+    }
+    const int fast = most_taken(speed), bent = most_taken(turn);
+    struct limited told = { .by = LIMITED_JERK, .axis = bent + 1 };
+
+    if (t->hold || t->abort) {
+        told = (struct limited){ .by = LIMITED_WAIT };
+    } else if (speed[fast] > WHOLE) {
+        told = (struct limited){ .by = LIMITED_SPEED, .axis = fast + 1 };
+    } else if (joint_flow_feeds(&r->flow, WHOLE * t->override[0])) {
+        told.by = LIMITED_FEED;
+        told.axis = 0;
+    } else if (turn[bent] > WHOLE || c->smooth <= 0.0) {
+        told.by = LIMITED_ACCELERATION;
+    }
+    told.feed = feed;
+    return told;
+}
+
 struct limited robot_limited(struct robot *r, const struct robot_config *c, double feed)
 {
     const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct limited told = { .by = LIMITED_STOP };
     double speed[OPW_JOINTS], turn[OPW_JOINTS];
 
+    if (joint_flow_busy(&r->flow)) {
+        return flow_limited(r, c, feed);
+    }
     if (!robot_idle(r)) {
         told = trajectory_limited(&r->trajectory, &beside, &PLACES);
     }
@@ -234,12 +300,18 @@ void robot_hold(struct robot *r, bool on)
 void robot_abort(struct robot *r)
 {
     r->tool_path.next = r->tool_path.count;
+    if (joint_flow_busy(&r->flow) && !joint_flow_rests(&r->flow)) {
+        r->trajectory.abort = true;
+        return;
+    }
+    joint_flow_clear(&r->flow);
     trajectory_abort(&r->trajectory, &r->ring);
 }
 
 void robot_stop(struct robot *r)
 {
     r->tool_path.next = r->tool_path.count;
+    joint_flow_clear(&r->flow);
     trajectory_stop(&r->trajectory, &r->ring);
 }
 

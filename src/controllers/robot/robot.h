@@ -10,8 +10,8 @@
 #ifndef ROBOT_H
 #define ROBOT_H
 
+#include "joint_flow.h"
 #include "trajectory.h"
-#include "tool_path.h"
 
 /* A target that says nothing of its branch; of the whole turns of a joint. */
 enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
@@ -27,6 +27,7 @@ struct robot_config {
     double acc;               /* [mm/s^2] of it, along and across */
     double spin;              /* [rad/s] highest of the tool's turning */
     double smooth;            /* [s] in which an acceleration comes up; 0 at once */
+    bool flow;                /* moves but those by the wrist become one curve of the joints */
     double cycle;             /* [s] */
     double slot;              /* [s] of the pulses */
     double slot_pulses;       /* highest number of pulses in a slot */
@@ -67,6 +68,9 @@ struct robot_move {
     double spin;                 /* [rad/s] of the tool's turning; 0 the highest */
     double share;                /* > 0..1 of the joints' speeds; of a move of joints */
     double zone;                 /* [mm] tolerance of the corner with the next move; 0 exact stop */
+    double radius;               /* [mm] instead: of the corner, if moves flow; 0: by the zone */
+    double part;                 /* 0..0.5 most of either move that the corner takes if moves flow;
+                                  * 0 is 0.5 */
     enum robot_singular singular;
     int32_t line; /* of the program */
 };
@@ -102,6 +106,7 @@ struct robot {
     struct ring ring;
     struct lookahead_mean mean;
     struct arm_moves moves;
+    struct joint_flow flow;     /* if moves flow */
     struct pose tool;           /* in force */
     struct tool_path tool_path; /* of the latest move; its segments go into the ring one by one */
     struct robot_move move;     /* that move */

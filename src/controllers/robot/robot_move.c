@@ -51,15 +51,26 @@ static int axis_of(const double v[3])
     return -1;
 }
 
-/* CCN 21: a row of limits that all must hold. */
+/* Numbers from 0 to ROBOT_MOST. */
+static bool all_from_0(const double *x, int n)
+{
+    bool good = all_sound(x, n);
+    for (int i = 0; i < n; i++) {
+        good = good && x[i] >= 0.0;
+    }
+    return good;
+}
+
+/* CCN 17: a row of limits that all must hold. */
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
+    const double from_0[] = { m->feed, m->spin, m->zone, m->radius, m->part };
     return all_sound(t->joint, OPW_JOINTS) && all_sound(t->pose.at, 3) && all_sound(t->pose.turn, 4)
            && all_sound(m->via, 3) && all_sound(m->centre, 3) && all_sound(m->normal, 3)
            && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1)
-           && (m->rise == 0.0 || axis_of(m->normal) >= 0) && m->feed >= 0.0 && isfinite(m->feed)
-           && m->spin >= 0.0 && isfinite(m->spin) && m->zone >= 0.0 && isfinite(m->zone)
+           && (m->rise == 0.0 || axis_of(m->normal) >= 0)
+           && all_from_0(from_0, sizeof from_0 / sizeof *from_0) && m->part <= 0.5
            && (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0))
            && t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
 }
@@ -251,7 +262,38 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
     return length == ARM_MOVES_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
 }
 
-/* CCN 20: a move that turns first is two moves, which are accepted together or refused together; at
+/* What the path of a move may take; `chained`: a corner joins it with the move before. */
+static struct tool_path_limits limits_of(const struct robot *r, const struct robot_config *c,
+                                         const struct robot_move *move, const double by[3],
+                                         bool chained)
+{
+    const bool joined = move->singular != ROBOT_WRIST && !robot_flows(r, c, move);
+    struct tool_path_limits l = { .feed = feed_of(r, c, move, by),
+                                  .acc = c->acc,
+                                  .smooth = c->smooth,
+                                  .zone = { chained ? r->rear_zone : 0.0,
+                                            joined ? move->zone : 0.0 },
+                                  .refuse = move->singular == ROBOT_REFUSE };
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        l.speed[i] = robot_joint_speed(c, i);
+        l.turn[i] = c->arm.joint[i].acc;
+    }
+    return l;
+}
+
+/* The path of r->tool_path flows on from joints at its start, to which the arm goes from `turning`
+ * first if it is given. [rad] */
+static bool flow_on(struct robot *r, const struct robot_config *c, const struct robot_move *move,
+                    const double *turning, const double start[OPW_JOINTS], double feed)
+{
+    if (turning) {
+        robot_flow_line(r, c, move, turning, start, 1.0, true);
+    }
+    return robot_flow_path(r, c, move, start, feed);
+}
+
+/* CCN 22: a move that turns first is two moves, which are accepted together or refused together; at
  * its ends corners and stops are told apart. */
 static enum robot_status along(struct robot *r, const struct robot_config *c,
                                const struct robot_move *move, const struct pose *pose,
@@ -259,14 +301,13 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
 {
     struct manipulator arm = c->arm;
     const struct arm_geometry g = robot_geometry(r, &arm);
-    struct tool_path_limits l = { .acc = c->acc,
-                                  .smooth = c->smooth,
-                                  .refuse = move->singular == ROBOT_REFUSE };
     struct command first = { .index = 0 };
-    double joint[OPW_JOINTS];
+    double joint[OPW_JOINTS], began[OPW_JOINTS], start[OPW_JOINTS];
     struct tool_path_fault fault = { 0 };
+    const bool flows = robot_flows(r, c, move);
     struct pose rear;
 
+    memcpy(began, r->rear_joint, sizeof began);
     memcpy(rear.at, r->rear, sizeof rear.at);
     rear_turn(r, &arm, rear.turn);
     bool chained =
@@ -292,14 +333,9 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         arm_moves_drop(&r->moves);
         return check_end(&arm, &move->target, r->rear_joint, why);
     }
-    l.feed = feed_of(r, c, move, by);
-    l.zone[0] = chained ? r->rear_zone : 0.0;
-    l.zone[1] = move->singular != ROBOT_WRIST ? move->zone : 0.0; /* which none joins */
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        l.speed[i] = robot_joint_speed(c, i);
-        l.turn[i] = c->arm.joint[i].acc;
-    }
+    const struct tool_path_limits l = limits_of(r, c, move, by, chained);
     memcpy(joint, r->rear_joint, sizeof joint);
+    memcpy(start, joint, sizeof start);
     status = told(&arm, tool_path_plan(&r->tool_path, &g, &l, joint, &fault), &fault, why);
     if (status == ROBOT_OK && !r->jogging) {
         why->part = 1.0;
@@ -311,7 +347,11 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         memcpy(why->place, place, sizeof why->place);
         return status;
     }
-    if (first.index > 0) {
+    if (flows && !flow_on(r, c, move, first.index > 0 ? began : NULL, start, l.feed)) {
+        why->which = manipulator_factor(&arm, start, &why->value);
+        return ROBOT_SINGULAR;
+    }
+    if (!flows && first.index > 0) {
         ring_push(&r->ring, &first);
         r->index++;
     }
@@ -324,7 +364,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     memcpy(r->rear, r->tool_path.path.end, sizeof r->rear);
     memcpy(r->rear_joint, joint, sizeof joint);
     r->rear_kind = move->singular == ROBOT_WRIST ? ARM_MOVE_WRIST : ARM_MOVE_POSE;
-    r->rear_zone = r->tool_path.stop[1] ? 0.0 : move->zone;
+    r->rear_zone = r->tool_path.stop[1] || flows ? 0.0 : move->zone;
     return ROBOT_OK;
 }
 
@@ -448,6 +488,10 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     }
     if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;
+    }
+    if (robot_flows(r, c, move) ? trajectory_busy(&r->trajectory) || r->ring.count > 0
+                                : joint_flow_busy(&r->flow)) {
+        return ROBOT_BUSY;
     }
     robot_settle(r, c);
     return robot_plan(r, c, move, NULL, NULL, why);

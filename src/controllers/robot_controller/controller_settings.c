@@ -137,6 +137,7 @@ static void set_robot(const struct controller_settings *s, struct robot_config *
                                 .acc = s->acceleration,
                                 .spin = s->max_spin * DEGREE,
                                 .smooth = s->smooth_time,
+                                .flow = s->flow,
                                 .cycle = (double)s->slots * s->slot_clocks / FPGA_CLOCK_HZ,
                                 .slot = (double)s->slot_clocks / FPGA_CLOCK_HZ,
                                 .slot_pulses = fpga_slot_most((enum fpga_format)s->pulse_format,

@@ -75,6 +75,7 @@
     X(double, max_spin, , "deg/s", 180.0, 1e-3, 36000.0) \
     X(double, rapid, , "", 0.5, 1e-3, 1.0) \
     X(double, zone, [9], "mm", 0.0, 0.0, 1e4) \
+    X(bool, flow, , "", false, false, true) \
     X(int32_t, singular, , "", 0, 0, 2) /* enum robot_singular */ \
     X(bool, block_delete, , "", true, false, true) \
     X(bool, optional_stop, , "", false, false, true) \

@@ -59,6 +59,7 @@ static void job_move(struct order *order, const struct orders_config *c,
     m->feed = r->tag == ROBOT_JOB_V ? r->speed : 0.0;
     m->spin = r->tag == ROBOT_JOB_VR ? r->speed * DEGREE : 0.0;
     m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
+    m->radius = r->corner;
     const struct robot_job_point *p = robot_job_point(t->job, t->points, r->point);
     target_of(&m->target, p, &t->points->user[r->user], c->pulses);
     order->wrist = p->wrist >= ROBOT_JOB_WRIST_NEAR ? p->wrist : 0;

@@ -22,6 +22,7 @@ struct segment {
     double cap;              /* [mm/s] highest speed any override may bring */
     struct ramp_limits ramp; /* least limits of the commands in it */
     bool joint;              /* it joins two others at a corner */
+    bool even;               /* feed and cap are speeds of u, whatever moves */
     bool rest; /* the motion comes to rest at its end: the next one goes on elsewhere */
     union {
         struct {

@@ -152,8 +152,9 @@ void speed_box_make(struct speed_box *g, const struct segment *p, const struct s
     memset(g, 0, sizeof *g);
     g->from = from;
     g->length = length;
-    g->feed = p->feed / b->most[0];
-    g->cap = p->cap / b->most[0];
+    const double way = p->even ? 1.0 : b->most[0];
+    g->feed = p->feed / way;
+    g->cap = p->cap / way;
     for (int32_t i = 0; i < b->axes; i++) {
         const int k = b->axis[i];
         struct range r[3];

@@ -132,8 +132,9 @@ static void limit(struct speed_cell *c, const struct segment *p, const struct sp
 
     c->planes = 0;
     c->bend = c->up = c->down = c->most = c->top = 0.0;
-    c->feed = p->feed / b->most[0];
-    c->cap = p->cap / b->most[0];
+    const double way = p->even ? 1.0 : b->most[0];
+    c->feed = p->feed / way;
+    c->cap = p->cap / way;
     for (int32_t i = 0; i < b->axes; i++) {
         const int k = b->axis[i];
         if (l->speed[k] > 0.0) {

@@ -35,18 +35,20 @@ class Commands:
         self._texts: tuple[Texts, list[bytes]] | None = None  # C reads them
         self.kinematics = Kinematics(**settings)
 
-    def move_joints(self, target: Any, *, share: float = 0.5, zone: float = 0.0) -> int:
+    def move_joints(self, target: Any, **how: Any) -> int:
         """Move all joints to angles [deg] at a share of their speeds; returns the move's number.
 
-        They start and end together. `zone` [mm]: tolerance of the corner with the next move.
+        They start and end together. `share`: 0.5; with the setting `flow`, `zone` [mm]: how far the
+        corner with the next move may leave the path; `radius` [mm] instead: as an arc of it does;
+        `part`: most of either move that it takes, 0.5.
         """
-        return self._move("move_joints", numbers("target", target, 6), share=share, zone=zone)
+        return self._move("move_joints", numbers("target", target, 6), **how)
 
     def move_line(self, target: Any, **how: Any) -> int:
         """Move the tip on a line to X Y Z A B C or a matrix; returns the move's number.
 
-        `feed` [mm/s] and `spin` [deg/s], 0: the highest; `zone` [mm]; `branch`: the one that the
-        path has to keep; `singular`: slow, refuse or wrist.
+        `feed` [mm/s] and `spin` [deg/s], 0: the highest; `zone` [mm], `radius`, `part` as of
+        move_joints; `branch`: the one that the path has to keep; `singular`: slow, refuse or wrist.
         """
         return self._move("move_line", self._pose("target", target), _LINE, **how)
 
@@ -72,6 +74,8 @@ class Commands:
             "spin": 0.0,
             "share": 0.5,
             "zone": 0.0,
+            "radius": 0.0,
+            "part": 0.5,
             "branch": _ANY_BRANCH,
         }
         given |= {"singular": "slow", "via": np.zeros(3)}
@@ -91,6 +95,8 @@ class Commands:
             ("spin", 0.0, 36000.0),
             ("share", 1e-3, 1.0),
             ("zone", 0.0, 1e4),
+            ("radius", 0.0, 1e4),
+            ("part", 1e-3, 0.5),
         ):
             move[name] = within(name, given[name], low, high)
         six = (ctypes.c_double * 6)(*target)

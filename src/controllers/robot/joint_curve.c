@@ -1,0 +1,296 @@
+#include "joint_curve.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "el_extremes.h"
+
+/* Steps of a piece in which its quintic is compared; parts of a step by which its length is
+ * summed. */
+enum { STEPS = 8, SUMS = 4 };
+
+/* Derivatives at a node come from places this part of a piece apart. */
+static const double APART = 1.0 / 64.0;
+
+/* Where the feed limits the speed, the ratio of the joints' speeds to the tool's changes in a piece
+ * by no more than this; if that takes more pieces than there are, the square of it is tried, and so
+ * on until the power is above WIDE. */
+static const double UNEVEN = 1.02, WIDE = 300.0;
+
+/* A piece this short is not halved. [mm] */
+static const double LEAST = 1e-7;
+
+/* A place of the path with its derivatives by the way of the tool. */
+struct node {
+    double part;             /* 0..1 of the path */
+    double r[OPW_JOINTS];    /* [mm] */
+    double d[2][OPW_JOINTS]; /* [1] [1/mm] */
+};
+
+struct fit {
+    const struct tool_path *w;
+    const struct arm_geometry *g;
+    const struct joint_curve_limits *l;
+    double uneven;
+    struct segment *piece;
+    int32_t count;
+};
+
+int32_t joint_curve_line(const double from[OPW_JOINTS], const double to[OPW_JOINTS], double share,
+                         const double speed[OPW_JOINTS], struct segment *piece)
+{
+    double square = 0.0, feed = INFINITY;
+
+    *piece = (struct segment){ .kind = SEGMENT_LINE, .even = true };
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        piece->start[i] = JOINT_CURVE_LEVER * from[i];
+        piece->slope[i] = JOINT_CURVE_LEVER * (to[i] - from[i]);
+        square += piece->slope[i] * piece->slope[i];
+    }
+    piece->length = sqrt(square);
+    if (!(piece->length > LEAST)) {
+        return 0;
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        piece->slope[i] /= piece->length;
+        feed = el_min(feed, share * JOINT_CURVE_LEVER * speed[i] / fabs(piece->slope[i]));
+    }
+    piece->feed = piece->cap = feed;
+    return 1;
+}
+
+/* Joints [mm] at a part of the path; r[] holds those of a place nearby. */
+static bool place(const struct fit *f, double part, double r[OPW_JOINTS])
+{
+    double at[AXES], slope[AXES], q[OPW_JOINTS];
+
+    path_at(&f->w->path, part * f->w->path.length, at, slope);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        q[i] = r[i] / JOINT_CURVE_LEVER;
+    }
+    if (!arm_moves_kinematics().joints(f->g, at, q)) {
+        return false;
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        r[i] = JOINT_CURVE_LEVER * q[i];
+    }
+    return true;
+}
+
+/* Joints at a part of the path, by those at the step before and the one before that, which is NULL
+ * at first: where a joint is free it goes on evenly. */
+static bool step_on(const struct fit *f, double part, const double before[OPW_JOINTS],
+                    const double earlier[OPW_JOINTS], double r[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        r[i] = earlier ? 2.0 * before[i] - earlier[i] : before[i];
+    }
+    return place(f, part, r);
+}
+
+/* Set the derivatives of a node from five places around it, or to one side at an end of the path.
+ * The stencils are those of fourth and (bend, one side) third order. */
+static bool derive(const struct fit *f, double size, struct node *n)
+{
+    static const double middle[2][5] = {
+        { 1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0 },
+        { -1.0 / 12.0, 4.0 / 3.0, -2.5, 4.0 / 3.0, -1.0 / 12.0 },
+    };
+    static const double side[2][5] = {
+        { -25.0 / 12.0, 4.0, -3.0, 4.0 / 3.0, -0.25 },
+        { 35.0 / 12.0, -26.0 / 3.0, 9.5, -14.0 / 3.0, 11.0 / 12.0 },
+    };
+    const double step = size * APART;
+    const bool first = n->part - 2.0 * step < 0.0, last = n->part + 2.0 * step > 1.0;
+    const double h = last ? -step : step, mm = h * f->w->path.length;
+    const double(*s)[5] = first || last ? side : middle;
+    double r[OPW_JOINTS];
+
+    memset(n->d, 0, sizeof n->d);
+    for (int k = 0; k < 5; k++) {
+        const int at = first || last ? k : k - 2;
+        memcpy(r, n->r, sizeof r);
+        if (at != 0 && !place(f, n->part + at * h, r)) {
+            return false;
+        }
+        for (int i = 0; i < OPW_JOINTS; i++) { /* differences: small numbers are summed */
+            n->d[0][i] += s[0][k] * (r[i] - n->r[i]) / mm;
+            n->d[1][i] += s[1][k] * (r[i] - n->r[i]) / (mm * mm);
+        }
+    }
+    return true;
+}
+
+static double size_of(const double d[OPW_JOINTS])
+{
+    double square = 0.0;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        square += d[i] * d[i];
+    }
+    return sqrt(square);
+}
+
+/* The quintic with r, r' and r'' of both ends. */
+static void hermite(double a[3][OPW_JOINTS], double b[3][OPW_JOINTS], double length,
+                    struct segment *p)
+{
+    const double fifth = length / 5.0, second = length * length / 20.0;
+
+    p->kind = SEGMENT_CURVE;
+    p->length = length;
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double chord = b[0][i] - a[0][i];
+        p->origin[i] = a[0][i];
+        p->control[0][i] = 0.0;
+        p->control[1][i] = fifth * a[1][i];
+        p->control[2][i] = 2.0 * fifth * a[1][i] + second * a[2][i];
+        p->control[3][i] = chord - 2.0 * fifth * b[1][i] + second * b[2][i];
+        p->control[4][i] = chord - fifth * b[1][i];
+        p->control[5][i] = chord;
+    }
+}
+
+/* r' and r'' by the length of the joints' way. */
+static void by_length(const struct node *n, double out[3][OPW_JOINTS])
+{
+    const double size = size_of(n->d[0]);
+    double along = 0.0;
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        along += n->d[0][i] * n->d[1][i];
+    }
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        const double slope = n->d[0][i] / size;
+        out[0][i] = n->r[i];
+        out[1][i] = slope;
+        out[2][i] = (n->d[1][i] - along / size * slope) / (size * size);
+    }
+}
+
+/* What the joints do along a piece, by a quintic over the way of the tool. */
+struct course {
+    double length[STEPS + 1]; /* [mm] of the joints' way up to each step */
+    double least, most;       /* joints' speed for a speed of 1 of the tool */
+    bool free;                /* the joints would let the tool have its feed somewhere */
+};
+
+/* Sums by Simpson. */
+static struct course course_of(const struct fit *f, const struct node *a, const struct node *b)
+{
+    const double mm = (b->part - a->part) * f->w->path.length, h = mm / (STEPS * SUMS);
+    double from[3][OPW_JOINTS], to[3][OPW_JOINTS], before = 0.0;
+    struct course c = { .least = INFINITY };
+    struct segment_state s;
+    struct segment p;
+
+    memcpy(from[0], a->r, sizeof from[0]);
+    memcpy(from[1], a->d, sizeof a->d);
+    memcpy(to[0], b->r, sizeof to[0]);
+    memcpy(to[1], b->d, sizeof b->d);
+    hermite(from, to, mm, &p);
+    for (int n = 0; n <= 2 * STEPS * SUMS; n++) {
+        segment_at(&p, el_min(mm, 0.5 * h * n), &s);
+        const double rate = size_of(s.slope);
+        const int step = (n + 2 * SUMS - 1) / (2 * SUMS);
+        bool free = true;
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            free = free && f->l->feed * fabs(s.slope[i]) <= JOINT_CURVE_LEVER * f->l->speed[i];
+        }
+        c.free = c.free || free;
+        c.least = el_min(c.least, rate);
+        c.most = el_max(c.most, rate);
+        if (n > 0) {
+            c.length[step] += h / 6.0 * (n % 2 == 0 ? before + rate : 4.0 * rate);
+        }
+        before = n % 2 == 0 ? rate : before;
+    }
+    for (int n = 1; n <= STEPS; n++) {
+        c.length[n] += c.length[n - 1];
+    }
+    return c;
+}
+
+/* Whether the joints are within what is allowed of the quintic at every step. */
+static bool near(const struct fit *f, const struct node *a, const struct node *b,
+                 const struct course *c, const struct segment *p)
+{
+    double r[STEPS][OPW_JOINTS];
+    struct segment_state s;
+    bool good = true;
+
+    memcpy(r[0], a->r, sizeof r[0]);
+    for (int n = 1; good && n < STEPS; n++) {
+        good = step_on(f, a->part + (b->part - a->part) * n / STEPS, r[n - 1],
+                       n > 1 ? r[n - 2] : NULL, r[n]);
+        segment_at(p, c->length[n], &s);
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            good = good && fabs(s.point[i] - r[n][i]) <= JOINT_CURVE_LEVER * f->l->off;
+        }
+    }
+    return good;
+}
+
+/* Joints at a part of the path, found by steps from a node before it. */
+static bool reach(const struct fit *f, const struct node *from, double part, struct node *n)
+{
+    double r[STEPS + 1][OPW_JOINTS];
+
+    n->part = part;
+    memcpy(r[0], from->r, sizeof r[0]);
+    for (int k = 1; k <= STEPS; k++) {
+        if (!step_on(f, from->part + (part - from->part) * k / STEPS, r[k - 1],
+                     k > 1 ? r[k - 2] : NULL, r[k])) {
+            return false;
+        }
+    }
+    memcpy(n->r, r[STEPS], sizeof n->r);
+    return derive(f, part - from->part, n);
+}
+
+/* Append the pieces between two nodes. */
+static bool between(struct fit *f, const struct node *a, const struct node *b)
+{
+    const double mm = (b->part - a->part) * f->w->path.length;
+    const struct course c = course_of(f, a, b);
+    struct segment p = { .even = true };
+    double from[3][OPW_JOINTS], to[3][OPW_JOINTS];
+    struct node middle;
+
+    by_length(a, from);
+    by_length(b, to);
+    hermite(from, to, c.length[STEPS], &p);
+    if (((!c.free || c.most <= f->uneven * c.least) && near(f, a, b, &c, &p)) || mm <= LEAST) {
+        p.feed = p.cap = f->l->feed * c.least;
+        if (f->count == JOINT_CURVE_PIECES) {
+            return false;
+        }
+        f->piece[f->count++] = p;
+        return true;
+    }
+    return reach(f, a, 0.5 * (a->part + b->part), &middle) && between(f, a, &middle)
+           && between(f, &middle, b);
+}
+
+int32_t joint_curve_path(const struct tool_path *w, const struct arm_geometry *g,
+                         const double start[OPW_JOINTS], const struct joint_curve_limits *l,
+                         struct segment piece[JOINT_CURVE_PIECES])
+{
+    for (double uneven = UNEVEN; uneven < WIDE; uneven *= uneven) {
+        struct fit f = { w, g, l, uneven, piece, 0 };
+        struct node a = { .part = 0.0 }, b;
+        bool good = true;
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            a.r[i] = JOINT_CURVE_LEVER * start[i];
+        }
+        good = derive(&f, w->segment[0].until, &a);
+        for (int32_t k = 0; good && k < w->count; k++) {
+            good = reach(&f, &a, w->segment[k].until, &b) && between(&f, &a, &b);
+            a = b;
+        }
+        if (good) {
+            return f.count;
+        }
+    }
+    return 0;
+}

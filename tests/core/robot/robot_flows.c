@@ -1,0 +1,345 @@
+/* Moves that flow, at random: joints, lines, circles, turns of the tool in a row, with zones and
+ * stops, given at once or late, with holds, overrides and aborts. In every cycle each joint keeps
+ * its speed, acceleration and jerk, and the tip is within the zone of the ways that were
+ * programmed, which are computed here by themselves.
+ *
+ *     robot_flows [first number]
+ */
+#include <stdlib.h>
+
+#include "robot_rig.h"
+
+enum { MOVES = 12, STEPS = 800, CYCLES = 600000, FAR = 8, STRIDE = 61 };
+
+static uint64_t seed;
+
+static double draw(double low, double high)
+{
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+static bool chance(double share)
+{
+    return draw(0.0, 1.0) < share;
+}
+
+/* The ways as programmed, as points of the tip, and the zone at the start of each; how many. */
+static double way[MOVES][STEPS + 1][3], zone_of[MOVES + 1];
+static int ways;
+
+/* Joints in every cycle so far. */
+static double q[CYCLES][OPW_JOINTS];
+static int cycles;
+
+static void tip(const struct robot_config *c, const double joint[OPW_JOINTS], double at[3])
+{
+    const struct pose p = manipulator_pose(&c->arm, joint);
+    memcpy(at, p.at, sizeof p.at);
+}
+
+static void cycle(const struct robot_config *c)
+{
+    robot_cycle(&robot, c);
+    CHECK(cycles < CYCLES);
+    if (cycles < CYCLES) {
+        memcpy(q[cycles++], robot.joint, sizeof q[0]);
+    }
+}
+
+static const double *at_cycle(int n)
+{
+    return q[n < 0 ? 0 : n < cycles ? n : cycles - 1];
+}
+
+/* Largest share of speed, acceleration, jerk. The third difference is over FAR cycles: a joint is
+ * known to some 1e-15 rad, which over one cycle would be 1e-3 rad/s^3. */
+static double most_taken(const struct robot_config *c)
+{
+    const double far = FAR * CYCLE;
+    double most = 0.0;
+
+    for (int n = 0; n < cycles + 3 * FAR; n++) {
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            const struct manipulator_joint *l = &c->arm.joint[i];
+            const double x = at_cycle(n)[i], before = at_cycle(n - 1)[i];
+            const double v = (x - before) / CYCLE;
+            const double a = (x - 2.0 * before + at_cycle(n - 2)[i]) / CYCLE / CYCLE;
+            const double j = (x - 3.0 * at_cycle(n - FAR)[i] + 3.0 * at_cycle(n - 2 * FAR)[i]
+                              - at_cycle(n - 3 * FAR)[i])
+                             / far / far / far;
+            most = fmax(most, fmax(fabs(v) / l->speed, fabs(a) / l->acc));
+            most = fmax(most, c->smooth > 0.0 ? fabs(j) * c->smooth / l->acc : 0.0);
+        }
+    }
+    return most;
+}
+
+/* Distance from a way. [mm] */
+static double off_way(const double at[3], const double (*w)[3])
+{
+    double least = INFINITY;
+
+    for (int k = 0; k < STEPS; k++) {
+        const double *a = w[k], *b = w[k + 1];
+        double ab = 0.0, dot = 0.0, off = 0.0;
+        for (int i = 0; i < 3; i++) {
+            ab += (b[i] - a[i]) * (b[i] - a[i]);
+            dot += (at[i] - a[i]) * (b[i] - a[i]);
+        }
+        const double part = ab > 0.0 ? fmin(1.0, fmax(0.0, dot / ab)) : 0.0;
+        for (int i = 0; i < 3; i++) {
+            off += (at[i] - a[i] - part * (b[i] - a[i])) * (at[i] - a[i] - part * (b[i] - a[i]));
+        }
+        least = fmin(least, off);
+    }
+    return sqrt(least);
+}
+
+/* Largest share of the zones; the ways' own chords are off by SAG. */
+static double most_off(const struct robot_config *c)
+{
+    static const double SAG = 5e-3;
+    double most = 0.0;
+
+    for (int n = 0; n < cycles; n += STRIDE) {
+        double at[3], off = INFINITY;
+        tip(c, q[n], at);
+        for (int m = 0; m < ways; m++) {
+            const double zone = fmax(zone_of[m], zone_of[m + 1]);
+            off = fmin(off, off_way(at, (const double(*)[3])way[m]) / (zone + SAG));
+        }
+        most = fmax(most, off);
+    }
+    return most;
+}
+
+static struct robot_move some_move(const struct robot_config *c, const double from[OPW_JOINTS])
+{
+    const struct pose start = manipulator_pose(&c->arm, from);
+    struct robot_move m = { .kind = (enum robot_kind)draw(0.0, 3.0), .share = draw(0.3, 1.0) };
+    const bool turns = chance(0.1);
+
+    m.feed = chance(0.5) ? draw(150.0, 2500.0) : 0.0;
+    m.zone = chance(0.2) ? 0.0 : chance(0.1) ? 500.0 : draw(0.2, 60.0);
+    m.part = chance(0.3) ? draw(0.01, 0.5) : 0.0;
+    m.target.branch = ROBOT_ANY_BRANCH;
+    m.target.pose = start;
+    const double by[3] = { draw(-0.5, 0.5), draw(-0.5, 0.5), draw(-0.5, 0.5) };
+    quaternion_by_vector(by, m.target.pose.turn);
+    quaternion_product(m.target.pose.turn, start.turn, m.target.pose.turn);
+    for (int i = 0; i < 3; i++) {
+        m.target.pose.at[i] += turns ? 0.0 : draw(-300.0, 300.0);
+        m.via[i] = start.at[i] + draw(-150.0, 150.0);
+    }
+    if (m.kind == ROBOT_JOINTS) {
+        m.target.by_joints = true;
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            const struct manipulator_joint *j = &c->arm.joint[i];
+            m.target.joint[i] = fmin(j->high, fmax(j->low, from[i] + draw(-0.6, 0.6)));
+        }
+    }
+    return m;
+}
+
+/* The points of the tip that a move programs: by straight joints, a straight line, or a circle
+ * through three points, as the sum of a start and two vectors across. */
+static void points_of(const struct robot_config *c, const struct robot_move *m,
+                      const double from[OPW_JOINTS], double (*w)[3])
+{
+    double a[3], middle[3], normal[3], sweep = 0.0, joint[OPW_JOINTS];
+
+    tip(c, from, a);
+    if (m->kind == ROBOT_CIRCLE) {
+        CHECK_EQ(path_tilted_by_point(a, m->via, m->target.pose.at, middle, normal, &sweep),
+                 PATH_OK);
+    }
+    for (int k = 0; k <= STEPS; k++) {
+        const double part = (double)k / STEPS;
+        for (int i = 0; i < OPW_JOINTS && m->kind == ROBOT_JOINTS; i++) {
+            joint[i] = from[i] + part * (m->target.joint[i] - from[i]);
+        }
+        if (m->kind == ROBOT_JOINTS) {
+            tip(c, joint, w[k]);
+            continue;
+        }
+        for (int i = 0; i < 3; i++) {
+            const int u = (i + 1) % 3, v = (i + 2) % 3;
+            const double r = a[i] - middle[i];
+            const double across = normal[u] * (a[v] - middle[v]) - normal[v] * (a[u] - middle[u]);
+            w[k][i] = m->kind == ROBOT_LINE
+                          ? a[i] + part * (m->target.pose.at[i] - a[i])
+                          : middle[i] + r * cos(part * sweep) + across * sin(part * sweep);
+        }
+    }
+}
+
+/* Holds, overrides and an abort, at random times; whether it is aborted. */
+static bool meddle(bool aborts)
+{
+    if (chance(2e-4)) {
+        robot_hold(&robot, true);
+    } else if (chance(2e-3)) {
+        robot_hold(&robot, false);
+    }
+    if (chance(2e-4)) {
+        robot_override(&robot, chance(0.2) ? 0.0 : draw(0.05, 1.0));
+    } else if (chance(1e-3)) {
+        robot_override(&robot, 1.0);
+    }
+    if (aborts && chance(3e-4)) {
+        robot_abort(&robot);
+        return true;
+    }
+    return false;
+}
+
+static struct robot_config flowing(double smooth)
+{
+    struct robot_config c = rig_config();
+    c.flow = true;
+    c.smooth = smooth;
+    return c;
+}
+
+/* Time of a move of joint 1 from rest to rest without a limit of jerk. [s] */
+static double ramps(const struct robot_config *c, double way)
+{
+    const double v = c->arm.joint[0].speed, a = c->arm.joint[0].acc;
+    return way > v * v / a ? way / v + v / a : 2.0 * sqrt(way / a);
+}
+
+struct outcome {
+    int moves, aborted;
+    double taken, off, time;
+};
+
+static struct outcome sequence(int32_t number)
+{
+    static const double SMOOTH[] = { 0.05, 0.05, 0.02, 0.0 };
+    struct robot_config c = flowing(0.0);
+    struct outcome o = { .time = 0.0 };
+    struct robot_refusal why;
+    double end[OPW_JOINTS];
+    bool aborted = false;
+
+    seed = (uint64_t)number * 2654435761u + 17u;
+    (void)draw(0.0, 1.0);
+    c.smooth = SMOOTH[(int)draw(0.0, 4.0)];
+    const bool meddles = chance(0.4), aborts = meddles && chance(0.5), late = chance(0.3);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        end[i] = 0.5 * draw(c.arm.joint[i].low, c.arm.joint[i].high);
+    }
+    robot_start(&robot, &c, end);
+    ways = cycles = 0;
+    memcpy(q[cycles++], end, sizeof end);
+    zone_of[0] = 0.0;
+    for (int tries = 0; ways < MOVES && tries < 3 * MOVES && !aborted; tries++) {
+        const struct robot_move m = some_move(&c, end);
+        if (robot_move(&robot, &c, &m, &why) == ROBOT_OK) {
+            points_of(&c, &m, end, way[ways]);
+            zone_of[++ways] = m.zone;
+            robot_end(&robot, end);
+        }
+        for (int n = late && chance(0.5) ? (int)draw(0.0, 8000.0) : 0; n > 0; n--) {
+            cycle(&c);
+            aborted = (meddles && meddle(aborts)) || aborted;
+        }
+    }
+    while (!robot_idle(&robot) && cycles < CYCLES) {
+        cycle(&c);
+        aborted = (meddles && meddle(aborts)) || aborted;
+    }
+    cycle(&c);
+    CHECK(!robot.lost);
+    for (int i = 0; i < OPW_JOINTS && !aborted; i++) {
+        CHECK_NEAR(robot.joint[i], end[i], 1e-9);
+    }
+    o.moves = ways;
+    o.aborted = aborted;
+    o.taken = most_taken(&c);
+    o.off = most_off(&c);
+    o.time = cycles * CYCLE;
+    if (!(o.taken <= 1.0 + 1e-6 && o.off <= 1.0)) {
+        printf("sequence %d: %.9f of a limit, %.6f of a zone, smooth %g\n", (int)number, o.taken,
+               o.off, c.smooth);
+    }
+    return o;
+}
+
+/* Two moves of joint 1, the second of which goes on as the first does, take the time of one; with a
+ * stop between them that of two. */
+static void straight_on(void)
+{
+    const struct robot_config c = flowing(0.0);
+    struct robot_refusal why;
+
+    for (int n = 0; n < 2; n++) {
+        struct robot_move m = { .kind = ROBOT_JOINTS, .share = 1.0, .zone = n == 0 ? 1.0 : 0.0 };
+        double time = 0.0;
+        robot_start(&robot, &c, (double[OPW_JOINTS]){ 0.0, 0.0, 0.0, 0.0, 1.0, 0.0 });
+        m.target.by_joints = true;
+        m.target.joint[4] = 1.0;
+        for (int k = 1; k <= 2; k++) {
+            m.target.joint[0] = 0.5 * k;
+            CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+        }
+        for (; !robot_idle(&robot); time += CYCLE) {
+            robot_cycle(&robot, &c);
+        }
+        CHECK_NEAR(robot.joint[0], 1.0, 1e-12);
+        CHECK_NEAR(time, n == 0 ? ramps(&c, 1.0) : 2.0 * ramps(&c, 0.5), 1e-3 * time + 2.0 * CYCLE);
+    }
+}
+
+/* A square corner of two lines leaves them as an arc of its radius does, and by no more than its
+ * part of the shorter one; the curve is off by so much where it is nearest to the corner. */
+static void radius(void)
+{
+    const struct robot_config c = flowing(0.02);
+    static const double from[] = { 900.0, 0.0, 800.0 }, abc[] = { 180.0, 0.0, 180.0 };
+    static const double to[2][3] = { { 1100.0, 0.0, 800.0 }, { 1100.0, 150.0, 800.0 } };
+    struct robot_refusal why;
+
+    for (int n = 0; n < 3; n++) {
+        const double r = n == 0 ? 30.0 : 20.0, part = n == 2 ? 0.1 : 0.0;
+        double off = 1e9;
+        rig_start(&c, from, abc);
+        for (int k = 0; k < 2; k++) {
+            struct robot_move m = rig_line(to[k], abc, 0.0);
+            m.zone = m.radius = k == 0 ? r : 0.0;
+            m.part = part;
+            CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+        }
+        while (!robot_idle(&robot)) {
+            robot_cycle(&robot, &c);
+            const double x = robot.pose.at[0] - 1100.0, y = robot.pose.at[1];
+            off = fmin(off, hypot(x, y));
+            CHECK(n < 2 || (x > -20.0 || fabs(y) < 1e-3));
+        }
+        /* on the bisector an arc is r (sqrt 2 - 1) from the corner */
+        CHECK(n == 2 ? off < 5.0 : fabs(off - r * (sqrt(2.0) - 1.0)) < 0.02 * r);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const int32_t first = argc > 2 ? atoi(argv[1]) : 0, number = argc > 2 ? atoi(argv[2]) : 24;
+    struct outcome all = { .time = 0.0 };
+
+    straight_on();
+    radius();
+    for (int32_t n = first; n < first + number; n += argc > 2 ? 1 : CHECK_EACH) {
+        const struct outcome o = sequence(n);
+        all.moves += o.moves;
+        all.aborted += o.aborted;
+        all.taken = fmax(all.taken, o.taken);
+        all.off = fmax(all.off, o.off);
+        all.time += o.time;
+    }
+    printf("%d moves, %.1f s, %d aborted: at most %.9f of a limit, %.6f of a zone\n", all.moves,
+           all.time, all.aborted, all.taken, all.off);
+    CHECK(all.taken <= 1.0 + 1e-6);
+    CHECK(all.off <= 1.0);
+    return check_result();
+}
