@@ -42,7 +42,7 @@ class AxesGeometry:
 
     @property
     def straight(self) -> Array:
-        """Joint angles at which all frames are parallel to the base."""
+        """Joint angles at which frames are parallel to the base [rad]."""
         return np.zeros(SIX)
 
     @property
@@ -56,7 +56,18 @@ class AxesGeometry:
         return [(placed(o), a) for o, a in zip(self.origins, self.axes, strict=True)]
 
     def frames(self, q: Array) -> list[Array]:
-        """Frames of the links, (..., 4, 4) each, by joint angles (..., 6) [rad]."""
+        """Where the links are.
+
+        Parameters
+        ----------
+        q : (..., 6) array_like
+            Joint angles [rad].
+
+        Returns
+        -------
+        list of (..., 4, 4) ndarray
+            Frame of each in the base [m].
+        """
         q = np.asarray(q, float)
         frame, found = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)), []
         for k, (origin, axis) in enumerate(zip(self.origins, self.axes, strict=True)):
@@ -67,7 +78,18 @@ class AxesGeometry:
         return found
 
     def jacobian(self, q: Array) -> Array:
-        """Velocity and angular velocity of the tip by joint speeds, (..., 6, 6)."""
+        """Velocity and angular velocity of the tip by joint speeds.
+
+        Parameters
+        ----------
+        q : (..., 6) array_like
+            Joint angles [rad].
+
+        Returns
+        -------
+        (..., 6, 6) ndarray
+            Rows of the velocity first [m/rad], [1].
+        """
         frames = self.frames(q)
         tip = (frames[-1] @ self.flange)[..., :3, 3]
         turns = [f[..., :3, :3] @ a for f, a in zip(frames, self.axes, strict=True)]
@@ -97,7 +119,16 @@ ArmGeometry = OpwGeometry | AxesGeometry
 
 
 def axes_geometry(arm: ArmDescription) -> AxesGeometry:
-    """Take the axes of an arm of six turning joints."""
+    """Take the axes of an arm of six turning joints.
+
+    Parameters
+    ----------
+    arm : ArmDescription
+
+    Returns
+    -------
+    AxesGeometry
+    """
     frames = arm.frames(np.zeros(SIX))
     places = np.array([np.zeros(3), *(f[:3, 3] for f in frames)])
     axes = np.array([f[:3, :3] @ j.axis for f, j in zip(frames, arm.joints, strict=True)])

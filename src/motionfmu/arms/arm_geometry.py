@@ -60,7 +60,7 @@ class OpwGeometry:
 
     @property
     def straight(self) -> Array:
-        """Joint angles at inner 0, where all frames are parallel to the base [rad]."""
+        """Joint angles at which frames are parallel to the base [rad]."""
         return np.asarray(self.signs) * np.asarray(self.offsets)
 
     @property
