@@ -1,6 +1,6 @@
 within MotionControl;
 partial model GearedArm
-  "Arm of six joints, which a class that extends it places: motors, gears, rigid links, pen on paper"
+  "Arm of six joints placed by the class that extends it: motors, gears, links, payload, pen"
   parameter Integer joint_sign[6](each min = -1, each max = 1) = {1, 1, 1, 1, 1, 1}
     "Inner angle = sign * joint angle - offset: 1 or -1";
   parameter Real joint_offset[6](each unit = "deg") = {0, 0, -90, 0, 0, 0}
