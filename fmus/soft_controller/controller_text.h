@@ -158,6 +158,19 @@ static int read_all_jobs(struct fmu *f, struct controller_blob *b, char **text)
                                               : 0;
 }
 
+/* Tell of the words of a job that have no effect here, of each where it stands first. */
+static void note_idle_words(struct fmu *f, const struct controller_blob *b)
+{
+    for (int i = 0; i < ROBOT_JOB_IDLE_WORDS; i++) {
+        const struct robot_job_mention *m = &b->job.idle[i];
+        if (m->line > 0) {
+            fmu_warn(f, "%s: line %d: note: no effect \"%s\", column %d", b->file[m->text],
+                     (int)m->line, robot_job_idle_name((enum robot_job_idle_word)i),
+                     (int)m->column);
+        }
+    }
+}
+
 static int read_jobs(struct fmu *f, struct controller_blob *b)
 {
     const char *job = f->s.v.job;
@@ -174,6 +187,9 @@ static int read_jobs(struct fmu *f, struct controller_blob *b)
                    : 0;
     }
     b->has_job = code == 0;
+    if (b->has_job) {
+        note_idle_words(f, b);
+    }
     return code;
 }
 

@@ -24,6 +24,7 @@ struct model {
     FMU_LIST(controller.robot.tool_path.segment, controller.robot.tool_path.count) \
     INTERPRETER_IN_USE(controller.orders.gcode) \
     FMU_LIST(controller.orders.job.frame, controller.orders.job.frames) \
+    FMU_LIST(controller.orders.job.changed, controller.orders.job.changes) \
     FMU_RING(controller.queue, controller.heads, controller.count, 0) \
     FMU_LIST(controller.taught, controller.taught_count)
 #include "fmi_model.h"

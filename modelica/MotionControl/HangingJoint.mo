@@ -25,10 +25,12 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
   final parameter Real c(unit = "1") = cos(angle) "Cosine of the angle";
   final parameter Real s(unit = "1") = sin(angle) "Sine of the angle";
   final parameter Real r[3,3](each unit = "1") = {
-    {axis[1]^2 + (1 - axis[1]^2)*c, -axis[3]*s, axis[2]*s},
-    {axis[3]*s, axis[2]^2 + (1 - axis[2]^2)*c, -axis[1]*s},
-    {-axis[2]*s, axis[1]*s, axis[3]^2 + (1 - axis[3]^2)*c}}
-    "From own axes to those before; the axis is one of the three";
+    {axis[1]^2 + (1 - axis[1]^2)*c, axis[1]*axis[2]*(1 - c) - axis[3]*s,
+      axis[1]*axis[3]*(1 - c) + axis[2]*s},
+    {axis[1]*axis[2]*(1 - c) + axis[3]*s, axis[2]^2 + (1 - axis[2]^2)*c,
+      axis[2]*axis[3]*(1 - c) - axis[1]*s},
+    {axis[1]*axis[3]*(1 - c) - axis[2]*s, axis[2]*axis[3]*(1 - c) + axis[1]*s,
+      axis[3]^2 + (1 - axis[3]^2)*c}} "From own axes to those before";
   final parameter Real up[3](each unit = "1") = {
     r[1,1]*up_before[1] + r[2,1]*up_before[2] + r[3,1]*up_before[3],
     r[1,2]*up_before[1] + r[2,2]*up_before[2] + r[3,2]*up_before[3],

@@ -20,8 +20,9 @@ from motionfmu.arm_machines import arm_machine, make_machine
 from motionfmu.arms import (
     ArmDescription,
     NoOpwGeometry,
+    OpwGeometry,
+    driven_geometry,
     mjcf_text,
-    opw_geometry,
     urdf_arm,
     urdf_text,
 )
@@ -56,13 +57,7 @@ def driven(arm: ArmDescription, file: Path, rng: np.random.Generator) -> None:
         made = make_machine(arm, Path(place) / "machine", file.name)
         machine = run.machine(made.folder)
         own = arm_machine(machine)
-        keys = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
-        solver = Kinematics(
-            **dict(zip(keys, made.geometry.lengths, strict=True)),
-            joint_sign=list(made.geometry.signs),
-            joint_offset=list(np.degrees(made.geometry.offsets)),
-            tool=made.values.groups["what controller and arm share"]["soft.tool"],
-        )
+        solver = Kinematics(**made.values.controller)
         q = np.degrees(rng.uniform(-3.0, 3.0, (STATES, 6)))
         branches = solver.inverse(solver.forward(q))
         there = ~np.isnan(branches).any(axis=-1)
@@ -95,12 +90,15 @@ def main() -> None:
         print(file.name)
         try:
             arm = checked(file, rng)
-            found = opw_geometry(arm)
+            found = driven_geometry(arm)
         except (InputError, NoOpwGeometry) as error:
             print(f"  {error}")
             continue
-        lengths = ", ".join(f"{1e3 * x:.4g}" for x in found.lengths)
-        print(f"  spherical wrist: {lengths} mm")
+        if isinstance(found, OpwGeometry):
+            lengths = ", ".join(f"{1e3 * x:.4g}" for x in found.lengths)
+            print(f"  spherical wrist: {lengths} mm")
+        else:
+            print(f"  by its axes: {found.why}")
         if options.run:
             driven(arm, file, rng)
 

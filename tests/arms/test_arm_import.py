@@ -142,13 +142,13 @@ def refused(*words: str | Path) -> str:
 
 def test_what_cannot_be_driven_is_named(tmp_path, folder):
     text = SMALL.read_text(encoding="utf-8")
-    file = tmp_path / "cobot.urdf"
-    beside = '<origin xyz="0.02 0 0.24"/>'
-    file.write_text(text.replace('<origin xyz="0 0 0.24"/>', beside), encoding="utf-8")
-    shown = refused("import", file, "-o", tmp_path / "cobot")
-    assert "cobot.urdf: small_arm is an arm of six joints; axes 4, 5, 6 do not meet" in shown
+    file = tmp_path / "slide.urdf"
+    slide = 'name="waist" type="prismatic"'
+    file.write_text(text.replace('name="waist" type="revolute"', slide), encoding="utf-8")
+    shown = refused("import", file, "-o", tmp_path / "slide")
+    assert "slide.urdf: small_arm is a chain of 6 joints (PRRRRR); missing: drives" in shown
     assert "it cannot be driven yet" in shown
-    assert not (tmp_path / "cobot").exists()
+    assert not (tmp_path / "slide").exists()
     assert "is there already" in refused("import", SMALL, "-o", folder)
     assert refused("import", SMALL, "--step", "1e-3") == "--stop and --step are for an SSP"
     assert refused("import", "some.ssp", "--tip", "flange") == "--tip is for a URDF"

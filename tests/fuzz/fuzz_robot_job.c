@@ -51,6 +51,22 @@ static void write_points(void)
     }
 }
 
+static enum robot_job_point_kind place_of(const struct robot_job_run *run, int32_t number)
+{
+    return robot_job_place(run, &program, &points, number)->kind;
+}
+
+static void check_move(const struct robot_job_request *r, const struct robot_job_run *run)
+{
+    const enum robot_job_point_kind kind = place_of(run, r->point);
+    HOLDS(kind != ROBOT_JOB_NO_POINT);
+    HOLDS(r->path != ROBOT_JOB_CIRCLE || place_of(run, r->via) != ROBOT_JOB_NO_POINT);
+    HOLDS(r->increment == ROBOT_JOB_NOT_BY
+          || (kind == ROBOT_JOB_POSE && r->increment >= ROBOT_JOB_BY_TOOL
+              && r->increment < ROBOT_JOB_FRAMES && r->shift < 0));
+    HOLDS(r->until >= -1 && r->until < ROBOT_JOB_SIGNALS);
+}
+
 /* What may be asked for. */
 static void check_request(const struct robot_job_request *r, const struct robot_job_run *run,
                           int64_t moves)
@@ -62,10 +78,7 @@ static void check_request(const struct robot_job_request *r, const struct robot_
                   || r->answer == ROBOT_JOB_FAULT)));
     HOLDS(run->moves == moves + (r->answer == ROBOT_JOB_MOVE));
     if (r->answer == ROBOT_JOB_MOVE) {
-        HOLDS(robot_job_point(&program, &points, r->point)->kind != ROBOT_JOB_NO_POINT);
-        HOLDS(r->path != ROBOT_JOB_CIRCLE
-              || robot_job_point(&program, &points, r->via)->kind != ROBOT_JOB_NO_POINT);
-        HOLDS(r->shift < 0 || robot_job_point(&program, &points, r->shift)->kind == ROBOT_JOB_POSE);
+        check_move(r, run);
         HOLDS(points.user[r->shift_user].defined);
         HOLDS((r->tag == ROBOT_JOB_VJ) == (r->path == ROBOT_JOB_JOINT) && r->speed > 0.0);
         HOLDS(r->level >= 0 && r->level <= ROBOT_JOB_LEVELS && r->corner >= 0.0);
@@ -86,7 +99,8 @@ static void check_request(const struct robot_job_request *r, const struct robot_
 static void run_program(const uint8_t *data, size_t size)
 {
     static struct robot_job_run kept;
-    struct robot_job_inputs in = { 0 };
+    struct robot_job_inputs in = { .here = { { .kind = ROBOT_JOB_PULSES },
+                                             { .kind = ROBOT_JOB_POSE } } };
     const struct robot_job_start start = { .vj = 10.0, .v = 100.0, .vr = 20.0 };
     robot_job_begin(&kept, &program, &start);
     for (size_t n = 0; n < CALLS; n++) {
@@ -94,12 +108,15 @@ static void run_program(const uint8_t *data, size_t size)
         struct robot_job_request r;
         const int64_t moves = kept.moves;
         memcpy(&run, &kept, sizeof run);
+        const bool ends = kept.until && !kept.early && in.reached < moves;
         in.now += 100000;
         in.di = n % 7 ? in.di : data[n % size] * 0x01010101u;
         in.ai[n % ROBOT_JOB_ANALOGS] = data[n % size] / 12.5 - 10.0;
         in.reached = n % 3 ? in.reached : moves;
         robot_job_next(&run, &program, &points, &in, MOST, &r);
         check_request(&r, &run, moves);
+        HOLDS(!ends || in.reached >= moves || r.answer == ROBOT_JOB_REACH
+              || r.answer == ROBOT_JOB_FAULT);
         memcpy(&kept, &run, sizeof kept);
         if (r.answer == ROBOT_JOB_END || r.answer == ROBOT_JOB_FAULT) {
             break;

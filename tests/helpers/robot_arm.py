@@ -18,16 +18,18 @@ EXACT = {"lost_motion": 0.0, "transmission_error_1": 0.0, "transmission_error_2"
 
 
 @cache
-def arm() -> Ode:
-    """The Modelica class of the arm, flattened once."""
-    return causal.load(PACKAGE, "MotionControl.SixAxisArm")
+def arm(name: str = "SixAxisArm") -> Ode:
+    """A Modelica class of arms, flattened once."""
+    return causal.load(PACKAGE, f"MotionControl.{name}")
 
 
 class Arm:
     """The equation with some parameters changed, a value for a whole array or an array."""
 
+    class_name = "SixAxisArm"
+
     def __init__(self, **changed: Any) -> None:
-        self.ode = arm()
+        self.ode = arm(self.class_name)
         self.p = np.array(self.ode.p0)
         for name, value in changed.items():
             places = [k for k, d in enumerate(self.ode.parameters) if d.port == name]
@@ -77,12 +79,25 @@ class Arm:
         return one.mapaccum(steps)
 
 
+class ByAxes(Arm):
+    """The equation of an arm by its axes."""
+
+    class_name = "AxesArm"
+
+
+def axes_of(a: Arm) -> tuple[np.ndarray, np.ndarray]:
+    """Origins of the joints, each from the one before, and axes; frames as at inner 0."""
+    if isinstance(a, ByAxes):
+        axes = a.parameter("axis_direction")
+        axes = axes / np.linalg.norm(axes, axis=1)[:, None]
+        return a.parameter("axis_origin") + a.parameter("origin_error"), axes
+    c1, a1, b, c2, a2, c3, c4 = (float(a.parameter(n)) for n in "c1 a1 b c2 a2 c3 c4".split())
+    rows = [[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]]
+    return np.array(rows) + a.parameter("origin_error"), np.eye(3)[["xyz".index(n) for n in AXES]]
+
+
 def urdf(a: Arm) -> str:
     """The arm as a URDF, payload on the last link, frames as at inner 0."""
-    c1, a1, b, c2, a2, c3, c4 = (float(a.parameter(n)) for n in "c1 a1 b c2 a2 c3 c4".split())
-    origins = np.array(
-        [[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]]
-    ) + a.parameter("origin_error")
     kinds = ("mass", "center", "inertia", "product")
     rows = zip(*(a.parameter(n) for n in kinds), strict=True)
     bodies = [(f"l{k}", *row) for k, row in enumerate(rows, 1)]
@@ -91,9 +106,9 @@ def urdf(a: Arm) -> str:
     joints = "".join(
         f'<joint name="j{k + 1}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
         f'<origin xyz="{_numbers(o)}" rpy="0 0 0"/>'
-        f'<axis xyz="{_numbers(np.eye(3)["xyz".index(AXES[k])])}"/>'
+        f'<axis xyz="{_numbers(axis)}"/>'
         '<limit lower="-9" upper="9" effort="1e6" velocity="1e3"/></joint>'
-        for k, o in enumerate(origins)
+        for k, (o, axis) in enumerate(zip(*axes_of(a), strict=True))
     )
     fixed = (
         '<joint name="held" type="fixed"><parent link="l6"/><child link="load"/>'

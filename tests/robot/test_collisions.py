@@ -19,7 +19,7 @@ from motionfmu.analysis.collisions.clearance import FLOOR, distances
 from motionfmu.analysis.collisions.distances import between_segments, from_box
 from motionfmu.analysis.dry_run import dry_run
 from motionfmu.cli import app
-from motionfmu.virtual.robot import Kinematics, defaults
+from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot, defaults
 
 POSES = 1000
 CELL = """
@@ -229,3 +229,27 @@ def test_a_wrong_cell_is_told_with_its_line(tmp_path: Path, text: str, told: str
         read_cell(file)
     assert told in str(error.value)
     assert len(str(error.value).splitlines()) == 1
+
+
+def test_the_fold_is_refused_by_the_call_itself() -> None:
+    """With a cell moves by calls are looked at: the message names the links, nothing has moved."""
+    robot = VirtualRobot(cell=Cell())
+    with pytest.raises(RobotError, match="move_joints: base runs into link 3 at ") as told:
+        robot.move_joints([0, -155, 75, 0, 0, 0])
+    assert told.value.status == "COLLISION"
+    assert robot.read().move == 0
+    assert robot.move_joints([30, 10, -10, 0, 60, 0]) == 1
+    assert np.allclose(robot.run_until_stop().joint, [30, 10, -10, 0, 60, 0], atol=1e-2)
+    assert VirtualRobot().move_joints([0, -155, 75, 0, 0, 0]) == 1  # nobody looks
+
+
+def test_a_way_through_a_body_is_refused_though_both_ends_are_free() -> None:
+    """A post between two poses, with and without a clearance; the moves before it count."""
+    post = CellBody("post", bar=np.array([[1100.0, 0, 0], [1100, 0, 2000]]), radius=30.0)
+    robot = VirtualRobot(cell=Cell((post,)))
+    robot.move_joints([-40, 20, -20, 0, 80, 0])
+    with pytest.raises(RobotError, match="the post"):
+        robot.move_joints([40, 20, -20, 0, 80, 0])
+    robot.move_joints([-40, -40, 20, 0, 80, 0])
+    robot.move_joints([40, -40, 20, 0, 80, 0])
+    assert robot.run_until_stop().error == 0

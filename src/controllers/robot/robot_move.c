@@ -51,12 +51,11 @@ static int axis_of(const double v[3])
     return -1;
 }
 
-/* Numbers from 0 to ROBOT_MOST. */
 static bool all_from_0(const double *x, int n)
 {
-    bool good = all_sound(x, n);
+    bool good = true;
     for (int i = 0; i < n; i++) {
-        good = good && x[i] >= 0.0;
+        good = good && x[i] >= 0.0 && isfinite(x[i]);
     }
     return good;
 }

@@ -151,6 +151,9 @@ struct controller {
     int64_t delay;          /* [clocks] left of a delay */
     int64_t given, reached; /* moves given to the arm; moves that have reached their points */
     int64_t first;          /* number of moves given before the program began */
+    int64_t until_move;     /* number of the move that an input ends; 0: none does */
+    int32_t until;          /* that input, 1 or more */
+    bool until_on;
     int32_t move_line[CONTROLLER_MOVES]; /* line of move n at n mod CONTROLLER_MOVES */
     float move_feed[CONTROLLER_MOVES];   /* [mm/s] its feed as asked for; 0 of joints */
     int32_t output_count;

@@ -21,6 +21,7 @@ void controller_program_drop(struct controller *s)
     s->orders.on = false;
     s->program = controller_running(s) ? PROGRAM_DROPPED : s->program;
     s->heads = s->count = s->output_count = 0;
+    s->until_move = 0;
     s->next.kind = ORDER_NONE;
     s->delay = 0;
 }
@@ -107,6 +108,45 @@ static void settle_wrist(const struct manipulator *arm, const struct robot *r, i
     t->open &= ~OPW_FLIP;
 }
 
+/* Where the latest move ends, and a step from there: of the tool's frame, or of one in the base,
+ * about whose axes it turns. */
+static void step_from_end(const struct manipulator *arm, const struct robot *r,
+                          const struct order *order, struct robot_target *t)
+{
+    double joint[OPW_JOINTS], by[3], back[4];
+
+    robot_end(r, joint);
+    const struct pose end = manipulator_pose(arm, joint);
+    if (order->in_tool) {
+        t->pose = pose_product(&end, &order->step);
+        return;
+    }
+    t->pose = end;
+    quaternion_turn(order->frame.turn, order->step.at, by);
+    quaternion_inverse(order->frame.turn, back);
+    quaternion_product(back, end.turn, t->pose.turn);
+    quaternion_product(order->step.turn, t->pose.turn, t->pose.turn);
+    quaternion_product(order->frame.turn, t->pose.turn, t->pose.turn);
+    for (int i = 0; i < 3; i++) {
+        t->pose.at[i] += by[i];
+    }
+}
+
+/* End the move that an input ends, if it is under way or about to begin, and the input is as it has
+ * to be. */
+static void look_at_until(struct controller *s, uint32_t di, bool begins)
+{
+    if (s->until_move == 0 || s->reached >= s->until_move) {
+        s->until_move = 0;
+        return;
+    }
+    const bool on = di >> (s->until - 1) & 1u;
+    if (on == s->until_on && (begins || s->robot.line >= s->until_move)) {
+        robot_abort(&s->robot);
+        s->until_move = 0;
+    }
+}
+
 bool controller_program_move(struct controller *s, const struct controller_config *c,
                              struct order *order)
 {
@@ -124,6 +164,9 @@ bool controller_program_move(struct controller *s, const struct controller_confi
         for (int i = 0; i < 3; i++) {
             m.via[i] = via.at[i] + order->shift[i];
         }
+    }
+    if (order->goes_on) {
+        step_from_end(&arm, &s->robot, order, &m.target);
     }
     shift_target(&arm, &m.target, order->shift);
     if (order->wrist) {
@@ -156,14 +199,20 @@ bool controller_program_put(struct controller *s, const struct order *o)
 
 /* Give the arm a move of the program; in single steps the start key lets each one go. */
 static bool carry_out_move(struct controller *s, const struct controller_config *c,
-                           const struct controller_panel *panel, struct order *o)
+                           const struct controller_panel *panel, struct order *o, uint32_t di)
 {
-    const bool held = panel->single && !(robot_idle(&s->robot) && s->leave);
+    const bool idle = robot_idle(&s->robot), held = panel->single && !(idle && s->leave);
 
     if (held || !controller_program_move(s, c, o)) {
         return false;
     }
     s->leave = false;
+    if (o->until > 0 && s->trouble.error == CONTROLLER_OK) {
+        s->until_move = s->given;
+        s->until = o->until;
+        s->until_on = o->until_on;
+        look_at_until(s, di, idle);
+    }
     return true;
 }
 
@@ -180,12 +229,12 @@ static bool end(struct controller *s)
 
 /* Carry out an order. False: it cannot be done yet. */
 static bool carry_out(struct controller *s, const struct controller_config *c,
-                      const struct controller_panel *panel, struct order *o)
+                      const struct controller_panel *panel, struct order *o, uint32_t di)
 {
     const bool idle = robot_idle(&s->robot);
 
     switch (o->kind) {
-    case ORDER_MOVE:   return carry_out_move(s, c, panel, o);
+    case ORDER_MOVE:   return carry_out_move(s, c, panel, o, di);
     case ORDER_OUT:
     case ORDER_ANALOG: return controller_program_put(s, o);
     case ORDER_DELAY:  s->delay = idle ? llround(o->amount * FPGA_CLOCK_HZ) : 0; return idle;
@@ -256,13 +305,14 @@ int32_t controller_program_run(struct controller *s, const struct controller_con
 {
     int32_t done = 0;
 
+    look_at_until(s, in->di, false);
     s->delay -= s->delay > 0 ? c->slots * c->slot : 0;
     while (controller_running(s) && done < c->lines && s->delay <= 0) {
         if (s->next.kind == ORDER_NONE && !fetch(s, c, t, in)) {
             break;
         }
         const struct order order = { .kind = s->next.kind, .known = s->next.known };
-        if (!carry_out(s, c, panel, &s->next)) {
+        if (!carry_out(s, c, panel, &s->next, in->di)) {
             break;
         }
         done++;

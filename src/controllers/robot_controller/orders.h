@@ -54,13 +54,18 @@ struct order {
     struct robot_target via; /* where a circle passes */
     struct pose tool;        /* with which the move is made */
     double shift[3];         /* [mm] by which target and via are shifted in the base */
-    int32_t wrist;           /* ROBOT_JOB_WRIST_NEAR, _FAR: it decides the branch of the wrist */
-    int32_t job;             /* number of the job it is from */
-    bool plain;              /* that tool is the one of the arm's parameters */
-    uint32_t mask, value;    /* digital outputs of the mask become those of the value */
-    double pulse;            /* [s] after which outputs that come on go off; 0: they stay */
-    int32_t index;           /* analog output, from 0 */
-    double amount;           /* [V] of an analog output, [s] of a delay */
+    bool goes_on;            /* the target is to be found: `step` from where the move before ends */
+    bool in_tool;            /* that counts in the tool's frame, not in `frame` */
+    struct pose step, frame; /* frame: in the base */
+    int32_t until;           /* input that ends the move, 1 or more; 0: none */
+    bool until_on;
+    int32_t wrist;        /* ROBOT_JOB_WRIST_NEAR, _FAR: it decides the branch of the wrist */
+    int32_t job;          /* number of the job it is from */
+    bool plain;           /* that tool is the one of the arm's parameters */
+    uint32_t mask, value; /* digital outputs of the mask become those of the value */
+    double pulse;         /* [s] after which outputs that come on go off; 0: they stay */
+    int32_t index;        /* analog output, from 0 */
+    double amount;        /* [V] of an analog output, [s] of a delay */
 };
 
 struct orders {

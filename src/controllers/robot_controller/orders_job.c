@@ -36,18 +36,18 @@ static void target_of(struct robot_target *t, const struct robot_job_point *p,
 }
 
 /* How far a shift goes in the base frame. */
-static void shift_of(double shift[3], const struct robot_job_point *p,
-                     const struct robot_job_frame *user)
+static void shift_of(double shift[3], const double by[3], const struct robot_job_frame *user)
 {
     struct pose frame = frame_pose(user);
     for (int i = 0; i < 3; i++) {
         frame.at[i] = 0.0;
     }
-    pose_point(&frame, p->value, shift);
+    pose_point(&frame, by, shift);
 }
 
-static void job_move(struct order *order, const struct orders_config *c,
-                     const struct orders_text *t, const struct robot_job_request *r)
+static void job_move(struct order *order, const struct robot_job_run *run,
+                     const struct orders_config *c, const struct orders_text *t,
+                     const struct robot_job_request *r)
 {
     struct robot_move *m = &order->move;
 
@@ -60,17 +60,26 @@ static void job_move(struct order *order, const struct orders_config *c,
     m->spin = r->tag == ROBOT_JOB_VR ? r->speed * DEGREE : 0.0;
     m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
     m->radius = r->corner;
-    const struct robot_job_point *p = robot_job_point(t->job, t->points, r->point);
-    target_of(&m->target, p, &t->points->user[r->user], c->pulses);
-    order->wrist = p->wrist >= ROBOT_JOB_WRIST_NEAR ? p->wrist : 0;
+    order->until = r->until + 1;
+    order->until_on = r->until_on;
+    const struct robot_job_point *p = robot_job_place(run, t->job, t->points, r->point);
+    if (r->increment == ROBOT_JOB_NOT_BY) {
+        target_of(&m->target, p, &t->points->user[r->user], c->pulses);
+        order->wrist = p->wrist >= ROBOT_JOB_WRIST_NEAR ? p->wrist : 0;
+    } else {
+        m->target.branch = ROBOT_ANY_BRANCH;
+        order->goes_on = true;
+        order->in_tool = r->increment == ROBOT_JOB_BY_TOOL;
+        order->step = pose_of(p->value, p->value + 3);
+        order->frame = frame_pose(&t->points->user[order->in_tool ? 0 : r->increment]);
+    }
     if (r->shift >= 0) {
-        shift_of(order->shift, robot_job_point(t->job, t->points, r->shift),
-                 &t->points->user[r->shift_user]);
+        shift_of(order->shift, r->shift_by, &t->points->user[r->shift_user]);
     }
     order->plain = r->tool == 0;
     order->tool = frame_pose(&t->points->tool[r->tool]);
     if (m->kind == ROBOT_CIRCLE) {
-        target_of(&order->via, robot_job_point(t->job, t->points, r->via),
+        target_of(&order->via, robot_job_place(run, t->job, t->points, r->via),
                   &t->points->user[r->user], c->pulses);
     }
 }
@@ -88,7 +97,7 @@ void orders_job_next(struct orders *o, const struct orders_config *c, const stru
     switch (r.answer) {
     case ROBOT_JOB_MOVE:
         order->kind = ORDER_MOVE;
-        job_move(order, c, t, &r);
+        job_move(order, &o->job, c, t, &r);
         break;
     case ROBOT_JOB_DOUT:
         order->kind = ORDER_OUT;

@@ -15,7 +15,9 @@ static int end_job(struct robot_job_reading *in)
     if (robot_job_move_arc_over(in) || robot_job_block_all_closed(in)) {
         return -1;
     }
-    return in->end_line > 0 || robot_job_reading_add(in, ROBOT_JOB_OP_RET) ? 0 : -1;
+    return in->end_line > 0 || robot_job_reading_add(in, ROBOT_JOB_OP_RET)
+               ? 0
+               : robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_TOO_MANY, in->last_at);
 }
 
 static int begin_job(struct robot_job_reading *in, const char *name, int32_t length)
@@ -167,6 +169,10 @@ static int find_labels(struct robot_job_reading *in)
 void robot_job_begin_reading(struct robot_job_program *p)
 {
     p->count = p->jobs = p->labels = p->callees = p->positions = p->terms = p->texts = 0;
+    memset(p->wanted, 0, sizeof p->wanted);
+    memset(p->changed, 0, sizeof p->changed);
+    memset(p->idle, 0, sizeof p->idle);
+    p->changes_any = false;
 }
 
 /* Read one line. */
@@ -183,6 +189,7 @@ static int read_line(struct robot_job_reading *in)
         status = robot_job_positions_line(in);
     }
     in->last = in->s.line;
+    in->last_at = (struct robot_job_span){ in->s.begin, in->s.end - in->s.begin };
     return status == 0 ? robot_job_words(in) : status < 0 ? -1 : 0;
 }
 
@@ -190,12 +197,12 @@ int robot_job_read_text(struct robot_job_program *p, const struct robot_job_poin
                         const char *text, int64_t length, struct robot_job_report *r)
 {
     struct robot_job_reading in = { .p = p, .points = points, .first = p->count, .jobs = p->jobs };
-    int status;
+    int status = robot_job_scan_begin(&in.s, text, length, r);
 
-    if (robot_job_scan_begin(&in.s, text, length, r)) {
+    r->text = p->texts;
+    if (status) {
         return -1;
     }
-    r->text = p->texts;
     while ((status = robot_job_scan_line(&in.s)) > 0) {
         if (read_line(&in)) {
             return -1;
@@ -224,9 +231,40 @@ bool robot_job_wanted(const struct robot_job_program *p, int32_t callee)
     return job_called(p, callee) < 0;
 }
 
+/* Positions that instructions want must be in a file, or set by the program. */
+static int find_wanted(const struct robot_job_program *p, struct robot_job_report *r)
+{
+    const struct robot_job_mention *first = NULL;
+    for (int32_t i = 0; i < ROBOT_JOB_POINTS && !p->changes_any; i++) {
+        const struct robot_job_mention *m = &p->wanted[i];
+        bool found = m->line == 0 || p->changed[i];
+        for (int32_t k = 0; k < p->positions && !found; k++) {
+            found = p->position[k].job < 0 && p->position[k].number == i;
+        }
+        if (!found
+            && (!first || m->text < first->text
+                || (m->text == first->text && m->offset < first->offset))) {
+            first = m;
+        }
+    }
+    if (!first) {
+        return 0;
+    }
+    *r = (struct robot_job_report){ .fault = ROBOT_JOB_BAD_POINT,
+                                    .line = first->line,
+                                    .column = first->column,
+                                    .offset = first->offset,
+                                    .length = first->length,
+                                    .text = first->text };
+    return -1;
+}
+
 int robot_job_end_reading(struct robot_job_program *p, struct robot_job_report *r)
 {
     *r = (struct robot_job_report){ .fault = ROBOT_JOB_OK };
+    if (find_wanted(p, r)) {
+        return -1;
+    }
     for (int32_t i = 0; i < p->count; i++) {
         struct robot_job_instruction *c = &p->instruction[i];
         if (c->level != 1 || (c->op != ROBOT_JOB_OP_JUMP && c->op != ROBOT_JOB_OP_CALL)) {

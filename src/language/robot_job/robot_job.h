@@ -24,6 +24,7 @@ enum {
     ROBOT_JOB_ARGUMENTS = 8,     /* of a call */
     ROBOT_JOB_SIGNALS = 32,      /* IN#(1) .. IN#(32), OT#(1) .. OT#(32) */
     ROBOT_JOB_GROUP = 8,         /* signals of IG#(n), OG#(n) */
+    ROBOT_JOB_CHANGED = 128,     /* positions that a program may change while it runs */
     ROBOT_JOB_ANALOGS = 8,       /* AI#(1) .. AI#(8), AO#(1) .. AO#(8) */
     ROBOT_JOB_LEVELS = 8         /* PL=0 .. PL=8 */
 };
@@ -51,9 +52,17 @@ enum robot_job_operand_kind {
     ROBOT_JOB_LR
 };
 
+/* The variable of whole numbers that says which element is meant, as in B[I000]; NOTHING: the
+ * number that stands there. */
+struct robot_job_by {
+    enum robot_job_operand_kind kind;
+    int32_t index;
+};
+
 struct robot_job_operand {
     enum robot_job_operand_kind kind;
     int32_t index;
+    struct robot_job_by by;
     double number; /* value of a CONSTANT: ON is 1, OFF 0 */
 };
 
@@ -91,6 +100,12 @@ enum robot_job_op {
     ROBOT_JOB_OP_PULSE,
     ROBOT_JOB_OP_SHIFT,
     ROBOT_JOB_OP_GETARG,
+    ROBOT_JOB_OP_PLACE_SET,
+    ROBOT_JOB_OP_PLACE_ADD,
+    ROBOT_JOB_OP_PLACE_SUB,
+    ROBOT_JOB_OP_SETE,
+    ROBOT_JOB_OP_GETE,
+    ROBOT_JOB_OP_GETS,
     ROBOT_JOB_OP_SET,
     ROBOT_JOB_OP_ADD,
     ROBOT_JOB_OP_SUB,
@@ -109,24 +124,35 @@ enum robot_job_op {
     ROBOT_JOB_OP_NOP
 };
 
+/* The frame in which a move goes on by a position from where the move before ends, as IMOV does: a
+ * user frame, 0 the base, or one of these. */
+enum { ROBOT_JOB_NOT_BY = -2, ROBOT_JOB_BY_TOOL = -1 };
+
 /* One instruction. Its condition decides whether it is done; for WAIT, whether the wait is over;
  * for UNLESS (the beginning of IF, ELSEIF, WHILE, FOR, CASE), whether it does not jump. */
 struct robot_job_instruction {
     enum robot_job_op op;
     int32_t line;
     enum robot_job_relation relation;
-    struct robot_job_operand left, right; /* compared; in SET .. DIV what changes, and by what */
+    struct robot_job_operand left, right; /* compared; in SET .. DIV what changes, and by what; of a
+                                           * move right: its speed, if a variable says it */
     int32_t more, terms;                  /* further comparisons: place and number */
     bool any;                             /* one of them is enough */
     int32_t argument, arguments;          /* of CALL: place and number; of GETARG: number from 0 */
     bool early;  /* NWAIT: what follows a move need not wait until it is reached */
     int32_t to;  /* point; instruction; tool, user frame; level; signal, channel; -1: no shift */
-    int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth; of a shift: user frame */
+    int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth; of a shift: user frame; of SET, ADD,
+                  * SUB, GETE of positions: the other position */
+    struct robot_job_by to_by, via_by; /* of positions */
+    int32_t increment;                 /* of a move: its frame, or ROBOT_JOB_NOT_BY */
+    int32_t until;                     /* input that ends a move, from 0; -1: none */
+    bool until_on;                     /* by coming on, not by going off */
     enum robot_job_path path;
     enum robot_job_speed tag;
     int32_t inside; /* the LOOP it stands in, -1: none */
     double speed;   /* in the unit of the tag */
-    int32_t level;  /* PL; ROBOT_JOB_ANY: the level in force */
+    int32_t level;  /* PL; ROBOT_JOB_ANY: the level in force; of SETE, GETE: element from 0; of
+                     * GETS: 0 pulses, 1 a pose */
     double corner;  /* CR [mm]; 0: the level decides */
     int64_t time;   /* [ns] length of a TIMER or WAIT; -1: without end */
 };
@@ -151,6 +177,14 @@ struct robot_job_position {
     struct robot_job_point point;
 };
 
+/* Where something is said first; line 0: nowhere. */
+struct robot_job_mention {
+    int32_t text, line, column, offset, length;
+};
+
+/* Words that are read and have no effect, which is told once for each. */
+enum robot_job_idle_word { ROBOT_JOB_ACC, ROBOT_JOB_DEC, ROBOT_JOB_IDLE_WORDS };
+
 struct robot_job_label {
     int32_t offset, length; /* [byte] place of its name in the text */
     int32_t job, to, line;
@@ -164,7 +198,11 @@ struct robot_job_program {
     struct robot_job_label label[ROBOT_JOB_LABELS];
     struct robot_job_callee callee[ROBOT_JOB_CALLEES];
     struct robot_job_position position[ROBOT_JOB_POSITIONS];
-    struct robot_job_term term[ROBOT_JOB_TERMS]; /* of an argument: left */
+    struct robot_job_term term[ROBOT_JOB_TERMS];       /* of an argument: left */
+    struct robot_job_mention wanted[ROBOT_JOB_POINTS]; /* positions that no file has so far */
+    bool changed[ROBOT_JOB_POINTS];                    /* positions that the program sets */
+    bool changes_any;                                  /* one of them is P[..] of a variable */
+    struct robot_job_mention idle[ROBOT_JOB_IDLE_WORDS];
 };
 
 /* Read a program that may go to these points. -1: it is refused, the report says why, and *p is
@@ -184,6 +222,14 @@ int robot_job_end_reading(struct robot_job_program *p, struct robot_job_report *
 const struct robot_job_point *robot_job_point(const struct robot_job_program *p,
                                               const struct robot_job_points *points,
                                               int32_t number);
+
+/* Name of a word without effect. */
+const char *robot_job_idle_name(enum robot_job_idle_word w);
+
+/* Least and greatest speed of a tag, and what one of a variable counts, in its unit. */
+double robot_job_speed_low(enum robot_job_speed tag);
+double robot_job_speed_high(enum robot_job_speed tag);
+double robot_job_speed_unit(enum robot_job_speed tag);
 
 /* Least and greatest value of a variable of a kind: B, I, D; R takes anything finite. */
 double robot_job_low(enum robot_job_operand_kind kind);

@@ -251,7 +251,8 @@ int robot_job_block_next(struct robot_job_reading *in)
         return -1;
     }
     at.length = s->at - at.at;
-    if (add->left.kind != b->operand.kind || add->left.index != b->operand.index) {
+    if (add->left.kind != b->operand.kind || add->left.index != b->operand.index
+        || add->left.by.kind != b->operand.by.kind || add->left.by.index != b->operand.by.index) {
         s->r->other = b->line;
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_NEXT, at);
     }

@@ -63,6 +63,7 @@
     X(ROBOT_JOB_BAD_SHIFT, "a shift is a pose without a turn") \
     /* INFORM's, but not of this controller */ \
     X(ROBOT_JOB_BAD_LACKING, "INFORM that this controller lacks") \
+    X(ROBOT_JOB_BAD_ARC_UNTIL, "via and end with different UNTIL") \
     X(ROBOT_JOB_BAD_AXES, "six values wanted, as many as the arm has axes") \
     X(ROBOT_JOB_BAD_OTHER_AXES, "base or station axes, which the arm has not") \
     X(ROBOT_JOB_BAD_OTHER_ROBOT, "a move of another robot, and there is one") \
@@ -73,6 +74,15 @@
     /* while it runs */ \
     X(ROBOT_JOB_BAD_STACK, "CALL inside too many others") /* CALL deeper than ROBOT_JOB_CALLS */ \
     X(ROBOT_JOB_BAD_ARGUMENT, "an argument it was not called with") \
+    /* an element of B[..] P[..] that is none */ \
+    X(ROBOT_JOB_BAD_ELEMENT, "no such variable") \
+    X(ROBOT_JOB_BAD_UNSET, "a position that has no value yet") \
+    /* pulses or joints beside X Y Z */ \
+    X(ROBOT_JOB_BAD_PLACES, "positions of two kinds") \
+    /* SFTON, IMOV */ \
+    X(ROBOT_JOB_BAD_STEP, "a shift or increment of the wrong kind") \
+    /* more than ROBOT_JOB_CHANGED */ \
+    X(ROBOT_JOB_BAD_CHANGED, "more than 128 positions are changed") \
     X(ROBOT_JOB_BAD_ZERO_DIVISION, "division by zero") \
     /* a result outside the range of its variable or output */ \
     X(ROBOT_JOB_BAD_RANGE, "result out of range") \

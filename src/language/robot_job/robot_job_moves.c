@@ -7,51 +7,62 @@
 #define VR_MAX     1000.0  /* [deg/s] */
 #define VJ_MIN     0.01    /* [%] */
 #define VJ_MAX     100.0   /* [%] */
+#define SHARE_MIN  20.0    /* [%] of ACC and DEC, as in the maker's language */
+#define SHARE_MAX  100.0   /* [%] */
 #define CORNER_MIN 0.1     /* [mm] */
 #define CORNER_MAX 6553.5  /* [mm] as in the maker's language */
 
-/* Take VJ, V or VR and its value. 1: taken, 0: there is none. */
-static int speed_tag(struct robot_job_scan *s, struct robot_job_span w, enum robot_job_speed *tag,
-                     double *value)
+/* By enum robot_job_speed. */
+static const struct {
+    double low, high, unit;
+} SPEED[4] = {
+    { 0.0, 0.0, 0.0 }, { VJ_MIN, VJ_MAX, 0.01 }, { V_MIN, V_MAX, 0.1 }, { VR_MIN, VR_MAX, 0.1 }
+};
+
+double robot_job_speed_low(enum robot_job_speed tag)
 {
-    *tag = robot_job_scan_is(s, w, "VJ")   ? ROBOT_JOB_VJ
-           : robot_job_scan_is(s, w, "V")  ? ROBOT_JOB_V
-           : robot_job_scan_is(s, w, "VR") ? ROBOT_JOB_VR
-                                           : ROBOT_JOB_DEFAULT;
-    if (*tag == ROBOT_JOB_DEFAULT) {
+    return SPEED[tag].low;
+}
+
+double robot_job_speed_high(enum robot_job_speed tag)
+{
+    return SPEED[tag].high;
+}
+
+double robot_job_speed_unit(enum robot_job_speed tag)
+{
+    return SPEED[tag].unit;
+}
+
+const char *robot_job_idle_name(enum robot_job_idle_word w)
+{
+    return w == ROBOT_JOB_ACC ? "ACC" : "DEC";
+}
+
+/* Take VJ, V or VR and its value, a number or a variable, which is then c->right. 1: taken, 0:
+ * there is none. */
+static int speed_tag(struct robot_job_reading *in, struct robot_job_span w,
+                     struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    const enum robot_job_speed tag = robot_job_scan_is(s, w, "VJ")   ? ROBOT_JOB_VJ
+                                     : robot_job_scan_is(s, w, "V")  ? ROBOT_JOB_V
+                                     : robot_job_scan_is(s, w, "VR") ? ROBOT_JOB_VR
+                                                                     : ROBOT_JOB_DEFAULT;
+    if (tag == ROBOT_JOB_DEFAULT) {
         return 0;
     }
+    if (c->tag != ROBOT_JOB_DEFAULT) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+    }
+    c->tag = tag;
     if (!robot_job_scan_take(s, '=')) {
         return robot_job_scan_unexpected(s);
     }
-    const double low = *tag == ROBOT_JOB_VJ ? VJ_MIN : *tag == ROBOT_JOB_V ? V_MIN : VR_MIN;
-    const double high = *tag == ROBOT_JOB_VJ ? VJ_MAX : *tag == ROBOT_JOB_V ? V_MAX : VR_MAX;
-    return robot_job_scan_number(s, low, high, value) ? -1 : 1;
-}
-
-/* Take P and the number of a point that is in the points file or stands in a job, or C and that of
- * a position of this job. 1: taken, 0: something else stands here. */
-static int take_point(struct robot_job_reading *in, int32_t *point)
-{
-    struct robot_job_scan *s = &in->s;
-    robot_job_scan_over(s);
-    const int32_t at = s->at;
-    const struct robot_job_span w = robot_job_scan_word(s);
-    const struct robot_job_span letter = { w.at, 1 };
-    const bool own = robot_job_scan_is(s, letter, "C");
-    *point = robot_job_scan_digits(s, w);
-    if (*point < 0 || !(own || robot_job_scan_is(s, letter, "P"))) {
-        s->at = at;
-        return 0;
-    }
-    if (own) {
-        *point = robot_job_positions_find(in, 'C', *point);
-        return *point >= 0 ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_POSITION, w);
-    }
-    if (*point >= ROBOT_JOB_POINTS || in->points->point[*point].kind == ROBOT_JOB_NO_POINT) {
-        *point = robot_job_positions_find(in, 'P', *point);
-    }
-    return *point >= 0 ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT, w);
+    const int named = robot_job_operand_whole(in, &c->right);
+    return named                                                                  ? named
+           : robot_job_scan_number(s, SPEED[tag].low, SPEED[tag].high, &c->speed) ? -1
+                                                                                  : 1;
 }
 
 /* Whether a word is a position of axes outside the arm: BC00000, EC00000, BP000, EX000. */
@@ -63,25 +74,53 @@ static bool other_axes(const struct robot_job_scan *s, struct robot_job_span w)
                || robot_job_scan_is(s, two, "BP") || robot_job_scan_is(s, two, "EX"));
 }
 
-static int take_tag(struct robot_job_scan *s, struct robot_job_span w,
+/* Take ACC or DEC with its share [%], which nothing follows from here. 1: taken, 0: the word is
+ * none. */
+static int idle_tag(struct robot_job_reading *in, struct robot_job_span w)
+{
+    struct robot_job_scan *s = &in->s;
+    struct robot_job_operand share;
+    double value;
+    for (int i = 0; i < ROBOT_JOB_IDLE_WORDS; i++) {
+        struct robot_job_mention *m = &in->p->idle[i];
+        if (!robot_job_scan_is(s, w, robot_job_idle_name((enum robot_job_idle_word)i))) {
+            continue;
+        }
+        if (m->line == 0) {
+            *m = (struct robot_job_mention){ .text = in->p->texts,
+                                             .line = s->line,
+                                             .column = robot_job_scan_column(s, w.at),
+                                             .offset = w.at,
+                                             .length = w.length };
+        }
+        if (!robot_job_scan_take(s, '=')) {
+            return robot_job_scan_unexpected(s);
+        }
+        const int named = robot_job_operand_whole(in, &share);
+        return named ? named : robot_job_scan_number(s, SHARE_MIN, SHARE_MAX, &value) ? -1 : 1;
+    }
+    return 0;
+}
+
+/* CCN 18: a case for each tag. */
+static int take_tag(struct robot_job_reading *in, struct robot_job_span w,
                     struct robot_job_instruction *c)
 {
-    enum robot_job_speed tag;
-    double speed = 0.0;
-    const int status = speed_tag(s, w, &tag, &speed);
-    if (status < 0) {
-        return -1;
-    }
+    struct robot_job_scan *s = &in->s;
+    int status = speed_tag(in, w, c);
     if (status > 0) {
-        if (c->tag != ROBOT_JOB_DEFAULT) {
-            return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
-        }
-        c->tag = tag;
-        c->speed = speed;
         w.length = s->at - w.at;
         return (c->tag == ROBOT_JOB_VJ) == (c->path == ROBOT_JOB_JOINT)
                    ? 0
                    : robot_job_scan_fault(s, ROBOT_JOB_BAD_KIND, w);
+    }
+    status = status == 0 ? idle_tag(in, w) : status;
+    if (status != 0) {
+        return status < 0 ? -1 : 0;
+    }
+    if (robot_job_scan_is(s, w, "UNTIL")) {
+        return c->until >= 0 ? robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w)
+                             : robot_job_operand_until(in, c);
     }
     if (robot_job_scan_is(s, w, "NWAIT")) {
         if (c->early) {
@@ -108,11 +147,15 @@ static int take_tag(struct robot_job_scan *s, struct robot_job_span w,
                  : robot_job_scan_number(s, CORNER_MIN, CORNER_MAX, &c->corner);
 }
 
-static int same_frames(struct robot_job_reading *in, int32_t via, int32_t end)
+static int same_frames(struct robot_job_reading *in, const struct robot_job_instruction *c)
 {
-    const struct robot_job_point *a = robot_job_point(in->p, in->points, via),
-                                 *b = robot_job_point(in->p, in->points, end);
-    return a->tool == b->tool && a->user == b->user
+    if (c->to_by.kind != ROBOT_JOB_NOTHING || c->via_by.kind != ROBOT_JOB_NOTHING) {
+        return 0; /* nobody knows yet */
+    }
+    const struct robot_job_point *a = robot_job_point(in->p, in->points, c->via),
+                                 *b = robot_job_point(in->p, in->points, c->to);
+    return a->kind == ROBOT_JOB_NO_POINT || b->kind == ROBOT_JOB_NO_POINT
+                   || (a->tool == b->tool && a->user == b->user)
                ? 0
                : robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_FRAMES);
 }
@@ -126,6 +169,12 @@ int robot_job_move_arc_over(struct robot_job_reading *in)
         return robot_job_scan_fault(&in->s, ROBOT_JOB_BAD_ARC_POINTS, in->arc_at);
     }
     return 0;
+}
+
+static bool same_operand(const struct robot_job_operand *a, const struct robot_job_operand *b)
+{
+    return a->kind == b->kind && a->index == b->index && a->by.kind == b->by.kind
+           && a->by.index == b->by.index;
 }
 
 /* MOVC of one point: the first of three is a line, the second is kept, the third makes the arc. */
@@ -142,11 +191,17 @@ static int arc_point(struct robot_job_reading *in, struct robot_job_instruction 
         return 0;
     case 3:
         c->via = in->via.to;
-        if (c->tag != in->via.tag || c->speed != in->via.speed) {
+        c->via_by = in->via.to_by;
+        if (c->until != in->via.until || c->until_on != in->via.until_on) {
+            in->s.r->other = in->via.line;
+            return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_UNTIL);
+        }
+        if (c->tag != in->via.tag || c->speed != in->via.speed
+            || !same_operand(&c->right, &in->via.right)) {
             in->s.r->other = in->via.line;
             return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_SPEED);
         }
-        return same_frames(in, c->via, c->to);
+        return same_frames(in, c);
     default: return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_POINTS);
     }
 }
@@ -160,6 +215,9 @@ static int no_point(struct robot_job_reading *in)
     if (other_axes(s, w)) {
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_OTHER_AXES, w);
     }
+    if (w.length > 1 && robot_job_scan_is(s, (struct robot_job_span){ w.at, 2 }, "LP")) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, w);
+    }
     s->at = at;
     return robot_job_scan_unexpected(s);
 }
@@ -172,42 +230,103 @@ static bool another_move(const struct robot_job_scan *s)
            && s->text[s->at] == '+';
 }
 
-int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
+/* Take BF, RF or the number of UF#(1), 0 being the base. 1: taken, 0: the word is none. */
+static int base_or_user(struct robot_job_reading *in, struct robot_job_span at, int32_t *user)
 {
     struct robot_job_scan *s = &in->s;
-    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_MOVE);
-    int second = 0;
-    if (!c) {
+    if (robot_job_scan_is(s, at, "BF") || robot_job_scan_is(s, at, "RF")) {
+        *user = 0;
+        return 1;
+    }
+    if (!robot_job_scan_is(s, at, "UF")) {
+        return 0;
+    }
+    if (robot_job_operand_channel(in, ROBOT_JOB_FRAMES - 1, user)) {
         return -1;
     }
-    c->path = path;
-    const int status = take_point(in, &c->to);
-    if (status <= 0) {
-        return status < 0 ? -1 : no_point(in);
+    ++*user; /* user frames count from 1 here, 0 is the base */
+    at.length = s->at - at.at;
+    return in->points->user[*user].defined ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
+}
+
+/* Take the frame of an increment: TF as well. */
+static int frame_tag(struct robot_job_reading *in, struct robot_job_span w,
+                     struct robot_job_instruction *c)
+{
+    if (robot_job_scan_is(&in->s, w, "TF")) {
+        c->increment = ROBOT_JOB_BY_TOOL;
+        return 1;
     }
-    if (path == ROBOT_JOB_CIRCLE) {
-        int32_t end;
-        second = take_point(in, &end);
-        if (second < 0) {
-            return -1;
-        }
-        c->via = second ? c->to : 0;
-        c->to = second ? end : c->to;
-    }
+    return base_or_user(in, w, &c->increment);
+}
+
+/* Read the tags of a move to the end of its line. */
+static int tags(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
     while (!robot_job_scan_over(s)) {
         const struct robot_job_span w = robot_job_scan_word(s);
         if (w.length == 0) {
             return another_move(s) ? robot_job_scan_fault_line(s, ROBOT_JOB_BAD_OTHER_ROBOT)
                                    : robot_job_scan_unexpected(s);
         }
-        if (take_tag(s, w, c)) {
+        int status = 0;
+        if (c->increment != ROBOT_JOB_NOT_BY) {
+            status = frame_tag(in, w, c);
+        }
+        if (status < 0 || (status == 0 && take_tag(in, w, c))) {
             return -1;
         }
+    }
+    return 0;
+}
+
+int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
+{
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_MOVE);
+    int second = 0;
+    if (!c) {
+        return -1;
+    }
+    c->path = path;
+    const int status = robot_job_place_take(in, &c->to, &c->to_by);
+    if (status <= 0) {
+        return status < 0 ? -1 : no_point(in);
+    }
+    if (path == ROBOT_JOB_CIRCLE) {
+        int32_t end;
+        struct robot_job_by by;
+        second = robot_job_place_take(in, &end, &by);
+        if (second < 0) {
+            return -1;
+        }
+        if (second) {
+            c->via = c->to;
+            c->via_by = c->to_by;
+            c->to = end;
+            c->to_by = by;
+        }
+    }
+    if (tags(in, c)) {
+        return -1;
     }
     if (path == ROBOT_JOB_CIRCLE && !second) {
         return arc_point(in, c);
     }
-    return second ? same_frames(in, c->via, c->to) : 0;
+    return second ? same_frames(in, c) : 0;
+}
+
+/* Read IMOV P001 V=10.0 TF. */
+int robot_job_move_by(struct robot_job_reading *in)
+{
+    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_MOVE);
+    if (!c) {
+        return -1;
+    }
+    c->path = ROBOT_JOB_LINE;
+    c->increment = 0;
+    const int status = robot_job_place_take(in, &c->to, &c->to_by);
+    return status > 0 ? tags(in, c) : status < 0 ? -1 : no_point(in);
 }
 
 /* Read the frame of a shift, if there is one: BF, RF or UF#(1). */
@@ -217,22 +336,23 @@ static int shift_frame(struct robot_job_reading *in, struct robot_job_instructio
     if (robot_job_scan_over(s)) {
         return 0;
     }
-    struct robot_job_span at = robot_job_scan_word(s);
-    if (robot_job_scan_is(s, at, "BF") || robot_job_scan_is(s, at, "RF")) {
-        return 0;
+    const struct robot_job_span w = robot_job_scan_word(s);
+    const int status = base_or_user(in, w, &c->via);
+    if (status != 0) {
+        return status < 0 ? -1 : 0;
     }
-    if (!robot_job_scan_is(s, at, "UF")) {
-        s->at = at.length > 0 ? at.at : s->at;
-        return robot_job_scan_is(s, at, "TF") || robot_job_scan_is(s, at, "MTF")
-                   ? robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, at)
-                   : robot_job_scan_unexpected(s);
-    }
-    if (robot_job_operand_channel(in, ROBOT_JOB_FRAMES - 1, &c->via)) {
-        return -1;
-    }
-    c->via++; /* user frames count from 1 here, 0 is the base */
-    at.length = s->at - at.at;
-    return in->points->user[c->via].defined ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
+    s->at = w.length > 0 ? w.at : s->at;
+    return robot_job_scan_is(s, w, "TF") || robot_job_scan_is(s, w, "MTF")
+               ? robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, w)
+               : robot_job_scan_unexpected(s);
+}
+
+/* Whether the position of a line may be another one when the line is done, as far as is known. */
+static bool may_change(const struct robot_job_reading *in, const struct robot_job_instruction *c)
+{
+    return c->to_by.kind != ROBOT_JOB_NOTHING
+           || robot_job_point(in->p, in->points, c->to)->kind == ROBOT_JOB_NO_POINT
+           || (c->to < ROBOT_JOB_POINTS && in->p->changed[c->to]) || in->p->changes_any;
 }
 
 /* Read SFTON P001, SFTON P001 BF or RF, SFTON P001 UF#(1). */
@@ -245,11 +365,14 @@ int robot_job_move_shift(struct robot_job_reading *in)
     }
     robot_job_scan_over(s);
     struct robot_job_span at = { s->at, 0 };
-    const int status = take_point(in, &c->to);
+    const int status = robot_job_place_take(in, &c->to, &c->to_by);
     if (status <= 0) {
         return status < 0 ? -1 : robot_job_scan_unexpected(s);
     }
     at.length = s->at - at.at;
+    if (may_change(in, c)) {
+        return shift_frame(in, c); /* what it is shows where it is done */
+    }
     const struct robot_job_point *p = robot_job_point(in->p, in->points, c->to);
     if (p->kind != ROBOT_JOB_POSE || p->value[3] != 0.0 || p->value[4] != 0.0
         || p->value[5] != 0.0) {
@@ -269,7 +392,7 @@ int robot_job_move_speed(struct robot_job_reading *in)
         if (!c) {
             return -1;
         }
-        const int status = speed_tag(s, w, &c->tag, &c->speed);
+        const int status = speed_tag(in, w, c);
         if (status <= 0) {
             s->at = at;
             return status < 0 ? -1 : robot_job_scan_unexpected(s);

@@ -26,6 +26,29 @@ static enum robot_job_operand_kind variable(const struct robot_job_scan *s, stru
     return ROBOT_JOB_NOTHING;
 }
 
+int robot_job_operand_element(struct robot_job_reading *in, int32_t most, int32_t *index,
+                              struct robot_job_by *by)
+{
+    struct robot_job_scan *s = &in->s;
+    *by = (struct robot_job_by){ ROBOT_JOB_NOTHING, 0 };
+    if (s->at >= s->end || s->text[s->at] != '[') {
+        return 0;
+    }
+    s->at++;
+    struct robot_job_operand o = { .kind = ROBOT_JOB_NOTHING };
+    const int which = robot_job_operand_whole(in, &o);
+    if (which < 0 || (which == 0 && robot_job_scan_whole(s, 0, most - 1, index))) {
+        return -1;
+    }
+    if (which > 0 && o.by.kind != ROBOT_JOB_NOTHING) { /* an element of an element */
+        return robot_job_scan_unexpected(s);
+    }
+    if (which > 0) {
+        *by = (struct robot_job_by){ o.kind, o.index };
+    }
+    return robot_job_scan_take(s, ']') ? 1 : robot_job_scan_unexpected(s);
+}
+
 int robot_job_operand_channel(struct robot_job_reading *in, int32_t most, int32_t *index)
 {
     struct robot_job_scan *s = &in->s;
@@ -50,6 +73,27 @@ static bool is_lacking(const struct robot_job_scan *s, struct robot_job_span w)
                && robot_job_scan_is(s, (struct robot_job_span){ rest.at, 1 }, "P"));
 }
 
+/* Read an element of the variables of a kind, B[3] or LD[I000]: 1, 0 if the word is none, or -1. */
+static int array(struct robot_job_reading *in, struct robot_job_span w, struct robot_job_operand *o)
+{
+    struct robot_job_scan *s = &in->s;
+    static const char LETTERS[] = "BIDR";
+    const bool local =
+        w.length == 2 && robot_job_scan_is(s, (struct robot_job_span){ w.at, 1 }, "L");
+    if (w.length != 1 + local || s->at >= s->end || s->text[s->at] != '[') {
+        return 0;
+    }
+    for (int32_t i = 0; i < 4; i++) {
+        const char letter[2] = { LETTERS[i], '\0' };
+        if (robot_job_scan_is(s, (struct robot_job_span){ w.at + local, 1 }, letter)) {
+            o->kind = (enum robot_job_operand_kind)((local ? ROBOT_JOB_LB : ROBOT_JOB_B) + i);
+            return robot_job_operand_element(in, local ? ROBOT_JOB_LOCALS : ROBOT_JOB_VARIABLES,
+                                             &o->index, &o->by);
+        }
+    }
+    return 0;
+}
+
 /* Read a word that is a signal, an analog input or a variable. */
 static int named(struct robot_job_reading *in, struct robot_job_span w, struct robot_job_operand *o)
 {
@@ -65,6 +109,10 @@ static int named(struct robot_job_reading *in, struct robot_job_span w, struct r
     if (robot_job_scan_is(s, w, "AI")) {
         o->kind = ROBOT_JOB_AI;
         return robot_job_operand_channel(in, ROBOT_JOB_ANALOGS, &o->index);
+    }
+    const int element = array(in, w, o);
+    if (element != 0) {
+        return element < 0 ? -1 : 0;
     }
     o->kind = variable(s, w, &o->index);
     if (o->kind == ROBOT_JOB_NOTHING) {
@@ -99,6 +147,16 @@ int robot_job_operand(struct robot_job_reading *in, uint32_t kinds, struct robot
         return -1;
     }
     return kinds & 1u << o->kind ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_KIND, w);
+}
+
+int robot_job_operand_whole(struct robot_job_reading *in, struct robot_job_operand *o)
+{
+    struct robot_job_scan *s = &in->s;
+    robot_job_scan_over(s);
+    const int32_t at = s->at;
+    const bool named = robot_job_scan_word(s).length > 0;
+    s->at = at;
+    return named ? (robot_job_operand(in, ROBOT_JOB_WHOLES, o) ? -1 : 1) : 0;
 }
 
 static enum robot_job_relation relation(struct robot_job_scan *s)
@@ -156,6 +214,24 @@ static int comparison(struct robot_job_reading *in, struct robot_job_term *c)
     return c->left.kind == ROBOT_JOB_IN || c->left.kind == ROBOT_JOB_OT
                ? on_or_off(in, c)
                : robot_job_operand(in, RIGHT, &c->right);
+}
+
+int robot_job_operand_until(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_term t = { .relation = ROBOT_JOB_ALWAYS };
+    if (robot_job_operand(in, 1u << ROBOT_JOB_IN, &t.left)) {
+        return -1;
+    }
+    if (!robot_job_scan_take(&in->s, '=')) {
+        return robot_job_scan_unexpected(&in->s);
+    }
+    t.relation = ROBOT_JOB_EQUAL;
+    if (on_or_off(in, &t)) {
+        return -1;
+    }
+    c->until = t.left.index;
+    c->until_on = t.right.number != 0.0;
+    return 0;
 }
 
 int robot_job_operand_keep(struct robot_job_reading *in, const struct robot_job_term *t)

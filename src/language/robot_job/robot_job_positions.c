@@ -4,6 +4,7 @@
 #define PULSES_MAX 1e9      /* [pulses] */
 #define PLACE_MAX  100000.0 /* [mm] */
 #define ANGLE_MAX  360.0    /* [deg] */
+#define JOINT_MAX  3600.0   /* [deg] */
 
 enum { AXES = 6, ROBOT_OF_ALL = -1 };
 
@@ -29,18 +30,20 @@ static int take_frame(struct robot_job_reading *in, const struct robot_job_frame
     return frames[*number].defined ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
 }
 
-/* ///POSTYPE PULSE, BASE, ROBOT or USER. */
+/* ///POSTYPE PULSE, BASE, ROBOT or USER; JOINT, which no pendant writes: degrees of the joints. */
 static int take_type(struct robot_job_reading *in)
 {
     struct robot_job_scan *s = &in->s;
     robot_job_scan_over(s);
     const struct robot_job_span w = robot_job_scan_word(s);
-    in->kind = robot_job_scan_is(s, w, "PULSE") ? ROBOT_JOB_PULSES : ROBOT_JOB_POSE;
+    in->kind = robot_job_scan_is(s, w, "PULSE")   ? ROBOT_JOB_PULSES
+               : robot_job_scan_is(s, w, "JOINT") ? ROBOT_JOB_JOINTS
+                                                  : ROBOT_JOB_POSE;
     in->in_user = robot_job_scan_is(s, w, "USER");
     if (w.length == 0) {
         return robot_job_scan_unexpected(s);
     }
-    return in->kind == ROBOT_JOB_PULSES || in->in_user || robot_job_scan_is(s, w, "BASE")
+    return in->kind != ROBOT_JOB_POSE || in->in_user || robot_job_scan_is(s, w, "BASE")
                    || robot_job_scan_is(s, w, "ROBOT")
                ? 0
                : robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, w);
@@ -120,9 +123,10 @@ static int take_values(struct robot_job_reading *in, struct robot_job_point *p)
 {
     struct robot_job_scan *s = &in->s;
     for (int i = 0; i < AXES; i++) {
-        const double most = in->kind == ROBOT_JOB_PULSES ? PULSES_MAX
-                            : i < 3                      ? PLACE_MAX
-                                                         : ANGLE_MAX;
+        const double most = in->kind == ROBOT_JOB_PULSES   ? PULSES_MAX
+                            : in->kind == ROBOT_JOB_JOINTS ? JOINT_MAX
+                            : i < 3                        ? PLACE_MAX
+                                                           : ANGLE_MAX;
         if (i > 0 && !robot_job_scan_take(s, ',')) {
             return robot_job_scan_fault_line(s, ROBOT_JOB_BAD_AXES);
         }
@@ -191,7 +195,7 @@ int robot_job_positions_line(struct robot_job_reading *in)
     q.point.kind = in->kind;
     q.point.line = s->line;
     q.point.user = in->kind == ROBOT_JOB_POSE && !in->in_user ? 0 : q.point.user;
-    if (in->kind == ROBOT_JOB_PULSES) {
+    if (in->kind != ROBOT_JOB_POSE) {
         q.point.shoulder = q.point.elbow = q.point.wrist = ROBOT_JOB_ANY;
         q.point.turn[0] = q.point.turn[1] = q.point.turn[2] = ROBOT_JOB_ANY_TURN;
     }

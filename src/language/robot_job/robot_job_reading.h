@@ -37,6 +37,7 @@ struct robot_job_reading {
     int32_t blocks;
     int32_t end_line; /* of END of this job, or 0 */
     int32_t last;     /* latest line of this job so far */
+    struct robot_job_span last_at;
     int32_t arc;      /* number of MOVC of one point in a row so far: 0 .. 3 */
     int32_t arc_line; /* line of the latest of them */
     struct robot_job_span arc_at;
@@ -66,6 +67,14 @@ enum {
  * allowed. */
 int robot_job_operand(struct robot_job_reading *in, uint32_t kinds, struct robot_job_operand *o);
 
+/* Read [n] or [variable] behind the letter of an array of `most` elements, if it stands here: 1, 0
+ * or -1. */
+int robot_job_operand_element(struct robot_job_reading *in, int32_t most, int32_t *index,
+                              struct robot_job_by *by);
+
+/* Read IN#(n)=ON or OFF behind UNTIL. */
+int robot_job_operand_until(struct robot_job_reading *in, struct robot_job_instruction *c);
+
 /* Read #(n) behind a name; *index is n - 1. */
 int robot_job_operand_channel(struct robot_job_reading *in, int32_t most, int32_t *index);
 
@@ -77,6 +86,9 @@ int robot_job_operand_if(struct robot_job_reading *in, struct robot_job_instruct
 
 /* Read T= and a time [s]. */
 int robot_job_operand_time(struct robot_job_reading *in, struct robot_job_instruction *c);
+
+/* Read a variable of whole numbers, if a letter stands here: 1, 0 or -1. */
+int robot_job_operand_whole(struct robot_job_reading *in, struct robot_job_operand *o);
 
 /* Keep the comparison `t` for a condition or the argument of a call; -1: there are too many. */
 int robot_job_operand_keep(struct robot_job_reading *in, const struct robot_job_term *t);
@@ -90,11 +102,21 @@ int robot_job_positions_line(struct robot_job_reading *in);
 /* Number of a position of this job, 'C', or of all jobs, 'P'; -1: there is none. */
 int32_t robot_job_positions_find(const struct robot_job_reading *in, char letter, int32_t number);
 
+/* robot_job_places: positions that change. Take P001, P[B000], or C00001 of this job: 1, 0 if
+ * something else stands here, or -1. */
+int robot_job_place_take(struct robot_job_reading *in, int32_t *number, struct robot_job_by *by);
+
+/* SET ADD SUB of a position that follows: 1, 0 if none does, or -1. SETE GETE GETS. */
+int robot_job_place_calculate(struct robot_job_reading *in, enum robot_job_op op);
+int robot_job_place_element(struct robot_job_reading *in, enum robot_job_op op);
+int robot_job_place_here(struct robot_job_reading *in);
+
 /* robot_job_lacking: whether a word is INFORM's, but not of this controller. */
 bool robot_job_lacks(const struct robot_job_scan *s, struct robot_job_span w);
 
-/* robot_job_moves: MOVJ MOVL MOVC SPEED SFTON. */
+/* robot_job_moves: MOVJ MOVL MOVC IMOV SPEED SFTON. */
 int robot_job_move(struct robot_job_reading *in, enum robot_job_path path);
+int robot_job_move_by(struct robot_job_reading *in);
 int robot_job_move_speed(struct robot_job_reading *in);
 int robot_job_move_shift(struct robot_job_reading *in);
 

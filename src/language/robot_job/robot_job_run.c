@@ -1,11 +1,9 @@
-#include "robot_job_run.h"
+#include "robot_job_values.h"
 
 #include <math.h>
 #include <string.h>
 
-#define GROUP_MASK ((1u << ROBOT_JOB_GROUP) - 1u)
-
-enum kind { NOTHING, MOTION, MODE, OUTPUT, NUMBER, ARGUMENT, TIME, FLOW, OPERATOR };
+enum kind { NOTHING, MOTION, MODE, OUTPUT, NUMBER, PLACE, ARGUMENT, TIME, FLOW, OPERATOR };
 
 /* What the instruction being done works on. */
 static const uint8_t KIND[] = { [ROBOT_JOB_OP_MOVE] = MOTION,     [ROBOT_JOB_OP_SPEED] = MODE,
@@ -21,6 +19,9 @@ static const uint8_t KIND[] = { [ROBOT_JOB_OP_MOVE] = MOTION,     [ROBOT_JOB_OP_
                                 [ROBOT_JOB_OP_UNLESS] = FLOW,     [ROBOT_JOB_OP_CALL] = FLOW,
                                 [ROBOT_JOB_OP_RET] = FLOW,        [ROBOT_JOB_OP_LOOP] = FLOW,
                                 [ROBOT_JOB_OP_ENDLOOP] = FLOW,    [ROBOT_JOB_OP_PAUSE] = OPERATOR,
+                                [ROBOT_JOB_OP_PLACE_SET] = PLACE, [ROBOT_JOB_OP_PLACE_ADD] = PLACE,
+                                [ROBOT_JOB_OP_PLACE_SUB] = PLACE, [ROBOT_JOB_OP_SETE] = PLACE,
+                                [ROBOT_JOB_OP_GETE] = PLACE,      [ROBOT_JOB_OP_GETS] = PLACE,
                                 [ROBOT_JOB_OP_NOP] = NOTHING };
 
 void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *p,
@@ -36,40 +37,15 @@ void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *
     run->speed[ROBOT_JOB_V] = start->v;
     run->speed[ROBOT_JOB_VR] = start->vr;
     run->level = start->level;
-    run->tool = start->tool;
+    run->tool = run->hand = start->tool;
     run->user = start->user;
 }
 
-/* The number that an operand stands for.
- * CCN 16: a case for each kind. */
-static double value(const struct robot_job_run *run, const struct robot_job_inputs *in,
-                    const struct robot_job_operand *o)
-{
-    switch (o->kind) {
-    case ROBOT_JOB_B:
-    case ROBOT_JOB_I:
-    case ROBOT_JOB_D:        return run->whole[o->kind - ROBOT_JOB_B][o->index];
-    case ROBOT_JOB_R:        return run->real[o->index];
-    case ROBOT_JOB_IN:       return in->di >> o->index & 1u;
-    case ROBOT_JOB_OT:       return run->out >> o->index & 1u;
-    case ROBOT_JOB_AI:       return in->ai[o->index];
-    case ROBOT_JOB_IG:       return in->di >> ROBOT_JOB_GROUP * o->index & GROUP_MASK;
-    case ROBOT_JOB_OG:       return run->out >> ROBOT_JOB_GROUP * o->index & GROUP_MASK;
-    case ROBOT_JOB_LB:
-    case ROBOT_JOB_LI:
-    case ROBOT_JOB_LD:       return run->frame[run->depth].whole[o->kind - ROBOT_JOB_LB][o->index];
-    case ROBOT_JOB_LR:       return run->frame[run->depth].real[o->index];
-    case ROBOT_JOB_CONSTANT:
-    case ROBOT_JOB_NOTHING:  break;
-    }
-    return o->number;
-}
-
-static bool compare(const struct robot_job_run *run, const struct robot_job_inputs *in,
+static bool compare(struct robot_job_run *run, const struct robot_job_inputs *in,
                     enum robot_job_relation relation, const struct robot_job_operand *a,
                     const struct robot_job_operand *b)
 {
-    const double left = value(run, in, a), right = value(run, in, b);
+    const double left = robot_job_value(run, in, a), right = robot_job_value(run, in, b);
     switch (relation) {
     case ROBOT_JOB_ALWAYS:    break;
     case ROBOT_JOB_EQUAL:     return left == right;
@@ -83,7 +59,7 @@ static bool compare(const struct robot_job_run *run, const struct robot_job_inpu
 }
 
 /* Whether the condition of an instruction holds: all its comparisons, or any of them. */
-static bool holds(const struct robot_job_run *run, const struct robot_job_program *p,
+static bool holds(struct robot_job_run *run, const struct robot_job_program *p,
                   const struct robot_job_inputs *in, const struct robot_job_instruction *c)
 {
     bool good = compare(run, in, c->relation, &c->left, &c->right);
@@ -109,71 +85,91 @@ static bool looks(const struct robot_job_program *p, const struct robot_job_inst
     return found;
 }
 
-/* Set a variable to a result; variables of whole numbers take its whole part. */
-static enum robot_job_fault store(struct robot_job_run *run, const struct robot_job_operand *o,
-                                  double x)
-{
-    struct robot_job_call *frame = &run->frame[run->depth];
-    x = o->kind == ROBOT_JOB_R || o->kind == ROBOT_JOB_LR ? x : trunc(x);
-    if (!(x >= robot_job_low(o->kind) && x <= robot_job_high(o->kind))) {
-        return ROBOT_JOB_BAD_RANGE;
-    }
-    if (o->kind == ROBOT_JOB_R) {
-        run->real[o->index] = x;
-    } else if (o->kind == ROBOT_JOB_LR) {
-        frame->real[o->index] = x;
-    } else if (o->kind >= ROBOT_JOB_LB) {
-        frame->whole[o->kind - ROBOT_JOB_LB][o->index] = (int32_t)x;
-    } else {
-        run->whole[o->kind - ROBOT_JOB_B][o->index] = (int32_t)x;
-    }
-    return ROBOT_JOB_OK;
-}
-
 /* SET .. DIV. Sums, products and quotients of two D variables are exact in a double as far as
  * they fit a D variable. */
 static enum robot_job_fault calculate(struct robot_job_run *run, const struct robot_job_inputs *in,
                                       const struct robot_job_instruction *c)
 {
-    const double left = value(run, in, &c->left), right = value(run, in, &c->right);
+    const double left = robot_job_value(run, in, &c->left),
+                 right = robot_job_value(run, in, &c->right);
     switch (c->op) {
-    case ROBOT_JOB_OP_ADD: return store(run, &c->left, left + right);
-    case ROBOT_JOB_OP_SUB: return store(run, &c->left, left - right);
-    case ROBOT_JOB_OP_MUL: return store(run, &c->left, left * right);
+    case ROBOT_JOB_OP_ADD: return robot_job_store(run, &c->left, left + right);
+    case ROBOT_JOB_OP_SUB: return robot_job_store(run, &c->left, left - right);
+    case ROBOT_JOB_OP_MUL: return robot_job_store(run, &c->left, left * right);
     case ROBOT_JOB_OP_DIV:
-        return right == 0.0 ? ROBOT_JOB_BAD_ZERO_DIVISION : store(run, &c->left, left / right);
-    default: return store(run, &c->left, right);
+        return right == 0.0 ? ROBOT_JOB_BAD_ZERO_DIVISION
+                            : robot_job_store(run, &c->left, left / right);
+    default: return robot_job_store(run, &c->left, right);
     }
 }
 
+/* The speed of a tag that a line gives, by a number or by a variable that counts in its unit. */
+static enum robot_job_fault speed(struct robot_job_run *run, const struct robot_job_inputs *in,
+                                  const struct robot_job_instruction *c, double *x)
+{
+    *x = c->speed;
+    if (c->right.kind == ROBOT_JOB_NOTHING) {
+        return ROBOT_JOB_OK;
+    }
+    *x = robot_job_value(run, in, &c->right) * robot_job_speed_unit(c->tag);
+    return *x >= robot_job_speed_low(c->tag) && *x <= robot_job_speed_high(c->tag)
+               ? ROBOT_JOB_OK
+               : ROBOT_JOB_BAD_RANGE;
+}
+
 /* Request a move to a point, and number it. */
-static void move(struct robot_job_run *run, const struct robot_job_point *p,
-                 const struct robot_job_instruction *c, struct robot_job_request *r)
+static enum robot_job_fault move(struct robot_job_run *run, const struct robot_job_program *p,
+                                 const struct robot_job_points *points,
+                                 const struct robot_job_inputs *in,
+                                 const struct robot_job_instruction *c, struct robot_job_request *r)
 {
     const enum robot_job_speed usual = c->path == ROBOT_JOB_JOINT ? ROBOT_JOB_VJ
                                        : run->rotary              ? ROBOT_JOB_VR
                                                                   : ROBOT_JOB_V;
+    enum robot_job_fault fault = robot_job_which(run, p, points, c->to, &c->to_by, &r->point);
+    if (fault == ROBOT_JOB_OK && c->path == ROBOT_JOB_CIRCLE) {
+        fault = robot_job_which(run, p, points, c->via, &c->via_by, &r->via);
+    }
+    r->speed = run->speed[usual];
+    if (fault == ROBOT_JOB_OK && c->tag != ROBOT_JOB_DEFAULT) {
+        fault = speed(run, in, c, &r->speed);
+    }
+    if (fault != ROBOT_JOB_OK) {
+        return fault;
+    }
+    const struct robot_job_point *at = robot_job_place(run, p, points, r->point);
+    if (c->increment != ROBOT_JOB_NOT_BY && at->kind != ROBOT_JOB_POSE) {
+        return ROBOT_JOB_BAD_STEP;
+    }
     r->answer = ROBOT_JOB_MOVE;
     r->after = ++run->moves;
     r->path = c->path;
-    r->point = c->to;
-    r->via = c->via;
     r->tag = c->tag != ROBOT_JOB_DEFAULT ? c->tag : usual;
-    r->speed = c->tag != ROBOT_JOB_DEFAULT ? c->speed : run->speed[usual];
     r->level = c->level != ROBOT_JOB_ANY ? c->level : run->level;
     r->corner = c->corner;
-    r->tool = p->tool != ROBOT_JOB_ANY ? p->tool : run->tool;
-    r->user = p->user != ROBOT_JOB_ANY ? p->user : run->user;
+    r->tool = at->tool != ROBOT_JOB_ANY ? at->tool : run->tool;
+    r->user = at->user != ROBOT_JOB_ANY ? at->user : run->user;
     r->shift = run->shift;
     r->shift_user = run->shift_user;
+    memcpy(r->shift_by, run->shift_by, sizeof r->shift_by);
+    r->increment = c->increment;
+    if (c->increment != ROBOT_JOB_NOT_BY) { /* from where the tool is, which is shifted already */
+        r->tool = run->hand;
+        r->shift = -1;
+    }
+    r->until = c->until;
+    r->until_on = c->until_on;
+    run->hand = r->tool;
     run->early = c->early;
+    run->until = c->until >= 0;
+    return ROBOT_JOB_OK;
 }
 
 static enum robot_job_fault output(struct robot_job_run *run, const struct robot_job_inputs *in,
                                    const struct robot_job_instruction *c,
                                    struct robot_job_request *r)
 {
-    const double x = value(run, in, &c->right);
+    const double x = robot_job_value(run, in, &c->right);
     r->index = c->to;
     r->after -= run->early;
     if (c->op == ROBOT_JOB_OP_GROUP) {
@@ -235,7 +231,7 @@ static int32_t call(struct robot_job_run *run, const struct robot_job_program *p
     memset(frame, 0, sizeof *frame);
     frame->arguments = c->arguments;
     for (int32_t i = 0; i < c->arguments; i++) {
-        frame->argument[i] = value(run, in, &p->term[c->argument + i].left);
+        frame->argument[i] = robot_job_value(run, in, &p->term[c->argument + i].left);
     }
     run->frame[run->depth++].pc++;
     run->frames++;
@@ -260,7 +256,7 @@ static int32_t loop(struct robot_job_run *run, const struct robot_job_inputs *in
 {
     int32_t *left = &run->frame[run->depth].loop[c->via];
     if (c->op == ROBOT_JOB_OP_LOOP) {
-        const double rounds = value(run, in, &c->right);
+        const double rounds = robot_job_value(run, in, &c->right);
         *left = c->right.kind == ROBOT_JOB_NOTHING ? -1 : rounds > 0.0 ? (int32_t)rounds : 0;
         return *left == 0 ? c->to : pc + 1;
     }
@@ -283,31 +279,55 @@ static int32_t flow(struct robot_job_run *run, const struct robot_job_program *p
     }
 }
 
+/* SFTON takes the position as it is now. */
+static enum robot_job_fault shift(struct robot_job_run *run, const struct robot_job_program *p,
+                                  const struct robot_job_points *points,
+                                  const struct robot_job_instruction *c)
+{
+    run->shift = -1;
+    if (c->to < 0) {
+        return ROBOT_JOB_OK;
+    }
+    const enum robot_job_fault fault =
+        robot_job_which(run, p, points, c->to, &c->to_by, &run->shift);
+    if (fault != ROBOT_JOB_OK) {
+        return fault;
+    }
+    const struct robot_job_point *at = robot_job_place(run, p, points, run->shift);
+    run->shift_user = c->via;
+    memcpy(run->shift_by, at->value, sizeof run->shift_by);
+    return at->kind == ROBOT_JOB_POSE && at->value[3] == 0.0 && at->value[4] == 0.0
+                   && at->value[5] == 0.0
+               ? ROBOT_JOB_OK
+               : ROBOT_JOB_BAD_STEP;
+}
+
 /* SPEED, PL, TOOL, USER, SFTON, SFTOF: change what is in force from here on. */
-static void set_mode(struct robot_job_run *run, const struct robot_job_instruction *c)
+static enum robot_job_fault set_mode(struct robot_job_run *run, const struct robot_job_program *p,
+                                     const struct robot_job_points *points,
+                                     const struct robot_job_inputs *in,
+                                     const struct robot_job_instruction *c)
 {
     switch (c->op) {
     case ROBOT_JOB_OP_SPEED:
-        run->speed[c->tag] = c->speed;
         run->rotary = c->tag == ROBOT_JOB_VJ ? run->rotary : c->tag == ROBOT_JOB_VR;
-        break;
+        return speed(run, in, c, &run->speed[c->tag]);
     case ROBOT_JOB_OP_LEVEL: run->level = c->to; break;
-    case ROBOT_JOB_OP_TOOL:  run->tool = c->to; break;
-    case ROBOT_JOB_OP_SHIFT:
-        run->shift = c->to;
-        run->shift_user = c->via;
-        break;
-    default: run->user = c->to;
+    case ROBOT_JOB_OP_TOOL:  run->tool = run->hand = c->to; break;
+    case ROBOT_JOB_OP_SHIFT: return shift(run, p, points, c);
+    default:                 run->user = c->to;
     }
+    return ROBOT_JOB_OK;
 }
 
 /* Whether an instruction waits until all moves before it are reached. */
-static bool needs_rest(const struct robot_job_run *run, const struct robot_job_program *p,
+static bool needs_rest(struct robot_job_run *run, const struct robot_job_program *p,
                        const struct robot_job_inputs *in, const struct robot_job_instruction *c)
 {
     switch (c->op) {
     case ROBOT_JOB_OP_WAIT:
     case ROBOT_JOB_OP_TIMER:
+    case ROBOT_JOB_OP_GETS:
     case ROBOT_JOB_OP_REACHED: return true;
     case ROBOT_JOB_OP_PAUSE:   return looks(p, c) || holds(run, p, in, c);
     case ROBOT_JOB_OP_RET:     return looks(p, c) || (run->depth == 0 && holds(run, p, in, c));
@@ -315,13 +335,21 @@ static bool needs_rest(const struct robot_job_run *run, const struct robot_job_p
     }
 }
 
+/* Whether an instruction waits for the end of a move that an input may end: where the next move
+ * begins is not known before. What NWAIT lets come with the move does not. */
+static bool ends_first(const struct robot_job_run *run, const struct robot_job_instruction *c)
+{
+    return run->until && (!run->early || c->op == ROBOT_JOB_OP_MOVE);
+}
+
 /* GETARG: an argument that the job was not called with is a fault. */
 static enum robot_job_fault take_argument(struct robot_job_run *run,
                                           const struct robot_job_instruction *c)
 {
     const struct robot_job_call *frame = &run->frame[run->depth];
-    return c->argument < frame->arguments ? store(run, &c->left, frame->argument[c->argument])
-                                          : ROBOT_JOB_BAD_ARGUMENT;
+    return c->argument < frame->arguments
+               ? robot_job_store(run, &c->left, frame->argument[c->argument])
+               : ROBOT_JOB_BAD_ARGUMENT;
 }
 
 /* Carry out an instruction, unless it has a fault. True: it makes a request. */
@@ -342,7 +370,7 @@ static bool finish(struct robot_job_run *run, struct robot_job_request *r, int32
 }
 
 /* Do one instruction. True: it makes a request.
- * CCN 17: a case for each kind of work. */
+ * CCN 20: a case for each kind of work. */
 static bool step(struct robot_job_run *run, const struct robot_job_program *p,
                  const struct robot_job_points *points, const struct robot_job_inputs *in,
                  struct robot_job_request *r)
@@ -353,7 +381,7 @@ static bool step(struct robot_job_run *run, const struct robot_job_program *p,
 
     r->line = c->line;
     r->job = pc; /* its number comes with the request */
-    if (in->reached < run->moves && needs_rest(run, p, in, c)) {
+    if (in->reached < run->moves && (ends_first(run, c) || needs_rest(run, p, in, c))) {
         r->answer = ROBOT_JOB_REACH;
         return true;
     }
@@ -362,9 +390,13 @@ static bool step(struct robot_job_run *run, const struct robot_job_program *p,
     }
     const bool done = c->op == ROBOT_JOB_OP_WAIT || holds(run, p, in, c);
     run->idle = looks(p, c) ? 0 : run->idle + 1;
+    if (run->fault != ROBOT_JOB_OK) { /* an operand that is no variable */
+        return finish(run, r, pc);
+    }
     switch (KIND[c->op]) {
-    case MOTION:   move(run, robot_job_point(p, points, c->to), c, r); break;
-    case MODE:     set_mode(run, c); break;
+    case MOTION:   run->fault = move(run, p, points, in, c, r); break;
+    case MODE:     run->fault = set_mode(run, p, points, in, c); break;
+    case PLACE:    run->fault = robot_job_change(run, p, points, in, c); break;
     case OUTPUT:   run->fault = output(run, in, c, r); break;
     case NUMBER:   run->fault = calculate(run, in, c); break;
     case ARGUMENT: run->fault = take_argument(run, c); break;

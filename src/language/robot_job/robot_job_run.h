@@ -7,7 +7,10 @@
  *    before that if it is NWAIT. It changes when that move has reached its point: at rest, or where
  *    the path passes the corner if that is rounded; at once if reached >= after. So it costs no
  *    stop;
- *  - what looks at inputs or at time (IF and WAIT on IN# or AI#, DIN, AIN, TIMER, PAUSE, the end)
+ *  - a move that an input may end (UNTIL) keeps what follows waiting until it is over: it is
+ *    reached where it ends, too;
+ *  - what looks at inputs, at the arm (GETS) or at time (IF and WAIT on IN# or AI#, DIN, AIN,
+ *    TIMER, PAUSE, the end)
  *    waits until all moves before it are reached: ROBOT_JOB_REACH. The caller may count a move as
  *    reached where its zone begins.
  * Call until the answer is none of MOVE, DOUT, AOUT, or the queue is full; then again next cycle.
@@ -41,6 +44,12 @@ struct robot_job_call {
     double real[ROBOT_JOB_LOCALS];      /* LR */
 };
 
+/* A position P that the program has changed. */
+struct robot_job_changed {
+    int32_t number;
+    struct robot_job_point point;
+};
+
 /* State of a program that runs: plain bytes without pointers. */
 struct robot_job_run {
     int32_t depth;  /* calls inside each other */
@@ -55,7 +64,12 @@ struct robot_job_run {
     double speed[4];                       /* by enum robot_job_speed; [0] is not used */
     int32_t rotary;                        /* MOVL and MOVC without a speed take VR: 0 or 1 */
     int32_t level, tool, user;
-    int32_t shift, shift_user;  /* point by which the moves are shifted, -1: none; its frame */
+    int32_t shift, shift_user; /* point by which the moves are shifted, -1: none; its frame */
+    double shift_by[3];        /* [mm] what that was */
+    int32_t hand;              /* tool of the latest move or TOOL, from which IMOV goes on */
+    int32_t until;             /* the latest move may be ended by an input: 1 */
+    int32_t changes;           /* positions that have been changed */
+    struct robot_job_changed changed[ROBOT_JOB_CHANGED];
     int32_t early;              /* the latest move is NWAIT: 1 */
     int32_t ended;              /* 1: the program is over */
     enum robot_job_fault fault; /* that stopped it */
@@ -63,10 +77,11 @@ struct robot_job_run {
 
 /* What a program sees of the world. */
 struct robot_job_inputs {
-    int64_t now;                  /* [ns] from 0, never less than before */
-    int64_t reached;              /* number of moves that have reached their points */
-    uint32_t di;                  /* bit 0 is IN#(1) */
-    double ai[ROBOT_JOB_ANALOGS]; /* [V] */
+    int64_t now;                    /* [ns] from 0, never less than before */
+    int64_t reached;                /* number of moves that have reached their points */
+    uint32_t di;                    /* bit 0 is IN#(1) */
+    double ai[ROBOT_JOB_ANALOGS];   /* [V] */
+    struct robot_job_point here[2]; /* the arm, when it rests: in pulses, in the base */
 };
 
 enum robot_job_answer {
@@ -96,6 +111,10 @@ struct robot_job_request {
     int32_t tool, user; /* those of the point, or in force */
     int32_t shift;      /* point that says how far it is shifted, -1: not */
     int32_t shift_user; /* user frame in which that counts */
+    double shift_by[3]; /* [mm] how far */
+    int32_t increment;  /* the point is what is added, in this frame; ROBOT_JOB_NOT_BY */
+    int32_t until;      /* input that ends it, from 0; -1: none */
+    bool until_on;
     /* DOUT, AOUT */
     int32_t index; /* from 0 */
     int32_t count; /* DOUT: number of outputs from there, 1 or ROBOT_JOB_GROUP */
@@ -113,6 +132,12 @@ void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *
 void robot_job_next(struct robot_job_run *run, const struct robot_job_program *p,
                     const struct robot_job_points *points, const struct robot_job_inputs *in,
                     int32_t most, struct robot_job_request *r);
+
+/* A position as it is now, by the number that a request has. */
+const struct robot_job_point *robot_job_place(const struct robot_job_run *run,
+                                              const struct robot_job_program *p,
+                                              const struct robot_job_points *points,
+                                              int32_t number);
 
 /* Number of the job that runs, and the line of its next instruction, for display. */
 int32_t robot_job_running(const struct robot_job_run *run, const struct robot_job_program *p,

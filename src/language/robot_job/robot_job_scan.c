@@ -37,14 +37,20 @@ int robot_job_scan_begin(struct robot_job_scan *s, const char *text, int64_t siz
     return 0;
 }
 
+int32_t robot_job_scan_column(const struct robot_job_scan *s, int32_t at)
+{
+    int32_t column = 1;
+    while (column <= at && s->text[at - column] != '\n') {
+        column++;
+    }
+    return column;
+}
+
 int robot_job_scan_fault(struct robot_job_scan *s, enum robot_job_fault f, struct robot_job_span p)
 {
     s->r->fault = f;
     s->r->line = s->line;
-    s->r->column = 1;
-    while (s->r->column <= p.at && s->text[p.at - s->r->column] != '\n') {
-        s->r->column++;
-    }
+    s->r->column = robot_job_scan_column(s, p.at);
     s->r->offset = p.at;
     s->r->length = p.length;
     return -1;

@@ -31,6 +31,9 @@ int robot_job_scan_begin(struct robot_job_scan *s, const char *text, int64_t siz
 /* Go to the next line that is not empty: 1, 0 behind the last one, or -1. */
 int robot_job_scan_line(struct robot_job_scan *s);
 
+/* Column of a byte in its line, from 1; blanks in front count. */
+int32_t robot_job_scan_column(const struct robot_job_scan *s, int32_t at);
+
 /* Report a fault of a span, or of the whole line; always -1. */
 int robot_job_scan_fault(struct robot_job_scan *s, enum robot_job_fault f,
                          struct robot_job_span at);

@@ -38,6 +38,9 @@ enum form {
     ARGUMENT,
     MESSAGE,
     PULSE,
+    INCREMENT,
+    ELEMENT,
+    HERE,
     NOTHING
 };
 
@@ -69,6 +72,7 @@ struct word {
 static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "MOVL", MOVE, ROBOT_JOB_LINE, 0, 0 },
                                      { "MOVC", MOVE, ROBOT_JOB_CIRCLE, 0, 0 },
+                                     { "IMOV", INCREMENT, 0, 0, 0 },
                                      { "SPEED", SPEED, 0, 0, 0 },
                                      { "PL", LEVEL, 0, 0, 0 },
                                      { "TOOL", FRAME, ROBOT_JOB_OP_TOOL, 0, 0 },
@@ -83,6 +87,9 @@ static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "SUB", ARITHMETIC, ROBOT_JOB_OP_SUB, VARIABLE, VALUE },
                                      { "MUL", ARITHMETIC, ROBOT_JOB_OP_MUL, VARIABLE, VALUE },
                                      { "DIV", ARITHMETIC, ROBOT_JOB_OP_DIV, VARIABLE, VALUE },
+                                     { "SETE", ELEMENT, ROBOT_JOB_OP_SETE, 0, 0 },
+                                     { "GETE", ELEMENT, ROBOT_JOB_OP_GETE, 0, 0 },
+                                     { "GETS", HERE, 0, 0, 0 },
                                      { "INC", STEP, ROBOT_JOB_OP_ADD, 0, 0 },
                                      { "DEC", STEP, ROBOT_JOB_OP_SUB, 0, 0 },
                                      { "WAIT", WAIT, 0, 0, 0 },
@@ -135,6 +142,8 @@ struct robot_job_instruction *robot_job_reading_add(struct robot_job_reading *in
                                          .line = in->s.line,
                                          .level = ROBOT_JOB_ANY,
                                          .time = -1,
+                                         .increment = ROBOT_JOB_NOT_BY,
+                                         .until = -1,
                                          .inside = robot_job_block_loop_inside(in) };
     return c;
 }
@@ -166,6 +175,10 @@ static int arithmetic(struct robot_job_reading *in, enum robot_job_op op, uint32
                       uint32_t right)
 {
     struct robot_job_scan *s = &in->s;
+    const int place = left == VARIABLE ? robot_job_place_calculate(in, op) : 0;
+    if (place != 0) {
+        return place < 0 ? -1 : 0;
+    }
     struct robot_job_instruction *c = robot_job_reading_add(in, op);
     if (!c || robot_job_operand(in, left, &c->left)) {
         return -1;
@@ -322,7 +335,7 @@ static int32_t callee(struct robot_job_reading *in, struct robot_job_span name)
     struct robot_job_scan *s = &in->s;
     struct robot_job_callee one = { .text = p->texts,
                                     .line = s->line,
-                                    .column = name.at - s->begin + 1,
+                                    .column = robot_job_scan_column(s, name.at),
                                     .offset = name.at,
                                     .length = name.length };
     memcpy(one.name, s->text + name.at, (size_t)name.length);
@@ -534,7 +547,7 @@ static int block(struct robot_job_reading *in, enum block what)
     }
 }
 
-/* CCN 20: a case for each form. */
+/* CCN 23: a case for each form. */
 static int instruction(struct robot_job_reading *in, const struct word *w)
 {
     const enum robot_job_op op = (enum robot_job_op)w->what;
@@ -559,6 +572,9 @@ static int instruction(struct robot_job_reading *in, const struct word *w)
     case ARGUMENT:   return argument(in);
     case MESSAGE:    return message(in);
     case PULSE:      return pulse(in);
+    case INCREMENT:  return robot_job_move_by(in);
+    case ELEMENT:    return robot_job_place_element(in, op);
+    case HERE:       return robot_job_place_here(in);
     default:         return nothing(in, op);
     }
 }

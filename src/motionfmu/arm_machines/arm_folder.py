@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from motionfmu.arm_machines.arm_values import ArmValues, TakenValue, arm_values
-from motionfmu.arm_machines.machine_arm import LENGTHS, arm_machine, in_degrees
+from motionfmu.arm_machines.machine_arm import BY_AXES, BY_LENGTHS, arm_machine, in_degrees
+from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry, driven_geometry
 from motionfmu.arms.arm_description import ArmDescription
-from motionfmu.arms.arm_geometry import ROUNDING, NoOpwGeometry, OpwGeometry, opw_geometry
+from motionfmu.arms.arm_geometry import ROUNDING, NoOpwGeometry
 from motionfmu.base.errors import InputError
 from motionfmu.base.new_folder import new_folder
 from motionfmu.run import machine
@@ -21,7 +22,6 @@ from motionfmu.virtual.robot import Kinematics
 
 LIKE = "robot6"  # the machine whose controller, card and drives an arm gets
 _OF_A_RUN = ("machine", "stop", "set")
-MOST_DEVIATION = 1e-3  # [m] of the lengths from the description
 LINE = 0.15  # length of the example's line per reach of the arm
 STEPS = 20  # at which the line is tried
 FURTHEST = 30.0  # [deg] that a joint turns between two of them
@@ -32,7 +32,7 @@ class MadeMachine:
     """The folder of a new machine, and what was taken for granted."""
 
     folder: Path
-    geometry: OpwGeometry
+    geometry: ArmGeometry
     values: ArmValues
     notes: tuple[str, ...]
     example: Path | None  # a job of a joint move and a line
@@ -59,26 +59,24 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
         The controller cannot drive such an arm, or the folder cannot be written.
     """
     try:
-        geometry = opw_geometry(arm)
+        geometry = driven_geometry(arm)
     except NoOpwGeometry as error:
-        told = (
-            "it cannot be driven yet: the controller wants axes 2 and 3 parallel and axes 4, 5, 6"
-        )
-        raise InputError(f"{source}: {arm.name} is {error}; {told} through a point") from None
-    if geometry.deviation > MOST_DEVIATION:
-        told = f"an arm with a spherical wrist but for {1e3 * geometry.deviation:.3g} mm"
-        raise InputError(f"{source}: {arm.name} is {told}; its angles are too coarse")
+        told = "it cannot be driven yet: the controller moves six joints that turn"
+        raise InputError(f"{source}: {arm.name} is {error}; {told}") from None
     like = arm_machine(machine(LIKE))
     values = arm_values(arm, geometry, like)
     notes = (*arm.notes, *_notes(geometry))
     tables = {k: v for k, v in like.tables.items() if k not in _OF_A_RUN}
+    if isinstance(geometry, AxesGeometry):
+        plants = {BY_LENGTHS: BY_AXES}
+        tables["component"] = {n: plants.get(f, f) for n, f in tables["component"].items()}
     kept = {k: v for k, v in like.tables["set"].items() if k not in _given(values)}
     kept = {k: v for k, v in kept.items() if k not in ("soft.tool", "arm.paper_height")}
     about = f"{arm.name}, an arm of six joints, from {source}: its drives, card and controller."
     with new_folder(folder) as part:
         lines = [f"# {about}", *_machine_lines(tables, kept, values, source)]
         (part / package_files.MACHINE).write_text("\n".join(lines) + "\n", encoding="utf-8")
-        example = _example(geometry, values)
+        example = _example(values)
         if example:
             (part / "example.job").write_text(example[0], encoding="utf-8")
             (part / "example.points").write_text(example[1], encoding="utf-8")
@@ -92,7 +90,9 @@ def _given(values: ArmValues) -> set[str]:
     return {name for group in values.groups.values() for name in group}
 
 
-def _notes(geometry: OpwGeometry) -> Iterator[str]:
+def _notes(geometry: ArmGeometry) -> Iterator[str]:
+    if isinstance(geometry, AxesGeometry):
+        yield f"driven by its axes, as {geometry.why}"
     if geometry.deviation > ROUNDING:
         off = f"{1e3 * geometry.deviation:.3g} mm"
         yield f"its lengths are off by {off} at the tip, for the angles of the file are rounded"
@@ -182,21 +182,12 @@ def _cells(values: list[float]) -> list[str]:
     return [f"{v:.4g}" for v in values]
 
 
-def _example(geometry: OpwGeometry, values: ArmValues) -> tuple[str, str] | None:
+def _example(values: ArmValues) -> tuple[str, str] | None:
     """A job of a joint move and a line from the start pose, and its points; None if none fits."""
-    settings = dict(zip(LENGTHS, geometry.lengths, strict=True))
-    limits, shared = values.groups["limits"], values.groups["what controller and arm share"]
-    arm = Kinematics(
-        **settings,
-        joint_sign=list(geometry.signs),
-        joint_offset=shared["*.joint_offset"],
-        joint_low=limits["soft.joint_low"],
-        joint_high=limits["soft.joint_high"],
-        tool=shared["soft.tool"],
-    )
+    arm = Kinematics(**values.controller)
     start = np.degrees(values.start)
     here = arm.forward(start)
-    size = 1e3 * LINE * (geometry.lengths[4] + geometry.lengths[5])
+    size = 1e3 * LINE * values.reach
     for way in (*_ways(size), *_ways(size / 3.0)):
         line: list[np.ndarray] = []
         joints = start

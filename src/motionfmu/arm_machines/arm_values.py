@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.arm_machines.bent_pose import bent_pose
 from motionfmu.arm_machines.machine_arm import (
     DRIVES,
     LENGTHS,
@@ -19,6 +20,7 @@ from motionfmu.arm_machines.machine_arm import (
     ArmMachine,
     in_degrees,
 )
+from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry
 from motionfmu.arms.arm_description import (
     ArmDescription,
     ArmJoint,
@@ -27,7 +29,6 @@ from motionfmu.arms.arm_description import (
     joined,
     placed,
 )
-from motionfmu.arms.arm_geometry import OpwGeometry
 from motionfmu.base.errors import InputError
 
 Array = NDArray[np.float64]
@@ -63,9 +64,16 @@ class ArmValues:
     groups: dict[str, dict[str, Any]]
     taken: list[TakenValue]
     start: Array  # joint angles [rad]
+    reach: float  # [m]
+
+    @property
+    def controller(self) -> dict[str, Any]:
+        """What the controller knows of the arm, by its parameters."""
+        rows = self.groups["what controller and arm share"] | self.groups["limits"]
+        return {n.partition(".")[2]: v for n, v in rows.items() if not n.startswith("arm.")}
 
 
-def arm_values(arm: ArmDescription, geometry: OpwGeometry, like: ArmMachine) -> ArmValues:
+def arm_values(arm: ArmDescription, geometry: ArmGeometry, like: ArmMachine) -> ArmValues:
     """Values for an arm of known lengths, in the proportion of another machine's arm."""
     return _Values(arm, geometry, like).all()
 
@@ -73,10 +81,10 @@ def arm_values(arm: ArmDescription, geometry: OpwGeometry, like: ArmMachine) -> 
 class _Values:
     """Makes the values group by group; each group needs those before it."""
 
-    def __init__(self, arm: ArmDescription, geometry: OpwGeometry, like: ArmMachine) -> None:
+    def __init__(self, arm: ArmDescription, geometry: ArmGeometry, like: ArmMachine) -> None:
         self.geometry, self.like = geometry, like
         self.taken: list[TakenValue] = []
-        self.size = _reach(geometry) / _reach(like.geometry)
+        self.size = geometry.reach / like.geometry.reach
         self.arm = self._moving(self._massive(arm))
 
     def all(self) -> ArmValues:
@@ -89,7 +97,7 @@ class _Values:
             "payload": self._payload(),
         }
         groups |= self._drive()
-        return ArmValues(self.arm, groups, self.taken, start)
+        return ArmValues(self.arm, groups, self.taken, start, self.geometry.reach)
 
     def _take(self, what: str, names: str, value: Any, why: str) -> None:
         self.taken.append(TakenValue(what, names, _shown(value), why))
@@ -106,24 +114,27 @@ class _Values:
         for k in bare:
             link = self.like.arm.joints[k].link
             back = np.linalg.inv(frames[k])  # from the plant's link to the description's
+            center, tensor = self.size * link.center, link.tensor
+            if isinstance(self.geometry, AxesGeometry):  # whose frames lie otherwise
+                ways = (*self.geometry.origins[1:], self.geometry.flange[:3, 3])
+                center, tensor = ways[k] / 2.0, np.eye(3) * np.trace(link.tensor) / 3.0
             own = replace(
                 link,
                 name=joints[k].link.name,
                 mass=round(share * link.mass, 3),
-                center=self.size * link.center,
-                tensor=share * self.size**2 * link.tensor,
+                center=center,
+                tensor=share * self.size**2 * tensor,
             )
             shapes = joints[k].link.shapes
             moved = joined(own.name, [(own, np.asarray(back, dtype=np.float64))])
             joints[k] = replace(joints[k], link=replace(moved, shapes=shapes))
             masses.append(own.mass)
         names = ", ".join(joints[k].link.name for k in bare)
-        self._take(
-            f"mass, centre, inertia of {names}",
-            "arm.mass, arm.center, arm.inertia",
-            masses,
-            f"kg; of {self.like.machine.name} by the reach to the power of {MASS_POWER}",
-        )
+        why = f"kg; of {self.like.machine.name} by the reach to the power of {MASS_POWER}"
+        if isinstance(self.geometry, AxesGeometry):
+            why += ", in the middle of the link"
+        parameters = "arm.mass, arm.center, arm.inertia"
+        self._take(f"mass, centre, inertia of {names}", parameters, masses, why)
         return replace(arm, joints=tuple(joints))
 
     def _moving(self, arm: ArmDescription) -> ArmDescription:
@@ -165,16 +176,20 @@ class _Values:
     def _frames(self, arm: ArmDescription) -> list[Array]:
         """Frames of the links of a description in those of the plant."""
         geometry = self.geometry
-        straight = np.asarray(geometry.signs) * np.asarray(geometry.offsets)
         places = np.cumsum(geometry.origins, axis=0)
         back = np.linalg.inv(geometry.base)
         return [
             np.linalg.inv(placed(place)) @ back @ frame
-            for place, frame in zip(places, arm.frames(straight), strict=True)
+            for place, frame in zip(places, arm.frames(geometry.straight), strict=True)
         ]
 
     def _start(self) -> Array:
         """The start pose as joint angles within their ranges."""
+        if isinstance(self.geometry, AxesGeometry):
+            start = bent_pose(self.geometry, self.arm)
+            self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
+                       "°; far from singular, the hand down if the ranges let it")  # fmt: skip
+            return start
         signs, offsets = np.asarray(self.geometry.signs), np.asarray(self.geometry.offsets)
         wanted = signs * (START + offsets)
         found = []
@@ -198,14 +213,25 @@ class _Values:
         flange = geometry.flange
         angles = in_degrees(np.array(angles_of(flange[:3, :3])), EXACT)
         place = [round(float(x), 12) + 0.0 for x in flange[:3, 3]]
-        tool = [*(round(1e3 * x, 9) + 0.0 for x in place), *angles]
+        tip = [*(round(1e3 * x, 9) + 0.0 for x in place), *angles]
+        by: dict[str, Any]
+        if isinstance(geometry, AxesGeometry):
+            by = {
+                "soft.arm_by": 1,
+                "*.axis_origin": geometry.origins.ravel().tolist(),
+                "*.axis_direction": geometry.axes.ravel().tolist(),
+                "soft.flange": tip,
+                "soft.joint_offset": [0.0] * SIX,
+            }
+        else:
+            by = {f"*.{n}": v for n, v in zip(LENGTHS, geometry.lengths, strict=True)}
+            by["*.joint_sign"] = list(geometry.signs)
+            by["*.joint_offset"] = in_degrees(np.array(geometry.offsets), EXACT)
+            by["soft.tool"] = tip
         return {
-            **{f"*.{n}": v for n, v in zip(LENGTHS, geometry.lengths, strict=True)},
-            "*.joint_sign": list(geometry.signs),
-            "*.joint_offset": in_degrees(np.array(geometry.offsets), EXACT),
+            **by,
             "*.gear_ratio": [j.ratio for j in self.arm.joints],
             "*.start_joint": in_degrees(start),
-            "soft.tool": tool,
             "arm.tool_place": place,
             "arm.tool_turn": angles,
             "arm.tool_length": 0.0,
@@ -326,6 +352,10 @@ class _Values:
     def _own_payload(self) -> tuple[float, Array, Array]:
         share = self.arm.mass / self.like.arm.mass
         mass, center, inertia = self._payload_of(self.like)
+        if isinstance(self.geometry, AxesGeometry):  # whose flange is beside the last link's frame
+            turn, place = self.geometry.flange[:3, :3], self.geometry.flange[:3, 3]
+            center = turn @ center + place / self.size
+            inertia = np.diag(turn @ np.diag(inertia) @ turn.T)
         return round(share * mass, 3), self.size * center, share * self.size**2 * inertia
 
     @staticmethod
@@ -335,7 +365,7 @@ class _Values:
         return float(mass), center, inertia
 
     def _loaded(
-        self, arm: ArmDescription, geometry: OpwGeometry, payload: tuple[float, Array, Array]
+        self, arm: ArmDescription, geometry: ArmGeometry, payload: tuple[float, Array, Array]
     ) -> ArmDescription:
         """The arm with a payload on its flange, which lies before the tip by the tool's frame."""
         flange = arm.tip_frame @ np.linalg.inv(geometry.flange)
@@ -344,12 +374,6 @@ class _Values:
         last = arm.joints[-1]
         link = joined(last.link.name, [(last.link, np.eye(4)), (load, flange)])
         return replace(arm, joints=(*arm.joints[:-1], replace(last, link=link)))
-
-
-def _reach(geometry: OpwGeometry) -> float:
-    """From axis 1 to the centre of the wrist, the arm stretched [m]."""
-    a1, a2, _, _, c2, c3, _ = geometry.lengths
-    return abs(a1) + c2 + math.hypot(a2, c3)
 
 
 def _demands(arm: ArmDescription) -> tuple[Array, Array]:

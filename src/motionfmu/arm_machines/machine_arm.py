@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry
 from motionfmu.arms.arm_description import (
     ArmDescription,
     ArmJoint,
@@ -22,7 +23,8 @@ from motionfmu.run import Machine
 from motionfmu.scenarios.values import settings, start_values
 
 Array = NDArray[np.float64]
-PLANT, CONTROLLER, DRIVES = "robot_arm", "soft_controller", "servo_drives"
+CONTROLLER, DRIVES = "soft_controller", "servo_drives"
+PLANT, BY_LENGTHS, BY_AXES = "plant", "robot_arm", "axes_arm"
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 
 
@@ -38,10 +40,10 @@ class ArmMachine:
     names : mapping
         Component by FMU.
     values : mapping
-        By FMU and variable, such as ``robot_arm.mass``.
+        By FMU and variable, such as ``servo_drives.torque_limit``; of the plant ``plant.mass``.
     arm : ArmDescription
         Without the payload.
-    geometry : OpwGeometry
+    geometry : OpwGeometry or AxesGeometry
     """
 
     machine: Machine
@@ -49,7 +51,7 @@ class ArmMachine:
     names: Mapping[str, str]
     values: Mapping[str, Array]
     arm: ArmDescription
-    geometry: OpwGeometry
+    geometry: ArmGeometry
 
     def of(self, fmu: str, variable: str) -> Array:
         """Value of a parameter.
@@ -57,6 +59,7 @@ class ArmMachine:
         Parameters
         ----------
         fmu, variable : str
+            The plant is ``plant``, whichever it is.
 
         Returns
         -------
@@ -86,9 +89,11 @@ def arm_machine(machine: Machine, set: Mapping[str, Any] | None = None) -> ArmMa
     """
     plan = machine.plan()
     names = {fmu: name for name, fmu in plan.document.body.component.items()}
-    for fmu in (PLANT, CONTROLLER, DRIVES):
+    plant = BY_AXES if BY_AXES in names else BY_LENGTHS
+    for fmu in (plant, CONTROLLER, DRIVES):
         if fmu not in names:
             raise InputError(f"{machine.file}: no {fmu} among its components: it has no arm")
+    names[PLANT] = names[plant]
     given = {s.end.name: s.values for s in settings(plan.resolver, set or {})}
     values = {}
     for fmu in (PLANT, CONTROLLER, DRIVES):
@@ -105,17 +110,21 @@ def arm_machine(machine: Machine, set: Mapping[str, Any] | None = None) -> ArmMa
     return ArmMachine(machine, plan.document.tables, names, values, arm, geometry)
 
 
-def _geometry(values: Mapping[str, Array]) -> OpwGeometry:
-    lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
+def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
     turn = values[f"{PLANT}.tool_turn"]
     frame = placed(values[f"{PLANT}.tool_place"], turn_of(*turn))
     tip = frame @ placed([0.0, 0.0, float(values[f"{PLANT}.tool_length"])])
+    if f"{PLANT}.axis_origin" in values:
+        axes = values[f"{PLANT}.axis_direction"]
+        axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+        return AxesGeometry(values[f"{PLANT}.axis_origin"], axes, tip)
+    lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
     signs = tuple(int(s) for s in values[f"{PLANT}.joint_sign"])
     offsets = tuple(float(x) for x in values[f"{PLANT}.joint_offset"])
     return OpwGeometry(lengths, signs, offsets, np.eye(4), tip)
 
 
-def _arm(name: str, geometry: OpwGeometry, values: Mapping[str, Array]) -> ArmDescription:
+def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDescription:
     """Links as the plant has them, limits as the controller has them."""
     joints = []
     for k, (origin, axis) in enumerate(geometry.joint_frames):

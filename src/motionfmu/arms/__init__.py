@@ -1,5 +1,6 @@
 """Arms of any maker: read from URDF and tables, recognized, moved, written as URDF and MJCF."""
 
+from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry, axes_geometry, driven_geometry
 from motionfmu.arms.arm_description import ArmDescription, ArmJoint, LinkShape, RigidLink
 from motionfmu.arms.arm_geometry import NoOpwGeometry, OpwGeometry, kind_of, opw_geometry
 from motionfmu.arms.arm_table import table_arm
@@ -9,11 +10,15 @@ from motionfmu.arms.urdf_text import urdf_text
 
 __all__ = [
     "ArmDescription",
+    "ArmGeometry",
     "ArmJoint",
+    "AxesGeometry",
     "LinkShape",
     "NoOpwGeometry",
     "OpwGeometry",
     "RigidLink",
+    "axes_geometry",
+    "driven_geometry",
     "kind_of",
     "mjcf_text",
     "opw_geometry",

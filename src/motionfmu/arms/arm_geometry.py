@@ -59,6 +59,17 @@ class OpwGeometry:
         return np.array([[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]])
 
     @property
+    def straight(self) -> Array:
+        """Joint angles at which frames are parallel to the base [rad]."""
+        return np.asarray(self.signs) * np.asarray(self.offsets)
+
+    @property
+    def reach(self) -> float:
+        """From axis 1 to the centre of the wrist, the arm stretched [m]."""
+        a1, a2, _, _, c2, c3, _ = self.lengths
+        return abs(a1) + c2 + math.hypot(a2, c3)
+
+    @property
     def joint_frames(self) -> list[tuple[Array, Array]]:
         """Frame of each joint at 0 in the link before, and its axis."""
         found = []

@@ -119,6 +119,14 @@ class Struct:
         """Address of the struct, for calls of the library."""
         return ctypes.c_void_p(ctypes.addressof(self._memory))
 
+    def saved(self) -> bytes:
+        """All of it as it is, for `restore`."""
+        return bytes(self._memory)
+
+    def restore(self, saved: bytes) -> None:
+        """Back to how it was when it was saved."""
+        ctypes.memmove(self._memory, saved, len(saved))
+
     @property
     def units(self) -> dict[str, str]:
         """Unit of each member, empty if it has none."""

@@ -29,8 +29,13 @@ EXTRAS = {
     "live": Extra(("starlette", "uvicorn", "websockets"), "a live machine"),
     "opcua": Extra(("asyncua",), "an OPC UA server"),
     "drawing": Extra(("ezdxf", "lxml", "svgelements"), "a drawing in SVG or DXF"),
+    "ros": Extra(("yaml",), "a joint trajectory in YAML"),
     "export": Extra(("ziglang",), "compiling for other platforms"),
 }
+
+
+# What pip calls a package whose name is another one.
+PROJECTS = {"yaml": "pyyaml"}
 
 
 class Missing(InputError, ImportError):
@@ -72,7 +77,7 @@ def install(extra: str) -> str:
     own = metadata.distribution("motionfmu")
     told = json.loads(own.read_text("direct_url.json") or "{}")
     if "dir_info" in told:  # from its sources
-        return f"pip install {' '.join(EXTRAS[extra].packages)}"
+        return f"pip install {' '.join(PROJECTS.get(p, p) for p in EXTRAS[extra].packages)}"
     url = urlsplit(told.get("url", ""))
     file = Path(url2pathname(url.path))
     there = url.scheme == "file" and file.suffix == ".whl" and file.is_file()

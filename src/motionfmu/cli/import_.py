@@ -70,8 +70,7 @@ def _arm(path: Path, folder: Path, tip: str | None) -> None:
     else:
         arm = urdf_arm(path, tip)
     made = make_machine(arm, folder, path.name)
-    a1, _, _, _, c2, c3, _ = made.geometry.lengths
-    size = f"reach {abs(a1) + c2 + c3:.3g} m, {made.values.arm.mass:.4g} kg"
+    size = f"reach {made.geometry.reach:.3g} m, {made.values.arm.mass:.4g} kg"
     print(f"{folder / 'machine.toml'}: {arm.name} to {arm.tip}, six joints, {size}")
     print(f"not in {path.name}, and taken; what is known better goes into machine.toml:")
     for line in taken_lines(made.values.taken):

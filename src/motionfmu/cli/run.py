@@ -131,6 +131,9 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     ] = None,
     folder: Folder = None,
     csv: Annotated[bool, typer.Option("--csv", help="Also write signals.csv.")] = False,
+    trajectory: Annotated[
+        bool, typer.Option("--trajectory", help="Also write trajectory.csv, a robot's joints.")
+    ] = False,
     signals: Annotated[
         bool, typer.Option(help="Keep signals/, a file for each; they may be large.")
     ] = True,
@@ -165,6 +168,10 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
     drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
     scenario = loaded(path, machine, drawing)
+    if trajectory:
+        from motionfmu.run.recorded_trajectory import refuse_unrecorded
+
+        refuse_unrecorded(scenario)
     target = result_folder.usable(folder or results(scenario.name))
     if save_as and machine:
         from motionfmu.run.saved_scenario import save_scenario
@@ -188,7 +195,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     result = run_shown(
         scenario, options | {"source": files_of(set_), "scratch": result_folder.near(target)}
     )
-    kept = result_folder.Kept(csv, signals, pictures)
+    kept = result_folder.Kept(csv, signals, pictures, trajectory)
     shown = None
     if folder or not as_json:
         shown = result_folder.save(result, target, kept, under_way)

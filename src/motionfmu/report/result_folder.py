@@ -13,10 +13,11 @@ import numpy as np
 
 from motionfmu.base.columns import in_blocks, write
 from motionfmu.base.errors import InputError, NoNumber
+from motionfmu.run.recorded_trajectory import recorded_trajectory
 from motionfmu.run.result import Result
 from motionfmu.run.result_files import NUMBERS, SIGNALS, TRACK, json_of, numbers, track
 
-TABLE, PAGE = "signals.csv", "report.html"
+TABLE, TRAJECTORY, PAGE = "signals.csv", "trajectory.csv", "report.html"
 
 
 def _write_csv(result: Result, file: Path) -> None:
@@ -55,6 +56,7 @@ class Kept:
     csv: bool = False
     signals: bool = True
     pictures: bool = False
+    trajectory: bool = False
 
 
 def all_numbers(result: Result) -> dict[str, Any]:
@@ -95,6 +97,8 @@ def save(
         if kept.csv:
             told(TABLE)
             _write_csv(result, part / TABLE)
+        if kept.trajectory:
+            (part / TRAJECTORY).write_text(recorded_trajectory(result), encoding="utf-8")
         if contour is not None:
             way = track(contour)
             write(part / TRACK, way, way.pop("time"))

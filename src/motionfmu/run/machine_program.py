@@ -80,7 +80,7 @@ class Machine:
         program : str or Path
             File of the program, in the language of the machine's controller; or a drawing
             (.plt, .svg, .dxf), which a mill gets as G-code, and a network card as a job, as it
-            gets a part program.
+            gets a part program; or a joint trajectory (.csv, .yaml), which a robot gets as a job.
         limit : float or "planned"
             The longest run [s]; one that is not done by then has a warning. Planned: twice the
             time that its controller plans, and 600 s at least.
@@ -109,7 +109,7 @@ class Machine:
         if not self.takes_programs:
             told = "[signals] program and done are missing: it takes no program"
             raise InputError(f"{self.file}: {told}")
-        ready = self.translated(file, tables.get("drawing", {}))
+        ready = self.translated(file, tables.get("drawing", {}), set)
         values = {str(self.signals.program): str(ready.file), **self._beside(file.resolve())}
         values = ready.values | values | dict(set or {})
         given: dict[str, Any] = {"stop": self.signals.done, "limit": limit, "settle": settle}
@@ -122,7 +122,9 @@ class Machine:
         found.notes = ready.notes
         return found
 
-    def translated(self, file: Path, drawing: Mapping[str, Any]) -> MachineProgram:
+    def translated(
+        self, file: Path, drawing: Mapping[str, Any], set: Mapping[str, Any] | None = None
+    ) -> MachineProgram:
         """Translate a program into what the controller reads.
 
         Parameters
@@ -131,6 +133,8 @@ class Machine:
             The program.
         drawing : mapping
             A table [drawing], stronger than the machine's.
+        set : mapping, optional
+            Values by ``component.variable``, stronger than the machine's.
 
         Returns
         -------
@@ -140,7 +144,7 @@ class Machine:
         asked = {"stop": 1.0} | ({"drawing": drawing} if drawing else {})
         document = self._made(asked, self.name, "")
         document.refuse(list(document.wrong))
-        return program_for(document, file.resolve())
+        return program_for(document, file.resolve(), set)
 
     def plan(self, **tables: Any) -> Scenario:
         """The machine without a program, checked against its FMUs.

@@ -1,7 +1,7 @@
 """Programs in a language that a machine's controller does not read, translated into its own."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,8 @@ from motionfmu.base.disk_cache import kept, key
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.drawings import DrawingOptions
+from motionfmu.run import joint_trajectory
+from motionfmu.run.trajectory_job import job_of
 from motionfmu.run.translated_places import write_places
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.document import Document
@@ -34,9 +36,18 @@ class MachineProgram:
     notes: tuple[str, ...] = ()  # what of a drawing is left out
 
 
-def program_for(document: Document, file: Path) -> MachineProgram:
-    """The program as the machine's controller reads it; as it is, if it reads it or refuses it."""
+def program_for(
+    document: Document, file: Path, given: Mapping[str, Any] | None = None
+) -> MachineProgram:
+    """The program as the machine's controller reads it; as it is, if it reads it or refuses it.
+
+    Values that are given for the run are stronger than the machine's.
+    """
     component = str(document.body.signals.program).partition(".")[0]
+    if file.suffix.lower() in joint_trajectory.ENDINGS and document.body.signals.config is None:
+        ports = fmus.ports(document.body.component[component])
+        if {"joint_speed", "points"} <= ports.keys():
+            return _trajectory(document, component, file, dict(given or {}))
     from motionfmu.drawings.reading import ENDINGS, is_drawing
 
     drawn = is_drawing(file)
@@ -53,6 +64,28 @@ def program_for(document: Document, file: Path) -> MachineProgram:
 
 
 _KEYS = {"offset": "at"}
+
+
+def _trajectory(
+    document: Document, component: str, file: Path, given: dict[str, Any]
+) -> MachineProgram:
+    """A joint trajectory as a job; corners between its points flow."""
+    ports = fmus.ports(document.body.component[component])
+    name = f"{component}.joint_speed"
+    start = str(ports["joint_speed"].start).split()
+    asked = (dict(document.body.set) | given).get(name, [float(x) for x in start])
+    speeds = np.broadcast_to(np.asarray(asked, dtype=float), (len(start),))
+    job = job_of(
+        joint_trajectory.read_trajectory(file), file, [a.name for a in document.axes], speeds
+    )
+
+    def make(target: Path) -> None:
+        target.write_text(job.text, encoding="utf-8")
+        write_places(target, file, [f"line {n}" for n in job.lines])
+
+    values = {f"{component}.flow": True} if "flow" in ports else {}
+    made = _made(f"{file.stem}.job", make, job.text, str(file), str(job.lines))
+    return MachineProgram(made, values, notes=job.notes)
 
 
 def options_of(document: Document) -> DrawingOptions:

@@ -203,7 +203,12 @@ class Result(Mapping[str, NDArray[Any]]):
         return figure
 
     def save(
-        self, folder: str | Path, csv: bool = False, signals: bool = True, pictures: bool = False
+        self,
+        folder: str | Path,
+        csv: bool = False,
+        signals: bool = True,
+        pictures: bool = False,
+        trajectory: bool = False,
     ) -> Path:
         """Write the folder that ``motionfmu run`` writes, with its report.
 
@@ -217,6 +222,8 @@ class Result(Mapping[str, NDArray[Any]]):
             Also ``signals/``, a NumPy file for each; without it two results cannot be compared.
         pictures : bool
             Also the page's pictures as files, PNG and SVG.
+        trajectory : bool
+            Also ``trajectory.csv``, the commanded joints of a robot.
 
         Returns
         -------
@@ -226,10 +233,12 @@ class Result(Mapping[str, NDArray[Any]]):
         Raises
         ------
         InputError
-            The folder holds something else, or cannot be written.
+            The folder holds something else, or cannot be written; no joints are recorded.
         """
         outcome = report("result_folder")
-        shown: Path = outcome.save(self, Path(folder), outcome.Kept(csv, signals, pictures))
+        shown: Path = outcome.save(
+            self, Path(folder), outcome.Kept(csv, signals, pictures, trajectory)
+        )
         return shown
 
     def parameter(self, name: str) -> Any:

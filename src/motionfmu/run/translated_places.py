@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 ENDING = ".places"  # of the file beside a made program
-_MADE = re.compile(r"((?:/|[A-Za-z]:\\)[^:]*?\.ngc): line (\d+)")
+_MADE = re.compile(r"((?:/|[A-Za-z]:\\)[^:]*?\.(?:ngc|job)): line (\d+)")
 _COLUMN = re.compile(r", column \d+$")
 
 

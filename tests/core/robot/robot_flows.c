@@ -322,6 +322,38 @@ static void radius(void)
     }
 }
 
+/* A line keeps its feed from below within 2 %, once it is up to it, and the corner to a slower one
+ * is as slow as that. */
+static void feeds(void)
+{
+    const struct robot_config c = flowing(0.02);
+    static const double from[] = { 500.0, -700.0, 600.0 }, abc[] = { 180.0, 0.0, 180.0 };
+    static const double to[2][3] = { { 500.0, 700.0, 600.0 }, { 700.0, 700.0, 600.0 } };
+    struct robot_refusal why;
+    double least = INFINITY, most = 0.0, slow = 0.0;
+
+    rig_start(&c, from, abc);
+    for (int k = 0; k < 2; k++) {
+        struct robot_move m = rig_line(to[k], abc, k == 0 ? 400.0 : 20.0);
+        m.zone = k == 0 ? 20.0 : 0.0;
+        CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+    }
+    while (!robot_idle(&robot)) {
+        robot_cycle(&robot, &c);
+        double part;
+        const double *at = robot.pose.at, off = rig_off(at, from, to[0], &part);
+        const double second = rig_off(at, to[0], to[1], &part);
+        if (off < 1e-3 && fabs(at[1]) < 500.0) {
+            least = fmin(least, robot.speed);
+            most = fmax(most, robot.speed);
+        } else if (off > 0.1 && second > 0.1) { /* in the corner */
+            slow = fmax(slow, robot.speed);
+        }
+    }
+    CHECK(least >= 0.98 * 400.0 && most <= 400.0 * (1.0 + 1e-6));
+    CHECK(slow > 10.0 && slow <= 20.4);
+}
+
 int main(int argc, char **argv)
 {
     const int32_t first = argc > 2 ? atoi(argv[1]) : 0, number = argc > 2 ? atoi(argv[2]) : 24;
@@ -329,6 +361,7 @@ int main(int argc, char **argv)
 
     straight_on();
     radius();
+    feeds();
     for (int32_t n = first; n < first + number; n += argc > 2 ? 1 : CHECK_EACH) {
         const struct outcome o = sequence(n);
         all.moves += o.moves;

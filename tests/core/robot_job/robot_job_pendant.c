@@ -164,9 +164,8 @@ static const struct {
     { "CASE 1", "line 1: does not end what is open \"CASE 1\"" },
     { "SWITCH B000\nCASE 1.5\nENDSWITCH", "line 2: no whole number \"1.5\"" },
     { "ARCON ASF#(1)", "line 1: INFORM that this controller lacks \"ARCON\"" },
-    { "MOVL P001 V=10 UNTIL IN#(1)=ON", "line 1: INFORM that this controller lacks \"UNTIL\"" },
-    { "MOVL P001 V=10 ACC=50", "line 1: INFORM that this controller lacks \"ACC\"" },
-    { "SET B[0] 1", "line 1: INFORM that this controller lacks \"B\"" },
+    { "MOVS P001 V=10", "line 1: INFORM that this controller lacks \"MOVS\"" },
+    { "SET S[0] 1", "line 1: INFORM that this controller lacks \"S\"" },
     { "SET D000 P001", "line 1: INFORM that this controller lacks \"P001\"" },
     { "SET LP000 P001", "line 1: INFORM that this controller lacks \"LP000\"" },
     { "MOVJ P000 VJ=5 +MOVJ P000", "line 1: a move of another robot, and there is one \"MOVJ P000 "
@@ -241,6 +240,8 @@ static void several_texts(void)
     CHECK_EQ(robot_job_read_text(&program, &points, TEXTS[2], (int64_t)strlen(TEXTS[2]), &report),
              -1);
     CHECK(report.text == 2 && report.line == 3 && report.fault == ROBOT_JOB_BAD_POINT_TWICE);
+    CHECK_EQ(robot_job_read_text(&program, &points, TEXTS[2], ROBOT_JOB_TEXT_MAX + 1, &report), -1);
+    CHECK(report.text == 2 && report.fault == ROBOT_JOB_BAD_TEXT_LENGTH);
     program.callees = 1; /* as if nobody called C */
     program.instruction[program.job[1].start + 2].op = ROBOT_JOB_OP_NOP;
     program.jobs = 2;

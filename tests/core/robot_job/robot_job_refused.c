@@ -34,7 +34,7 @@ static const struct {
     { "MOVJ C00000 VJ=50.00", "line 1: position not in this job \"C00000\"" },
     { "MOVJ P000 + VJ=50.00", "line 1: unexpected \"+\"" },
     { "MOVJ P000 P001", "line 1: unknown word \"P001\"" },
-    { "MOVL P000 V=fast", "line 1: unexpected \"fast\"" },
+    { "MOVL P000 V=fast", "line 1: unknown word \"fast\"" },
     { "MOVL P000 V=1e2", "line 1: unknown word \"e2\"" },
     { "NOP NOP", "line 1: unexpected \"NOP\"" },
     { "END END", "line 1: unexpected \"END\"" },
@@ -195,6 +195,8 @@ static void places(void)
     CHECK_EQ(report.column, 2);
     CHECK_EQ(read_program("\nX"), -1);
     CHECK_EQ(report.column, 1);
+    CHECK_EQ(read_program("NOP\n \tCALL JOB:SUB"), -1); /* found when all has been read */
+    CHECK(report.line == 2 && report.column == 12 && report.offset == 15);
 }
 
 /* Bytes and lengths that are no text. */
@@ -258,9 +260,24 @@ static void limits(void)
     }
 }
 
+/* The end of a job needs an instruction, too: where there is none left is told by the last line. */
+static void full_at_the_end(void)
+{
+    static char text[1 << 17];
+    int at = 0;
+    for (int i = 0; i < ROBOT_JOB_INSTRUCTIONS; i++) {
+        at += snprintf(text + at, sizeof text - (size_t)at, "NOP\n");
+    }
+    snprintf(text + at, sizeof text - (size_t)at, "\n  JOB B\n");
+    CHECK_EQ(read_program(text), -1);
+    CHECK_TEXT(message, "line 16384: too many \"NOP\" (at most 16384)");
+    CHECK(report.column == 1 && report.offset == at - 4);
+}
+
 int main(void)
 {
     refused();
+    full_at_the_end();
     places();
     shapes();
     limits();

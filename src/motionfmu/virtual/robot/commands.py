@@ -2,14 +2,14 @@
 
 import ctypes
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from motionfmu.analysis.gcode.program import Texts
 from motionfmu.base.binding import Struct, library, text
 from motionfmu.base.errors import suggestion
-from motionfmu.virtual.robot.kinematics import Kinematics, pose_of
+from motionfmu.virtual.robot.kinematics import Kinematics, configuration, pose_of
 from motionfmu.virtual.robot.refusal import (
     RobotError,
     bounded,
@@ -20,20 +20,35 @@ from motionfmu.virtual.robot.refusal import (
     within,
 )
 
+if TYPE_CHECKING:
+    from motionfmu.analysis.collisions import Cell
+    from motionfmu.virtual.robot.cell_guard import CellGuard
+
 _JOINTS, _LINE, _CIRCLE = range(3)
 _SINGULAR = {"slow": 0, "refuse": 1, "wrist": 2}
 _ANY_BRANCH = -1
 _JOBS = (".JBI", ".jbi", ".job")  # files of the robot language
 
 
+def _guard(settings: dict[str, Any], cell: "Cell | None") -> "CellGuard | None":
+    """Look at moves if there is a cell; else nothing of it is imported, which takes 0.15 s."""
+    if cell is None:
+        return None
+    from motionfmu.virtual.robot.cell_guard import CellGuard
+
+    whole = configuration(settings)
+    return CellGuard({name: whole[name] for name in whole}, cell)
+
+
 class Commands:
     """Moves, jogs, programs, outputs and keys of a VirtualRobot."""
 
-    def __init__(self, state: Struct, settings: dict[str, Any]) -> None:
+    def __init__(self, state: Struct, settings: dict[str, Any], cell: "Cell | None" = None) -> None:
         self._state, self._panel = state, Struct("robot_panel", state.pointer)
         self._program: Struct | None = None
         self._texts: tuple[Texts, list[bytes]] | None = None  # C reads them
         self.kinematics = Kinematics(**settings)
+        self._guard = _guard(settings, cell)
 
     def move_joints(self, target: Any, **how: Any) -> int:
         """Move all joints to angles [deg] at a share of their speeds; returns the move's number.
@@ -99,12 +114,15 @@ class Commands:
             ("part", 1e-3, 0.5),
         ):
             move[name] = within(name, given[name], low, high)
-        six = (ctypes.c_double * 6)(*target)
+        six, kept = (ctypes.c_double * 6)(*target), self._state.saved() if self._guard else b""
         code = library().binding_robot_move(
             self._state.pointer, move.pointer, six, why.pointer, words
         )
         if code:
             raise self._busy(call) or refused(call, code, why, words)
+        if self._guard and (near := self._guard.nearest(self._state)):
+            self._state.restore(kept)
+            raise RobotError(f"{call}: {near.words}", "COLLISION", near.distance)
         return int(self._state["move"])
 
     def _busy(self, call: str) -> RobotError | None:

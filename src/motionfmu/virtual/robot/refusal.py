@@ -39,7 +39,7 @@ class RobotError(InputError):
     status : str
         Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
         OFF_PLANE, NO_UNIT of a move;
-        VALUE of an argument; PROGRAM of a text.
+        COLLISION; VALUE of an argument; PROGRAM of a text.
     value, limit : float
         What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
     which : int

@@ -2,7 +2,7 @@
 
 import ctypes
 import warnings
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,6 +11,9 @@ from motionfmu.base.errors import InputError
 from motionfmu.virtual.robot.commands import Commands
 from motionfmu.virtual.robot.kinematics import configuration, switched_on
 from motionfmu.virtual.robot.refusal import RobotError, message, whole_within
+
+if TYPE_CHECKING:
+    from motionfmu.analysis.collisions import Cell
 
 # Answers of reading.status.
 IDLE, RUNNING, HOLD, WAITING, DELAY, PAUSED, JOG, ERROR, STOPPED = range(9)
@@ -78,6 +81,9 @@ class VirtualRobot(Commands, Station[RobotReading]):
 
     Parameters
     ----------
+    cell : Cell, optional
+        Of `motionfmu.analysis.collisions`: moves by calls that would bring the arm too near itself
+        or the cell's bodies are refused. None: nobody looks; programs are `motionfmu job`'s.
     **settings
         As in `defaults`; one value goes to all joints.
 
@@ -104,9 +110,9 @@ class VirtualRobot(Commands, Station[RobotReading]):
 
     _at_rest = "rests"
 
-    def __init__(self, **settings: Any) -> None:
+    def __init__(self, *, cell: "Cell | None" = None, **settings: Any) -> None:
         state = switched_on(settings)
-        Commands.__init__(self, state, settings)
+        Commands.__init__(self, state, settings, cell)
 
     def __repr__(self) -> str:
         seen = self.read()

@@ -1,0 +1,185 @@
+"""An arm of six turning joints by the lines of its axes, whatever its kind."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
+from motionfmu.arms.arm_geometry import SIX, NoOpwGeometry, OpwGeometry, kind_of, opw_geometry
+
+# Angles of joints 2, 3, 4 at which the reach is looked for; it is 1 % too short at most.
+STEPS = 24
+# [m] and [1]: below them lengths and directions are the arithmetic's.
+DIGITS = 12
+MOST_DEVIATION = 1e-3  # [m] of seven lengths from the description
+
+
+@dataclass(frozen=True)
+class AxesGeometry:
+    """An arm by its axes, at zero and parallel to its base.
+
+    Attributes
+    ----------
+    origins : (6, 3) ndarray
+        Origin of a joint from that of the one before it, of the base for joint 1 [m].
+    axes : (6, 3) ndarray
+        Unit vectors.
+    flange : (4, 4) ndarray
+        The arm's tip from the origin of joint 6 [m].
+    why : str
+        What keeps it from being an arm by seven lengths.
+    """
+
+    origins: Array
+    axes: Array
+    flange: Array
+    why: str = ""
+
+    @property
+    def deviation(self) -> float:
+        """None: the axes are the chain."""
+        return 0.0
+
+    @property
+    def straight(self) -> Array:
+        """Joint angles at which frames are parallel to the base [rad]."""
+        return np.zeros(SIX)
+
+    @property
+    def base(self) -> Array:
+        """The arm's own base."""
+        return np.eye(4)
+
+    @property
+    def joint_frames(self) -> list[tuple[Array, Array]]:
+        """Frame of each joint at 0 in the link before, and its axis."""
+        return [(placed(o), a) for o, a in zip(self.origins, self.axes, strict=True)]
+
+    def frames(self, q: Array) -> list[Array]:
+        """Where the links are.
+
+        Parameters
+        ----------
+        q : (..., 6) array_like
+            Joint angles [rad].
+
+        Returns
+        -------
+        list of (..., 4, 4) ndarray
+            Frame of each in the base [m].
+        """
+        q = np.asarray(q, float)
+        frame, found = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)), []
+        for k, (origin, axis) in enumerate(zip(self.origins, self.axes, strict=True)):
+            step = np.broadcast_to(placed(origin), frame.shape).copy()
+            step[..., :3, :3] = about(axis, q[..., k])
+            frame = frame @ step
+            found.append(frame)
+        return found
+
+    def jacobian(self, q: Array) -> Array:
+        """Velocity and angular velocity of the tip by joint speeds.
+
+        Parameters
+        ----------
+        q : (..., 6) array_like
+            Joint angles [rad].
+
+        Returns
+        -------
+        (..., 6, 6) ndarray
+            Rows of the velocity first [m/rad], [1].
+        """
+        frames = self.frames(q)
+        tip = (frames[-1] @ self.flange)[..., :3, 3]
+        turns = [f[..., :3, :3] @ a for f, a in zip(frames, self.axes, strict=True)]
+        ways = [np.cross(t, tip - f[..., :3, 3]) for t, f in zip(turns, frames, strict=True)]
+        return np.concatenate([np.stack(ways, -1), np.stack(turns, -1)], -2)
+
+    @property
+    def reach(self) -> float:
+        """Largest distance of the wrist from axis 1 [m].
+
+        The wrist is the point of axis 5 that is nearest to axis 6.
+        """
+        turns = np.linspace(-np.pi, np.pi, STEPS, endpoint=False)
+        q = np.zeros((STEPS**3, SIX))
+        q[:, 1:4] = np.stack(np.meshgrid(turns, turns, turns), -1).reshape(-1, 3)
+        u, v, way = self.axes[4], self.axes[5], self.origins[5]
+        across = v - u * (u @ v)
+        size = float(across @ across)
+        along = float(u @ way)
+        if size > 1e-6:
+            along -= float(across @ way) / size * float(u @ v)
+        wrist = (self.frames(q)[4] @ np.array([*(along * u), 1.0]))[:, :3]
+        return float(np.linalg.norm(np.cross(wrist - self.origins[0], self.axes[0]), axis=1).max())
+
+
+ArmGeometry = OpwGeometry | AxesGeometry
+
+
+def axes_geometry(arm: ArmDescription) -> AxesGeometry:
+    """Take the axes of an arm of six turning joints.
+
+    Parameters
+    ----------
+    arm : ArmDescription
+
+    Returns
+    -------
+    AxesGeometry
+    """
+    frames = arm.frames(np.zeros(SIX))
+    places = np.array([np.zeros(3), *(f[:3, 3] for f in frames)])
+    axes = np.array([f[:3, :3] @ j.axis for f, j in zip(frames, arm.joints, strict=True)])
+    tip = np.linalg.inv(placed(places[-1])) @ frames[-1] @ arm.tip_frame
+    return AxesGeometry(_tidy(np.diff(places, axis=0)), _tidy(axes), tip)
+
+
+def driven_geometry(arm: ArmDescription) -> ArmGeometry:
+    """Find how the controller drives an arm.
+
+    Parameters
+    ----------
+    arm : ArmDescription
+
+    Returns
+    -------
+    OpwGeometry or AxesGeometry
+        The first for an arm with a spherical wrist whose lengths fit to 1 mm.
+
+    Raises
+    ------
+    NoOpwGeometry
+        It has other joints than six that turn; the text names its kind and what is missing.
+    """
+    try:
+        geometry = opw_geometry(arm)
+    except NoOpwGeometry as error:
+        if any(j.slides or j.follows for j in arm.joints) or len(arm.joints) != SIX:
+            raise NoOpwGeometry(f"{kind_of(arm)}; {_missing(arm)}") from None
+        return replace(axes_geometry(arm), why=str(error))
+    if geometry.deviation <= MOST_DEVIATION:
+        return geometry
+    why = f"its seven lengths are off by {1e3 * geometry.deviation:.3g} mm at the tip"
+    return replace(axes_geometry(arm), why=why)
+
+
+def _missing(arm: ArmDescription) -> str:
+    """What controller, drives and plant lack for an arm with other joints."""
+    told = []
+    count = len(arm.driven)
+    if count > SIX:
+        told.append(f"which of its {count} joints is held still, for a pose leaves {count - SIX}")
+        told[-1] += " of them open (a URDF in which it is fixed has six)"
+    if count < SIX:
+        told.append(f"poses of {count} coordinates: a job asks for six, the arm has {count}")
+    if names := [j.name for j in arm.joints if j.slides]:
+        told.append(f"drives and links that slide, in mm ({', '.join(names)})")
+    if names := [j.name for j in arm.joints if j.follows is not None]:
+        told.append(f"a linkage in controller and plant ({', '.join(names)})")
+    return "missing: " + "; ".join(told)
+
+
+def _tidy(values: Array) -> Array:
+    return np.asarray(np.round(values, DIGITS) + 0.0)
