@@ -15,7 +15,7 @@ from motionfmu.analysis.linear.linear_form import Gain
 from motionfmu.analysis.linear.parts import elements
 from motionfmu.analysis.linear.pointwise import Quick
 from motionfmu.analysis.linear.tuning_parts import linearised, matrices
-from motionfmu.arm_machines.machine_arm import CONTROLLER, DRIVES, PLANT
+from motionfmu.arm_machines.machine_arm import CONTROLLER, DRIVES, BY_LENGTHS
 from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario
 
@@ -33,7 +33,7 @@ LOWEST, TOP, COUNT = 0.3, 0.9, 360
 def arm_names(scenario: Scenario) -> dict[str, str] | None:
     """Component by FMU of a scenario with an arm, its drives and its controller; else None."""
     names = {fmu: name for name, fmu in scenario.document.body.component.items()}
-    wanted = (PLANT, DRIVES, CONTROLLER)
+    wanted = (BY_LENGTHS, DRIVES, CONTROLLER)
     return {fmu: names[fmu] for fmu in wanted} if names.keys() >= set(wanted) else None
 
 
@@ -68,10 +68,10 @@ class JointLoops:
     def __init__(self, scenario: Scenario, set_: dict[str, Any]) -> None:
         names = arm_names(scenario)
         if names is None:
-            told = f"{PLANT}, {DRIVES} and {CONTROLLER} are wanted among the components"
+            told = f"{BY_LENGTHS}, {DRIVES} and {CONTROLLER} are wanted among the components"
             raise InputError(f"{scenario.document.file}: no arm: {told}")
         self.scenario, self.names = scenario, names
-        self.arm, self.drives = names[PLANT], names[DRIVES]
+        self.arm, self.drives = names[BY_LENGTHS], names[DRIVES]
         still = {f"{self.arm}.{n}": v for n, v in MOVING.items()}
         # Feed-forward moves no pole: what it adds to the swing is the command's.
         still[f"{self.drives}.feed_forward"] = 0.0
