@@ -15,7 +15,7 @@ from motionfmu.analysis.linear.linear_form import Gain
 from motionfmu.analysis.linear.parts import elements
 from motionfmu.analysis.linear.pointwise import Quick
 from motionfmu.analysis.linear.tuning_parts import linearised, matrices
-from motionfmu.arm_machines.machine_arm import CONTROLLER, DRIVES, BY_LENGTHS
+from motionfmu.arm_machines.machine_arm import BY_LENGTHS, CONTROLLER, DRIVES
 from motionfmu.base.errors import InputError
 from motionfmu.run import Scenario
 
