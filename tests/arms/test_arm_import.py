@@ -43,7 +43,7 @@ def result(folder: Path):
 
 def test_what_was_taken_for_granted_is_listed(folder):
     shown = (folder.parent / "told").read_text(encoding="utf-8")
-    assert "small_arm to flange, six joints, reach 0.73 m, 21.8 kg" in shown
+    assert "small_arm to flange, six joints, reach 0.731 m, 21.8 kg" in shown
     for what in ("acceleration: ", "gear ratio: 81, ", "payload: ", "start pose: ", "motors, ",
                  "stiffness", "range of joints 6", "errors of its geometry", "gains of the drives",
                  "torque: "):  # fmt: skip

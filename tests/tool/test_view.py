@@ -6,12 +6,14 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pinocchio
 import py_opw_kinematics as opw
 import pytest
 from conftest import ROOT
 from hypothesis import given
 from hypothesis import strategies as st
 from page_curves import page_data
+from public_arms import universal
 from py_mini_racer import MiniRacer
 
 import motionfmu
@@ -90,6 +92,24 @@ def test_the_script_draws_the_same_arm(script: MiniRacer, name: str) -> None:
         drawn = of(script, f"armPose({js(arm)}, {json.dumps(q.tolist())})")
         for part, place in points.items():
             assert np.allclose(drawn[part], place[k], atol=1e-9), part
+
+
+def test_the_script_draws_an_arm_by_its_axes(script: MiniRacer) -> None:
+    """A UR5e: places and axes of its joints are those of pinocchio."""
+    ur5e = universal((0.1625, 0.1333, 0.0997, 0.0996), (-0.425, -0.3922))
+    origins, directions, _, _ = ur5e.straight()
+    axes = zip((1e3 * origins).tolist(), directions.tolist(), strict=True)
+    arm = Arm((), axes=tuple((tuple(o), tuple(d)) for o, d in axes))
+    model, _ = ur5e.model()
+    data = model.createData()
+    for q in np.random.default_rng(7).uniform(-3.0, 3.0, (40, 6)):
+        pinocchio.forwardKinematics(model, data, q)
+        for drawn, place in zip(
+            of(script, f"axesPose({js(arm)}, {json.dumps(q.tolist())})"), data.oMi[1:], strict=True
+        ):
+            assert np.allclose(drawn["at"], 1e3 * place.translation, atol=1e-6)
+            assert np.allclose(drawn["axis"], place.rotation[:, 2], atol=1e-9)
+    assert of(script, f"armReach({js(arm)})")[1] == pytest.approx(162.5)
 
 
 @given(st.lists(st.floats(-1e5, 1e5), max_size=60))

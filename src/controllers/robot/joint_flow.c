@@ -12,7 +12,7 @@ enum { ROOM = JOINT_CURVE_PIECES + 3 };
 /* Places of a corner, and of each of the two ways that it replaces, at which the tip is compared;
  * parts into which the two steps about the worst place are divided then: where the nearer way
  * changes the distance has a peak. */
-enum { PLACES = 32, WAYS = 24, FINER = 16 };
+enum { PLACES = 64, WAYS = 24, FINER = 16 };
 
 /* The largest corner is found by so many halvings, to a part of it. */
 enum { HALVINGS = 10 };

@@ -90,7 +90,7 @@ enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
     memcpy(from, r->rear_joint, sizeof from);
     robot_plan_joints(r, c, target, move->share);
     if (robot_flows(r, c, move)) {
-        robot_flow_line(r, c, move, from, target, move->share, false);
+        robot_flow_line(r, c, move, from, target);
     }
     return ROBOT_OK;
 }

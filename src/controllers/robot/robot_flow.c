@@ -52,9 +52,9 @@ static void add(struct robot *r, const struct robot_config *c, const struct robo
     r->tool_path.count = r->tool_path.next = 0;
 }
 
-void robot_flow_line(struct robot *r, const struct robot_config *c, const struct robot_move *move,
-                     const double from[OPW_JOINTS], const double to[OPW_JOINTS], double share,
-                     bool stop)
+/* The joints go straight to others, and stop there if that is said. */
+static void go(struct robot *r, const struct robot_config *c, const struct robot_move *move,
+               const double from[OPW_JOINTS], const double to[OPW_JOINTS], double share, bool stop)
 {
     double speed[OPW_JOINTS];
     struct segment piece;
@@ -66,8 +66,14 @@ void robot_flow_line(struct robot *r, const struct robot_config *c, const struct
     add(r, c, move, stop, false, count, &piece);
 }
 
+void robot_flow_line(struct robot *r, const struct robot_config *c, const struct robot_move *move,
+                     const double from[OPW_JOINTS], const double to[OPW_JOINTS])
+{
+    go(r, c, move, from, to, move->share, false);
+}
+
 bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct robot_move *move,
-                     const double from[OPW_JOINTS], double feed)
+                     const double *turning, const double from[OPW_JOINTS], double feed)
 {
     struct segment piece[JOINT_CURVE_PIECES];
     struct manipulator arm;
@@ -84,6 +90,9 @@ bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct
     const int32_t count = joint_curve_path(&r->tool_path, &g, from, &l, piece);
     if (count == 0) {
         return false;
+    }
+    if (turning) {
+        go(r, c, move, turning, from, 1.0, true);
     }
     add(r, c, move, false, true, count, piece);
     return true;

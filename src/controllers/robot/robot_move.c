@@ -281,17 +281,6 @@ static struct tool_path_limits limits_of(const struct robot *r, const struct rob
     return l;
 }
 
-/* The path of r->tool_path flows on from joints at its start, to which the arm goes from `turning`
- * first if it is given. [rad] */
-static bool flow_on(struct robot *r, const struct robot_config *c, const struct robot_move *move,
-                    const double *turning, const double start[OPW_JOINTS], double feed)
-{
-    if (turning) {
-        robot_flow_line(r, c, move, turning, start, 1.0, true);
-    }
-    return robot_flow_path(r, c, move, start, feed);
-}
-
 /* CCN 22: a move that turns first is two moves, which are accepted together or refused together; at
  * its ends corners and stops are told apart. */
 static enum robot_status along(struct robot *r, const struct robot_config *c,
@@ -346,7 +335,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
         memcpy(why->place, place, sizeof why->place);
         return status;
     }
-    if (flows && !flow_on(r, c, move, first.index > 0 ? began : NULL, start, l.feed)) {
+    if (flows && !robot_flow_path(r, c, move, first.index > 0 ? began : NULL, start, l.feed)) {
         why->which = manipulator_factor(&arm, start, &why->value);
         return ROBOT_SINGULAR;
     }

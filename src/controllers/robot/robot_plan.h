@@ -38,16 +38,16 @@ uint32_t robot_branches(const struct robot_target *t);
 bool robot_flows(const struct robot *r, const struct robot_config *c,
                  const struct robot_move *move);
 
-/* The joints go straight from one place to another [rad], at a share of their speeds, and stop or
- * have the move's zone there; this flows with the moves before. */
+/* The joints go straight from one place to another [rad], at a share of their speeds; this flows
+ * with the moves before. */
 void robot_flow_line(struct robot *r, const struct robot_config *c, const struct robot_move *move,
-                     const double from[OPW_JOINTS], const double to[OPW_JOINTS], double share,
-                     bool stop);
+                     const double from[OPW_JOINTS], const double to[OPW_JOINTS]);
 
-/* So does the path of r->tool_path, which begins with these joints [rad] and has a feed [mm/s].
- * False: it needs more pieces than there are. */
+/* So does the path of r->tool_path, which begins with these joints and has a feed [mm/s]; the arm
+ * goes there from `turning` first, if that is given. [rad] False, and nothing done: it needs more
+ * pieces than there are. */
 bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct robot_move *move,
-                     const double from[OPW_JOINTS], double feed);
+                     const double *turning, const double from[OPW_JOINTS], double feed);
 
 /* Put commands of the latest move into the ring, as many as it has room for. */
 void robot_feed(struct robot *r);

@@ -32,8 +32,7 @@ function machineView(data) {
     const points = [[0, 0, 0], ...path.point];
     const stride = Math.max(1, Math.floor(time.length / 60));
     for (let k = 0; k < time.length; k += stride) {
-      const p = armPose(data.arm, joints.map((s) => s[k]));
-      points.push(p.shoulder, p.elbow, p.forearm, p.wrist, p.tip);
+      points.push(...armPoints(data.arm, joints.map((s) => s[k])));
     }
     return bounds(points);
   }
@@ -41,7 +40,7 @@ function machineView(data) {
   // Faces of the machine at a time, each with a colour.
   function machine() {
     if (!data.arm) return gantryFaces(sampled(time, tool, now), onPath, theme);
-    return armFaces(data.arm, sampled(time, joints, now), whole.radius / 1100, theme);
+    return armFaces(data.arm, sampled(time, joints, now), whole.radius / 1100, theme, sampled(time, tool, now));
   }
 
   let theme = {};

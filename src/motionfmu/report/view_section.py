@@ -62,6 +62,7 @@ def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
             "offsets": arm.offsets,
             "signs": arm.signs,
             "pen": arm.pen,
+            "axes": arm.axes,
         },
         "path": {
             "time": quantised(scene.path_time),

@@ -1,5 +1,6 @@
 """The lengths of an arm that a moving picture draws: named, or its component's parameters."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -8,17 +9,22 @@ from motionfmu.scenarios.system import Resolver
 
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
+BY, ORIGIN, DIRECTION = "arm_by", "axis_origin", "axis_direction"
+
+Three = tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm with parallel axes 2 and 3 and a spherical wrist."""
+    """An arm with parallel axes 2 and 3 and a spherical wrist, or of any axes."""
 
     # a1, a2, b, c1, c2, c3, c4 of Brandstoetter, Angerer and Hofbaur 2014 [mm]
     lengths: tuple[float, ...]
     offsets: tuple[float, ...] = (0.0,) * 6  # th = sign q - offset [rad]
     signs: tuple[float, ...] = (1.0,) * 6
     pen: float = 0.0  # length of the tool along z of the flange [mm]
+    # Instead of lengths, with all joints 0: origin of each from the one before [mm], its axis
+    axes: tuple[tuple[Three, Three], ...] = ()
 
 
 def arm_of(
@@ -31,6 +37,8 @@ def arm_of(
         return Arm(lengths, tuple(view.offsets), tuple(view.signs), 1e3 * view.pen)
     component = joints.partition(".")[0]
     ports = resolver.ports[component]
+    if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
+        return Arm((), axes=_axes(*(parameter(f"{component}.{n}") for n in (ORIGIN, DIRECTION))))
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -43,3 +51,11 @@ def arm_of(
     lengths = tuple(1e3 * float(parameter(f"{component}.{n}")[0]) for n in LENGTHS)
     offsets, signs = told(OFFSETS, (0.0,) * 6), told(SIGNS, (1.0,) * 6)
     return Arm(lengths, offsets, signs, 1e3 * told(PEN, (0.0,))[0])
+
+
+def _axes(origin: Sequence[float], direction: Sequence[float]) -> tuple[tuple[Three, Three], ...]:
+    def rows(numbers: Sequence[float], factor: float) -> list[Three]:
+        return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in range(0, 18, 3)]
+
+    units = [tuple(x / math.hypot(*d) for x in d) for d in rows(direction, 1.0)]
+    return tuple(zip(rows(origin, 1e3), units, strict=True))

@@ -102,7 +102,7 @@ static double most_off(const struct robot_config *c)
     static const double SAG = 5e-3;
     double most = 0.0;
 
-    for (int n = 0; n < cycles; n += STRIDE) {
+    for (int n = 0; n < cycles && ways > 0; n += STRIDE) {
         double at[3], off = INFINITY;
         tip(c, q[n], at);
         for (int m = 0; m < ways; m++) {

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from motionfmu.arms.arm_description import turn_of
 from motionfmu.base.toml_lines import model_of
 
 Array = NDArray[np.float64]
@@ -131,9 +132,7 @@ def read_cell(file: str | Path) -> Cell:
 
 
 def _body(row: _BodyRow) -> CellBody:
-    from motionfmu.virtual.robot import matrix_of
-
     if row.bar is not None:
         return CellBody(row.name, bar=np.array(row.bar), radius=float(row.radius or 0.0))
-    frame = matrix_of(row.at)
-    return CellBody(row.name, 0.5 * np.array(row.box), frame[:3, :3], frame[:3, 3])
+    place, (a, b, c) = np.array(row.at[:3]), np.radians(row.at[3:])
+    return CellBody(row.name, 0.5 * np.array(row.box), turn_of(a, b, c), place)

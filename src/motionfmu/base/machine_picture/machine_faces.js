@@ -2,7 +2,8 @@
 // A machine as it is drawn: faces with their corners, outward normals and colours.
 
 // An arm at its joint angles [rad]; s: its size against one of 1.1 m; colours of body, joint, tool.
-function armFaces(arm, joints, s, colours) {
+function armFaces(arm, joints, s, colours, tool) {
+  if (arm.axes.length) return axesFaces(arm, joints, s, colours, tool);
   const p = armPose(arm, joints), faces = [];
   const put = (made, color) => made.forEach((f) => faces.push({ ...f, color }));
   const hub = (at, axis, half, r) => put(
@@ -25,6 +26,22 @@ function armFaces(arm, joints, s, colours) {
   hub(p.wrist, bend, 46, 40);
   put(tube(p.wrist, p.flange, 30 * s, 26 * s), colours.body);
   if (arm.pen > 0) put(tube(p.flange, p.tip, 9 * s, 3 * s, 8), colours.tool);
+  return faces;
+}
+
+// An arm told by its axes: a hub for each joint, links between them, the tool from the last one.
+function axesFaces(arm, joints, s, colours, tool) {
+  const pose = axesPose(arm, joints), faces = [];
+  const put = (made, color) => made.forEach((f) => faces.push({ ...f, color }));
+  put(tube([0, 0, 0], [0, 0, 40 * s], 190 * s, 190 * s, 18), colours.joint);
+  let before = [0, 0, 0];
+  pose.forEach(({ at, axis }, i) => {
+    const r = (105 - 13 * i) * s;
+    if (Math.hypot(...add(at, before, -1)) > 1) put(tube(before, at, 0.85 * r, 0.8 * r), colours.body);
+    put(tube(add(at, axis, -1.15 * r), add(at, axis, 1.15 * r), r), colours.joint);
+    before = at;
+  });
+  if (tool && Math.hypot(...add(tool, before, -1)) > 1) put(tube(before, tool, 24 * s, 6 * s, 8), colours.tool);
   return faces;
 }
 

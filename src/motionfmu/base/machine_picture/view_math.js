@@ -37,6 +37,40 @@ function armPose(arm, q) {
   return { column, shoulder, elbow, forearm, wrist, flange, tip, turned, fore, hand };
 }
 
+// A turn by q about a unit vector u, after Rodrigues.
+function rotAbout(u, q) {
+  const c = Math.cos(q), s = Math.sin(q), across = [[0, -u[2], u[1]], [u[2], 0, -u[0]], [-u[1], u[0], 0]];
+  return across.map((row, i) => row.map((x, j) => (i === j ? c : 0) + s * x + (1 - c) * u[i] * u[j]));
+}
+
+// Place and axis of each joint of an arm told by its axes: each turns all that lies behind it.
+function axesPose(arm, q) {
+  let at = [0, 0, 0], frame = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+  return arm.axes.map(([origin, direction], i) => {
+    at = add(at, times(frame, origin));
+    const axis = times(frame, direction);
+    frame = product(frame, rotAbout(direction, q[i]));
+    return { at, axis };
+  });
+}
+
+// Points of an arm, whatever tells it.
+function armPoints(arm, q) {
+  if (arm.axes.length) {
+    const room = [0, 0, 0.15 * armReach(arm)[0]];
+    return axesPose(arm, q).flatMap(({ at }) => [at, add(at, room)]);
+  }
+  const p = armPose(arm, q);
+  return [p.shoulder, p.elbow, p.forearm, p.wrist, p.tip];
+}
+
+// How far an arm reaches from its shoulder, and how high that is.
+function armReach(arm) {
+  if (!arm.axes.length) return [arm.lengths[0] + arm.lengths[4] + arm.lengths[5], arm.lengths[3]];
+  const ways = arm.axes.map(([origin]) => Math.hypot(...origin));
+  return [ways.slice(1).reduce((sum, way) => sum + way, 0), Math.max(0, arm.axes[0][0][2])];
+}
+
 // A camera looks at a point from a distance; azimuth from x, elevation from the floor.
 function camera(view, width, height) {
   const [ca, sa] = [Math.cos(view.azimuth), Math.sin(view.azimuth)];

@@ -81,8 +81,8 @@ function fit() {
   const points = [...plan.flatMap((s) => s.points), ...done.map((d) => d.at), tool ?? [0, 0, 0]];
   const arm = scene.arm;
   if (arm) {
-    const reach = Math.hypot(arm.lengths[0], 0) + arm.lengths[4] + arm.lengths[5];
-    points.push([-0.35 * reach, -0.5 * reach, 0], [0.8 * reach, 0.5 * reach, arm.lengths[3] + 0.8 * reach]);
+    const [reach, height] = armReach(arm);
+    points.push([-0.35 * reach, -0.5 * reach, 0], [0.8 * reach, 0.5 * reach, height + 0.8 * reach]);
   }
   stage = bounds(points);
   if (stage.radius < 25) stage = bounds([add(stage.centre, [30, 30, 0], -1), add(stage.centre, [30, 30, 15])]);
@@ -182,7 +182,7 @@ function trailOn(look) {
 }
 
 function machineOn(look) {
-  const faces = scene.arm ? joints?.length && armFaces(scene.arm, joints, stage.radius / 1100, theme) : gantryFaces(tool, stage, theme);
+  const faces = scene.arm ? joints?.length && armFaces(scene.arm, joints, stage.radius / 1100, theme, tool) : gantryFaces(tool, stage, theme);
   if (!faces) return;
   facesToDraw(pen, faces, view, look, scene.arm ? 0.85 : 0.3).sort((a, b) => b.depth - a.depth).forEach((item) => item.draw());
 }
