@@ -64,7 +64,7 @@ class JointGains:
 
 @dataclass(frozen=True)
 class ArmVerdict:
-    """Whether gains keep the limits in all poses, and where they keep them least.
+    """Whether gains keep the limits in all poses, and where least.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class ArmVerdict:
 
 @dataclass
 class ArmTuned:
-    """Gains of an arm's drives, and what they are worth before and after.
+    """Gains of an arm, and what they are worth before and after.
 
     Attributes
     ----------
