@@ -132,3 +132,15 @@ def test_points_of_a_matrix_share_the_axes_of_their_row_and_column() -> None:
     places = [(t["xaxis"], t["yaxis"]) for t in page["data"]]
     assert places == [("x", "y"), ("x", "y2"), ("x2", "y2")] and len(axes) == 3
     assert axes[1].get_shared_x_axes().joined(axes[0], axes[1])
+
+
+@pytest.mark.parametrize("log", [False, True])
+@pytest.mark.parametrize("upright", [False, True])
+def test_a_level_and_its_text_are_at_the_same_place(log: bool, upright: bool) -> None:
+    scale = Scale("size", "", (0.1, 1000.0), log=log)
+    diagram = Diagram((scale,), [Subplot(scale, [LevelMark(130.0, "asked", upright=upright)])])
+    layout = plotly_figure.plotly_figure(diagram)["layout"]
+    (line,), (told,) = layout["shapes"], [a for a in layout["annotations"] if a["text"] == "asked"]
+    axis = "x" if upright else "y"
+    assert line[f"{axis}0"] == 130.0  # of the data, on any axis
+    assert told[axis] == pytest.approx(np.log10(130.0) if log else 130.0)

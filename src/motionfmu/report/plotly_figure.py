@@ -377,7 +377,7 @@ def _bar(mark: BarMark, diagram: Diagram, subplot: Subplot, at: Figure) -> Any:
     return [trace], {}
 
 
-def _level(mark: LevelMark, _: Diagram, __: Subplot, at: Figure) -> Any:
+def _level(mark: LevelMark, diagram: Diagram, plot: Subplot, at: Figure) -> Any:
     x, y = at["xaxis"], at["yaxis"]
     across = {"x0": 0, "x1": 1, "xref": f"{x} domain"} | {
         "y0": mark.value,
@@ -390,14 +390,17 @@ def _level(mark: LevelMark, _: Diagram, __: Subplot, at: Figure) -> Any:
     if not mark.text:
         return [], {"shapes": [shape]}
     told: Figure = {"text": text_of(mark.text), "showarrow": False}
+    scale = diagram.x[0] if mark.upright else plot.y
+    # Unlike a line, a text has the exponent of its place on a logarithmic axis.
+    place = math.log10(mark.value) if scale.log else mark.value
     if mark.upright:
-        told |= {"x": mark.value, "xref": x, "y": 1, "yref": f"{y} domain", "yanchor": "top"}
+        told |= {"x": place, "xref": x, "y": 1, "yref": f"{y} domain", "yanchor": "top"}
         told |= {"xanchor": "left" if mark.side == "right" else "right"}
         told |= {"xshift": 4 if mark.side == "right" else -4}
         told |= {"font": {"size": 12, "color": mark.color}}
     else:
         told |= {"x": 1, "xref": f"{x} domain", "xanchor": "left", "xshift": 4}
-        told |= {"y": mark.value, "yref": y, "yanchor": "middle"}
+        told |= {"y": place, "yref": y, "yanchor": "middle"}
         told |= {"font": {"size": 12, "color": INK}}
     return [], {"shapes": [shape], "annotations": [told]}
 
