@@ -21,6 +21,7 @@ struct model {
     RING_IN_USE(controller.robot.ring) \
     MEAN_IN_USE(controller.robot.mean, controller.robot.trajectory) \
     FMU_LIST(controller.robot.moves.move, controller.robot.moves.count) \
+    JOINT_FLOW_IN_USE(controller.robot.flow) \
     FMU_LIST(controller.robot.tool_path.segment, controller.robot.tool_path.count) \
     INTERPRETER_IN_USE(controller.orders.gcode) \
     FMU_LIST(controller.orders.job.frame, controller.orders.job.frames) \

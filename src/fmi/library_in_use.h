@@ -33,6 +33,14 @@
     FMU_TO_END(curve.profile.plan[0].node, curve.profile.plan[0].first) \
     FMU_TO_END(curve.profile.plan[1].node, curve.profile.plan[1].first)
 
+/* For a struct joint_flow, whose speed profile is made when the first move begins. */
+#define JOINT_FLOW_IN_USE(flow) \
+    FMU_WHEN(flow.profile, flow.made, 1, INT32_MAX) \
+    FMU_RING(flow.profile.ring, flow.profile.at.head, flow.profile.count, 0) \
+    FMU_TO_END(flow.profile.plan[0].node, flow.profile.plan[0].first) \
+    FMU_TO_END(flow.profile.plan[1].node, flow.profile.plan[1].first) \
+    FMU_BETWEEN(flow.piece, flow.at, flow.made, 0)
+
 /* For a struct mcc. */
 #define MCC_IN_USE(mcc) \
     FMU_LIST(mcc.tools.tool, mcc.tools.count) \
