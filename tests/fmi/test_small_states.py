@@ -28,7 +28,7 @@ STEP = 1e-3  # [s]
 EVERY = 7
 # Scenario, and how long it runs [s]: motion one by one with numbered parameters, as a curve; words
 # of a program with tools; a law that keeps the commanded path; groups; a robot, whose look-ahead
-# is a chain.
+# is a chain; a robot whose moves flow.
 RUNS = {
     "square": 1.0,
     "short_lines": 1.2,
@@ -36,6 +36,7 @@ RUNS = {
     "control_law": 1.0,
     "fourteen_axes": 1.0,
     "robot_line": 1.5,
+    "robot_pick": 3.5,
 }
 PROGRAM = """G91 F3000
 #500 = 1
@@ -78,6 +79,8 @@ def system(name: str, folder: Path) -> None:
         scenario = scenario.changed(set={"mcc.program": str(folder / "numbers.ngc")})
     if name == "robot_line":
         scenario = scenario.changed(set={"soft.smooth_time": 0.05})
+    if name == "robot_pick":
+        scenario = scenario.changed(set={"soft.flow": True})
     made = fused.exported(scenario.resolved(Options()), scenario.ends, 3, name.title())
     with zipfile.ZipFile(folder / f"{name}.fmi3.fmu", "w") as archive:
         for file in sorted(f for f in made.folder.rglob("*") if f.is_file()):
