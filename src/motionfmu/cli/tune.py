@@ -80,12 +80,19 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.report.loop_pages.tune_page import page_text
 
     tuned = _tune(scenario, wanted, settings(set_))
-    with result_folder.whole(target) as part:
-        result_folder.write_result(part, page_text(tuned), tuned.numbers())
-        (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
+    _write(target, page_text(tuned), tuned)
     _tell(tuned)
     out.print(f"gains: {target / 'gains.toml'}", soft_wrap=True)
     report(target / "report.html")
+
+
+def _write(target: Path, page: str, tuned: Any) -> None:
+    """The page, its figures and the gains as a file for ``--set``."""
+    from motionfmu.report import result_folder
+
+    with result_folder.whole(target) as part:
+        result_folder.write_result(part, page, tuned.numbers())
+        (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
 
 
 def _subject(path: Path, machine: str | None) -> "tuple[Scenario, bool, str]":
@@ -106,15 +113,12 @@ def _tune_arm(
     scenario: "Scenario", asked: "Problem", given: dict[str, Any], program: bool, target: Path
 ) -> None:
     """Tune the drives of an arm, tell and write what was found."""
-    from motionfmu.report import result_folder
     from motionfmu.report.loop_pages.arm_gains_page import page_text
     from motionfmu.study.arm_gains import tune_arm
 
     with stages(scenario.name) as show:
         tuned = tune_arm(scenario, asked, given, program, show)
-    with result_folder.whole(target) as part:
-        result_folder.write_result(part, page_text(tuned), tuned.numbers())
-        (part / "gains.toml").write_text(tuned.toml(), encoding="utf-8")
+    _write(target, page_text(tuned), tuned)
     _tell_arm(tuned)
     out.print(f"gains: {target / 'gains.toml'}", soft_wrap=True)
     report(target / "report.html")
