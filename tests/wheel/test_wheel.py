@@ -72,8 +72,8 @@ def test_the_base_is_small(installed: Installed) -> None:
     # 206 MB in November 2026, CMake, for FMPy, 76 of them; newer releases may grow by a twentieth.
     # Byte code would be 32 MB more, FMUs of all platforms 12.
     assert 120.0 < sum(installed.others.values()) < 217.0
-    # Ours: 30.1 MB; of it FMUs 12, the parts of fused programs 11.
-    assert 10.0 < installed.own < 32.0
+    # Ours: 32.5 MB, a twentieth more is let grow; FMUs and the parts of fused programs are most of it.
+    assert 10.0 < installed.own < 34.2
     assert installed.others.keys() >= {"fmpy", "numpy", "pydantic"}
     assert not installed.others.keys() & {"scipy", "matplotlib", "casadi", "plotly"}
 
