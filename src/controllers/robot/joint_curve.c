@@ -131,29 +131,10 @@ static double size_of(const double d[OPW_JOINTS])
     return sqrt(square);
 }
 
-/* The quintic with r, r' and r'' of both ends. */
-static void hermite(double a[3][OPW_JOINTS], double b[3][OPW_JOINTS], double length,
-                    struct segment *p)
-{
-    const double fifth = length / 5.0, second = length * length / 20.0;
-
-    p->kind = SEGMENT_CURVE;
-    p->length = length;
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        const double chord = b[0][i] - a[0][i];
-        p->origin[i] = a[0][i];
-        p->control[0][i] = 0.0;
-        p->control[1][i] = fifth * a[1][i];
-        p->control[2][i] = 2.0 * fifth * a[1][i] + second * a[2][i];
-        p->control[3][i] = chord - 2.0 * fifth * b[1][i] + second * b[2][i];
-        p->control[4][i] = chord - fifth * b[1][i];
-        p->control[5][i] = chord;
-    }
-}
-
 /* r' and r'' by the length of the joints' way. */
-static void by_length(const struct node *n, double out[3][OPW_JOINTS])
+static struct segment_state by_length(const struct node *n)
 {
+    struct segment_state s;
     const double size = size_of(n->d[0]);
     double along = 0.0;
 
@@ -162,10 +143,22 @@ static void by_length(const struct node *n, double out[3][OPW_JOINTS])
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double slope = n->d[0][i] / size;
-        out[0][i] = n->r[i];
-        out[1][i] = slope;
-        out[2][i] = (n->d[1][i] - along / size * slope) / (size * size);
+        s.point[i] = n->r[i];
+        s.slope[i] = slope;
+        s.bend[i] = (n->d[1][i] - along / size * slope) / (size * size);
     }
+    return s;
+}
+
+/* r' and r'' by the way of the tool. */
+static struct segment_state by_tool(const struct node *n)
+{
+    struct segment_state s;
+
+    memcpy(s.point, n->r, sizeof n->r);
+    memcpy(s.slope, n->d[0], sizeof n->d[0]);
+    memcpy(s.bend, n->d[1], sizeof n->d[1]);
+    return s;
 }
 
 /* What the joints do along a piece, by a quintic over the way of the tool. */
@@ -179,16 +172,13 @@ struct course {
 static struct course course_of(const struct fit *f, const struct node *a, const struct node *b)
 {
     const double mm = (b->part - a->part) * f->w->path.length, h = mm / (STEPS * SUMS);
-    double from[3][OPW_JOINTS], to[3][OPW_JOINTS], before = 0.0;
+    const struct segment_state from = by_tool(a), to = by_tool(b);
+    double before = 0.0;
     struct course c = { .least = INFINITY };
     struct segment_state s;
     struct segment p;
 
-    memcpy(from[0], a->r, sizeof from[0]);
-    memcpy(from[1], a->d, sizeof a->d);
-    memcpy(to[0], b->r, sizeof to[0]);
-    memcpy(to[1], b->d, sizeof b->d);
-    hermite(from, to, mm, &p);
+    segment_between(&p, &from, &to, mm);
     for (int n = 0; n <= 2 * STEPS * SUMS; n++) {
         segment_at(&p, el_min(mm, 0.5 * h * n), &s);
         const double rate = size_of(s.slope);
@@ -253,13 +243,11 @@ static bool between(struct fit *f, const struct node *a, const struct node *b)
 {
     const double mm = (b->part - a->part) * f->w->path.length;
     const struct course c = course_of(f, a, b);
+    const struct segment_state from = by_length(a), to = by_length(b);
     struct segment p = { .even = true };
-    double from[3][OPW_JOINTS], to[3][OPW_JOINTS];
     struct node middle;
 
-    by_length(a, from);
-    by_length(b, to);
-    hermite(from, to, c.length[STEPS], &p);
+    segment_between(&p, &from, &to, c.length[STEPS]);
     if (((!c.free || c.most <= f->uneven * c.least) && near(f, a, b, &c, &p)) || mm <= LEAST) {
         p.feed = p.cap = f->l->feed * c.least;
         if (f->count == JOINT_CURVE_PIECES) {

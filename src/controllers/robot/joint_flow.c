@@ -6,7 +6,7 @@
 #include "el_extremes.h"
 #include "shape_join.h"
 
-/* Room that a move finds: its pieces, two more where it is cut, a corner. */
+/* So many pieces are free before a move is taken: its own, two where it is cut, one corner. */
 enum { ROOM = JOINT_CURVE_PIECES + 3 };
 
 /* Places of a corner, and of each of the two ways that it replaces, at which the tip is compared;
@@ -205,7 +205,6 @@ static bool within(const struct joint_flow *f, const struct manipulator *arm, in
 static bool attempt(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
                     double half, double off, struct corner *c)
 {
-    const struct shape_way none = { .points = 0 };
     struct segment_state a, b;
 
     c->first = vertex - 1;
@@ -217,8 +216,8 @@ static bool attempt(const struct joint_flow *f, const struct manipulator *arm, i
     c->to = y->kind == SEGMENT_CURVE ? el_min(to, (1.0 - SLIVER) * y->length) : to;
     segment_at(x, c->from, &a);
     segment_at(y, c->to, &b);
-    return shape_join(&c->curve, &a, &b, 2.0 * half - (c->from - from) - (to - c->to), &none)
-           && within(f, arm, vertex, half, off, c);
+    segment_between(&c->curve, &a, &b, 2.0 * half - (c->from - from) - (to - c->to));
+    return within(f, arm, vertex, half, off, c);
 }
 
 /* Whether the way goes on smoothly through a vertex as it is. */
@@ -342,7 +341,7 @@ static void round_off(struct joint_flow *f, const struct manipulator *arm, int64
                       double room)
 {
     const struct segment *before = &piece_at(f, vertex - 1)->curve;
-    struct corner c = { .curve = { .even = true } };
+    struct corner c = { .curve = { .even = true, .joint = true } };
     struct segment_state in, out;
 
     segment_at(before, before->length, &in);

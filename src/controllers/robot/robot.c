@@ -233,16 +233,23 @@ static int most_taken(const double share[OPW_JOINTS])
     return most;
 }
 
-/* The same of moves that flow: what is neither speed, feed nor acceleration is jerk. */
+/* Shares that the joints take of their speeds and accelerations. */
+static void shares(const struct robot *r, const struct robot_config *c, double speed[OPW_JOINTS],
+                   double turn[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
+        turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
+    }
+}
+
+/* What limits moves that flow: what is neither speed, feed nor acceleration is jerk. */
 static struct limited flow_limited(const struct robot *r, const struct robot_config *c, double feed)
 {
     const struct trajectory *t = &r->trajectory;
     double speed[OPW_JOINTS], turn[OPW_JOINTS];
 
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
-        turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
-    }
+    shares(r, c, speed, turn);
     const int fast = most_taken(speed), bent = most_taken(turn);
     struct limited told = { .by = LIMITED_JERK, .axis = bent + 1 };
 
@@ -276,10 +283,7 @@ struct limited robot_limited(struct robot *r, const struct robot_config *c, doub
      * acceleration that the bend of their paths takes. */
     const bool lowered = feed == 0.0 || told.feed < feed * (1.0 - SAME);
     if (told.by == LIMITED_FEED && lowered && r->trajectory.override[0] >= 1.0) {
-        for (int i = 0; i < OPW_JOINTS; i++) {
-            speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
-            turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
-        }
+        shares(r, c, speed, turn);
         const int fast = most_taken(speed), bent = most_taken(turn);
         const double whole = feed > 0.0 ? 1.0 / TOOL_PATH_UNEVEN : WHOLE;
         if (speed[fast] > whole) {

@@ -65,6 +65,25 @@ void segment_at(const struct segment *p, double u, struct segment_state *s)
     }
 }
 
+void segment_between(struct segment *p, const struct segment_state *a,
+                     const struct segment_state *b, double length)
+{
+    const double fifth = length / 5.0, second = length * length / 20.0;
+
+    p->kind = SEGMENT_CURVE;
+    p->length = length;
+    for (int i = 0; i < AXES; i++) {
+        const double chord = b->point[i] - a->point[i];
+        p->origin[i] = a->point[i];
+        p->control[0][i] = 0.0;
+        p->control[1][i] = fifth * a->slope[i];
+        p->control[2][i] = 2.0 * fifth * a->slope[i] + second * a->bend[i];
+        p->control[3][i] = chord - 2.0 * fifth * b->slope[i] + second * b->bend[i];
+        p->control[4][i] = chord - fifth * b->slope[i];
+        p->control[5][i] = chord;
+    }
+}
+
 /* From the middle r' and r'' change by at most half the length times a bound of r'' and r'''. */
 static void cubic_bounds(const struct segment *p, double from, double to, struct segment_bounds *b)
 {

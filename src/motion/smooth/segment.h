@@ -47,6 +47,10 @@ struct segment_state {
 
 void segment_at(const struct segment *p, double u, struct segment_state *s);
 
+/* The curve from one state to another over a length: kind, length, origin and control are set. */
+void segment_between(struct segment *p, const struct segment_state *a,
+                     const struct segment_state *b, double length);
+
 /* Derivatives over a part of a segment: bounds, axis by axis and of their length, and at its
  * ends. */
 struct segment_bounds {

@@ -83,22 +83,10 @@ static double foot(const struct segment *p, const double x[AXES], double least, 
 bool shape_join(struct segment *p, const struct segment_state *a, const struct segment_state *b,
                 double length, const struct shape_way *way)
 {
-    const double fifth = length / 5.0, second = length * length / 20.0;
     double before = 0.0;
 
-    p->kind = SEGMENT_CURVE;
+    segment_between(p, a, b, length);
     p->joint = true;
-    p->length = length;
-    for (int i = 0; i < AXES; i++) {
-        const double chord = b->point[i] - a->point[i];
-        p->origin[i] = a->point[i];
-        p->control[0][i] = 0.0;
-        p->control[1][i] = fifth * a->slope[i];
-        p->control[2][i] = 2.0 * fifth * a->slope[i] + second * a->bend[i];
-        p->control[3][i] = chord - 2.0 * fifth * b->slope[i] + second * b->bend[i];
-        p->control[4][i] = chord - fifth * b->slope[i];
-        p->control[5][i] = chord;
-    }
     for (int32_t k = 1; k < way->points; k++) {
         const double most = USED * way->tolerance[k], square = most * most;
         double t = 1.0;

@@ -5,7 +5,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
-from motionfmu.arms.arm_geometry import SIX, NoOpwGeometry, OpwGeometry, kind_of, opw_geometry
+from motionfmu.arms.arm_geometry import (
+    SIX,
+    NoOpwGeometry,
+    OpwGeometry,
+    kind_of,
+    opw_geometry,
+    turns_six,
+)
 
 # Angles of joints 2, 3, 4 at which the reach is looked for; it is 1 % too short at most.
 STEPS = 24
@@ -156,7 +163,7 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
     try:
         geometry = opw_geometry(arm)
     except NoOpwGeometry as error:
-        if any(j.slides or j.follows for j in arm.joints) or len(arm.joints) != SIX:
+        if not turns_six(arm):
             raise NoOpwGeometry(f"{kind_of(arm)}; {_missing(arm)}") from None
         return replace(axes_geometry(arm), why=str(error))
     if geometry.deviation <= MOST_DEVIATION:

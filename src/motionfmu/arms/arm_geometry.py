@@ -178,6 +178,11 @@ def kind_of(arm: ArmDescription) -> str:
     return f"a chain of {len(slides)} joints ({slides})"
 
 
+def turns_six(arm: ArmDescription) -> bool:
+    """Whether an arm has six joints that turn, each by itself."""
+    return len(arm.joints) == SIX and not any(j.slides or j.follows for j in arm.joints)
+
+
 def opw_geometry(arm: ArmDescription) -> OpwGeometry:
     """Measure an arm with a spherical wrist, axes 2 and 3 parallel.
 
@@ -195,7 +200,7 @@ def opw_geometry(arm: ArmDescription) -> OpwGeometry:
         It is none; the text names its kind and what is in the way.
     """
     kind = kind_of(arm)
-    if any(j.slides or j.follows for j in arm.joints) or len(arm.joints) != SIX:
+    if not turns_six(arm):
         raise NoOpwGeometry(kind)
     lines = _lines(arm)
     if told := "; ".join(_in_the_way(lines)):
