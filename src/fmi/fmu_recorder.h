@@ -372,6 +372,23 @@ static inline void recorder_begin(struct recorder *r, int64_t row)
     r->full = 0;
 }
 
+/* The same for rows in memory. */
+static inline int recorder_jump(struct recorder *r, int64_t row)
+{
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count && row > r->row;
+         g++) {
+        if (row - g->first >= g->room) {
+            return recorder_flush(r, g);
+        }
+        for (int k = 0; k < g->count; k++) {
+            memset(g->streams[k].block + (size_t)(r->row - g->first) * g->width, 0,
+                   (size_t)(row - r->row) * g->width);
+        }
+    }
+    r->row = row;
+    return 0;
+}
+
 /* Set the number of the next row, as after a state was restored: later rows are dropped, and rows
  * that were never recorded are 0. */
 static inline int recorder_at(struct recorder *r, int64_t row)
@@ -382,12 +399,11 @@ static inline int recorder_at(struct recorder *r, int64_t row)
     if (row < r->base) {
         snprintf(r->why, sizeof r->why, "a row before the first one");
     }
-    if (r->why[0] || (r->blocks && recorder_flush_all(r) != 0)) {
-        return -1;
+    if (!r->why[0] && !r->blocks) {
+        return recorder_jump(r, row);
     }
-    if (!r->blocks) {
-        r->row = row;
-        return 0;
+    if (r->why[0] || recorder_flush_all(r) != 0) {
+        return -1;
     }
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
         const int64_t at = RECORDER_HEAD + (row - r->base) * (int64_t)g->width;
