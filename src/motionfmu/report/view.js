@@ -26,7 +26,7 @@ function machineView(data) {
   const STEP = 0.02; // share of the run per key
   const FLAT = 0.05; // height of strokes that are on paper, in their size
   const SMALL = 0.25; // of the machine's size: strokes that would not be legible beside it
-  let now = last, playing = false, stamp = 0, pending = false;
+  let now = data.begin ?? last, playing = false, stamp = 0, pending = false;
   const view = { azimuth: -0.95, elevation: 0.42, target: [0, 0, 0], distance: 1 };
 
   function machineBounds() {

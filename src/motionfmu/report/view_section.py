@@ -35,9 +35,15 @@ KEYS = (
 
 
 def add_view(
-    page: Page, scene: Scene | None, told: str = "The machine as it was recorded."
+    page: Page,
+    scene: Scene | None,
+    told: str = "The machine as it was recorded.",
+    begin: float | None = None,
 ) -> dict[str, Any]:
-    """Add the section and give the data of its script; without a scene there are none."""
+    """Add the section and give the data of its script; without a scene there are none.
+
+    It begins at a time, or at the end.
+    """
     if scene is None:
         return {}
     duration = float(scene.time[-1] - scene.time[0])
@@ -56,7 +62,7 @@ def add_view(
         note,
         _html(wanted, factor, deviates, _scale(scene, rapid, fastest)),
     )
-    return {"views": [view_data(scene, fastest)]}
+    return {"views": [view_data(scene, fastest) | {"begin": begin}]}
 
 
 def view_data(scene: Scene, fastest: float) -> dict[str, Any]:

@@ -106,8 +106,10 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
             most, run = _longest(over, run)
             longest = max(longest, most)
     rms = float(np.sqrt(squares / count)) if count else 0.0
-    times = (n * step for n in (reached, above, longest))
-    return AxisFigure(limit, low, high, largest, at, rms, *times, low_at=low_at, high_at=high_at)
+    at_limit, over_time, longest_time = (n * step for n in (reached, above, longest))
+    return AxisFigure(
+        limit, low, high, largest, at, rms, at_limit, over_time, longest_time, low_at, high_at
+    )
 
 
 def _longest(over: NDArray[np.bool_], before: int) -> tuple[int, int]:

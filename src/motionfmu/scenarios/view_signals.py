@@ -18,8 +18,8 @@ def wanted(resolver: Resolver) -> list[str]:
         check_position(resolver, view.tool, TABLE, "tool")
         found.append(view.tool)
     if view.works is not None:
-        port = recording.output(resolver, view.works, TABLE, "works").port
-        if port.shape or port.type == "String":
+        works = recording.output(resolver, view.works, TABLE, "works").port
+        if works.shape or works.type == "String":
             text = f"works = {view.works!r}: a single number wanted"
             raise resolver.document.error(text, TABLE, "works")
         found.append(view.works)

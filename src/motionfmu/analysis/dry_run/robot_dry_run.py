@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -134,6 +134,10 @@ class DryRun:
         Names of the joints.
     approaches : tuple of Approach
         How near the arm comes to itself and to its cell, by line.
+    settings : mapping
+        Of the virtual robot that ran it.
+    cell : Cell
+        What stood around it.
     """
 
     file: Path
@@ -145,6 +149,8 @@ class DryRun:
     fault_line: int
     axes: tuple[str, ...]
     approaches: tuple[Approach, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    cell: Cell = field(default_factory=Cell)
 
     @property
     def collisions(self) -> list[Approach]:
@@ -319,7 +325,7 @@ def dry_run(
     line = int(number[1]) if number else 0
     cell = cell or Cell()
     near = approaches(samples, ArmParts.of(settings, cell.radii), cell) if len(samples) else []
-    return DryRun(file, samples, low, high, top, fault, line, AXES, tuple(near))
+    return DryRun(file, samples, low, high, top, fault, line, AXES, tuple(near), settings, cell)
 
 
 def _values(scenario: Scenario, set: Mapping[str, Any]) -> Callable[[str], Any]:

@@ -25,7 +25,8 @@ function armFaces(arm, joints, s, colours, tool) {
   put(tube(p.forearm, p.wrist, 58 * s, 36 * s), colours.body);
   hub(p.wrist, bend, 46, 40);
   put(tube(p.wrist, p.flange, 30 * s, 26 * s), colours.body);
-  if (arm.pen > 0) put(tube(p.flange, p.tip, 9 * s, 3 * s, 8), colours.tool);
+  const tip = arm.pen > 0 ? p.tip : tool;
+  if (tip && Math.hypot(...add(tip, p.flange, -1)) > 20 * s) put(tube(p.flange, tip, 9 * s, 3 * s, 8), colours.tool);
   return faces;
 }
 

@@ -69,7 +69,7 @@ def scene_of(
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
         return None
     frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
-    kept = _path(count, tool, float(np.linalg.norm(high - low)))
+    kept = drawn_samples(count, tool, float(np.linalg.norm(high - low)))
     before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
     way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
     return Scene(
@@ -141,7 +141,7 @@ def millimetres(resolver: Resolver, name: str, values: Array) -> Array:
     return np.asarray(values[:, :3] * (unit.factor / units.parse("mm").factor))
 
 
-def _path(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
+def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
     """Samples that draw the path: where it bends, and some at even times for the colour."""
     coarse = max(1, count // (20 * POINTS))
     some = np.arange(0, count, coarse)
