@@ -12,8 +12,8 @@ from motionfmu.analysis.dry_run import DryRun, dry_run
 from motionfmu.base.motion_rows import ROW
 from motionfmu.report.cycle_time_section import path_by_cause
 from motionfmu.report.jobs.dry_run_page import page_text
+from motionfmu.report.jobs.dry_scene import dry_scene
 from motionfmu.report.view.arm import chain
-from motionfmu.report.view.dry_scene import dry_scene
 
 POST = CellBody("post", bar=np.array([[900.0, 300.0, 0.0], [900.0, 300.0, 900.0]]), radius=60.0)
 BOX = CellBody("box", 0.5 * np.array([100.0, 80.0, 60.0]), np.eye(3), np.array([0.0, -900.0, 30.0]))

@@ -113,23 +113,34 @@ def cycle_bounds(run: RunRecord, shares: Sequence[LimitShares]) -> CycleBounds |
         return None
     axes = [(name, s.figure) for s in dynamic for name in s.axes]
     keys = [*axes, (FEED, ""), *((PATH, CAUSES[c]) for c in RAMPS), *RESTING]
-    names = tuple(dict.fromkeys(name for name, _ in keys))
     nearest = _nearest(run, wanted, dynamic, keys)
-    counts = np.zeros(len(keys))
-    for block in blocks(len(run.time), nearest):
-        counts += np.bincount(block[~np.isnan(block)].astype(int), minlength=len(keys))
     step = float(run.time[1] - run.time[0])
-    found = [_of(name, keys, step * counts) for name in names]
-    row = np.array([names.index(name) for name, _ in keys], float)
+    times = step * _counts(len(run.time), nearest, len(keys))
+    names = tuple(dict.fromkeys(name for name, _ in keys))
+    found = [_of(name, keys, times) for name in names]
+    ordered = tuple(sorted((x for x in found if x.time > 0.0), key=lambda x: -x.time))
+    place = _named(nearest, np.array([names.index(name) for name, _ in keys], float))
+    return CycleBounds(float(times.sum()), ordered, names, place) if ordered else None
 
-    def place(first: int, last: int) -> Array:
+
+def _named(nearest: Read, row: Array) -> Read:
+    """The same with the row of each place instead."""
+
+    def named(first: int, last: int) -> Array:
         key = nearest(first, last)
         there = ~np.isnan(key)
         key[there] = row[key[there].astype(int)]
         return key
 
-    ordered = tuple(sorted((x for x in found if x.time > 0.0), key=lambda x: -x.time))
-    return CycleBounds(step * float(counts.sum()), ordered, names, place) if ordered else None
+    return named
+
+
+def _counts(count: int, read: Read, places: int) -> Array:
+    """How many samples each place has."""
+    found = np.zeros(places)
+    for block in blocks(count, read):
+        found += np.bincount(block[~np.isnan(block)].astype(int), minlength=places)
+    return found
 
 
 def _nearest(

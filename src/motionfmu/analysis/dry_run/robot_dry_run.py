@@ -301,7 +301,7 @@ def dry_run(
         There is no soft controller with a program, a setting is wrong, or the program waits for an
         input that does not come.
     """
-    value = _values(scenario, set or {})
+    _, value = _values(scenario, set or {})
     settings = _settings(value)
     try:
         robot = VirtualRobot(**settings)
@@ -328,8 +328,34 @@ def dry_run(
     return DryRun(file, samples, low, high, top, fault, line, AXES, tuple(near), settings, cell)
 
 
-def _values(scenario: Scenario, set: Mapping[str, Any]) -> Callable[[str], Any]:
-    """Values of the soft controller that has a program, by the parameter."""
+def program_files(
+    scenario: Scenario, set: Mapping[str, Any] | None = None
+) -> tuple[str, Path, Path | None]:
+    """Where the program of a soft controller is.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    set : mapping, optional
+        Values by ``component.variable``, stronger than the scenario's.
+
+    Returns
+    -------
+    tuple
+        The component, its program, its points or None.
+
+    Raises
+    ------
+    InputError
+        There is no soft controller with a program.
+    """
+    name, value = _values(scenario, set or {})
+    points = str(value("points"))
+    return name, Path(str(value("program"))), Path(points) if points else None
+
+
+def _values(scenario: Scenario, set: Mapping[str, Any]) -> tuple[str, Callable[[str], Any]]:
+    """The soft controller that has a program, and its values by the parameter."""
     given = {s.end.name: s.values for s in scenario.resolved(Options(set=set)).settings}
     for name, ports in scenario.resolver.ports.items():
         if not ports.keys() >= KNOWN or given.get(f"{name}.program", ("",)) == ("",):
@@ -341,7 +367,7 @@ def _values(scenario: Scenario, set: Mapping[str, Any]) -> Callable[[str], Any]:
             values = values_in(given, name, ports[key])
             return np.array(values) if ports[key].shape else values[0]
 
-        return value
+        return name, value
     raise InputError(f"{scenario.name}: it has no robot's controller with a program")
 
 

@@ -10,10 +10,10 @@ from motionfmu.report.cycle_time_section import add_cycle_time
 from motionfmu.report.diagram import Diagram, LevelMark, SamplesMark, Scale, Subplot
 from motionfmu.report.html_page import RUN, Page, PageFrame
 from motionfmu.report.html_tables import cards, table
+from motionfmu.report.jobs.dry_scene import dry_scene
 from motionfmu.report.jobs.gcode_page import clock, metres
 from motionfmu.report.samples import Samples
 from motionfmu.report.style import AXES
-from motionfmu.report.view.dry_scene import dry_scene
 from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.checks import Verdict
 
