@@ -111,16 +111,21 @@ def cycle_bounds(run: RunRecord, shares: Sequence[LimitShares]) -> CycleBounds |
     wanted = [f"{component}.{v}" for v in (told.BY, told.FEED, told.SPEED)]
     if not dynamic or any(name not in run.signals for name in wanted):
         return None
-    axes = [(name, s.figure) for s in dynamic for name in s.axes]
-    keys = [*axes, (FEED, ""), *((PATH, CAUSES[c]) for c in RAMPS), *RESTING]
+    keys = _keys(dynamic)
     nearest = _nearest(run, wanted, dynamic, keys)
     step = float(run.time[1] - run.time[0])
     times = step * _counts(len(run.time), nearest, len(keys))
     names = tuple(dict.fromkeys(name for name, _ in keys))
-    found = [_of(name, keys, times) for name in names]
-    ordered = tuple(sorted((x for x in found if x.time > 0.0), key=lambda x: -x.time))
+    ordered = tuple(sorted((_of(name, keys, times) for name in names), key=lambda x: -x.time))
+    ordered = tuple(x for x in ordered if x.time > 0.0)
     place = _named(nearest, np.array([names.index(name) for name, _ in keys], float))
     return CycleBounds(float(times.sum()), ordered, names, place) if ordered else None
+
+
+def _keys(dynamic: Sequence[LimitShares]) -> list[tuple[str, str]]:
+    """What can be nearest: names, and figures or causes of each."""
+    axes = [(name, s.figure) for s in dynamic for name in s.axes]
+    return [*axes, (FEED, ""), *((PATH, CAUSES[c]) for c in RAMPS), *RESTING]
 
 
 def _named(nearest: Read, row: Array) -> Read:
