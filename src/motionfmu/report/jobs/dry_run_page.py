@@ -12,6 +12,7 @@ from motionfmu.report.html_page import RUN, Page, PageFrame
 from motionfmu.report.html_tables import cards, table
 from motionfmu.report.jobs.dry_scene import dry_scene
 from motionfmu.report.jobs.gcode_page import clock, metres
+from motionfmu.report.jobs.reach_section import add_reach
 from motionfmu.report.samples import Samples
 from motionfmu.report.style import AXES
 from motionfmu.report.view_section import SCRIPTS, add_view
@@ -101,6 +102,7 @@ def page_text(run: DryRun) -> str:
     )
     if len(run.samples):
         add_cycle_time(page, run.motion)
+        add_reach(page, run)
         note = "1 and \N{MINUS SIGN}1 are the ends of the range, and the highest speeds."
         place = page.place("joints", reserves_chart(run), True, RUN)
         page.section("Joints and their limits", note, place)
