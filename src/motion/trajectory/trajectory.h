@@ -37,10 +37,8 @@ struct trajectory_beside {
 
 struct trajectory {
     enum trajectory_motion motion; /* the motion under way, or the latest */
-    struct mix mix; /* TRAJECTORY_MIX; in TRAJECTORY_AXES the command, none: by orders */
-    struct lookahead lookahead; /* TRAJECTORY_CHAIN */
-    struct curve curve;         /* TRAJECTORY_CURVE */
-    struct axes axes;           /* TRAJECTORY_AXES */
+    struct lookahead lookahead;    /* TRAJECTORY_CHAIN */
+    struct curve curve;            /* TRAJECTORY_CURVE */
     double rest[AXES];          /* [mm] where nothing is under way */
     bool joints;                /* `rest` is a place of joints */
     int32_t pulses[AXES];       /* [pulses] position of the latest point */
@@ -61,10 +59,15 @@ struct trajectory {
     struct outputs_surface surface; /* if it has a speed, outputs.spindle is the most */
     double end[AXES];               /* [mm] end of the latest command begun that takes time */
     int32_t started, line;          /* index and source line of the latest command begun */
+    struct axes axes;               /* TRAJECTORY_AXES */
+    struct mix mix; /* TRAJECTORY_MIX; in TRAJECTORY_AXES the command, none: by orders */
 };
 
 /* At rest at the origin, pulses 0. */
 void trajectory_start(struct trajectory *p);
+
+/* Copy what the motion under way uses, a tenth of it all: to go back to it later. */
+void trajectory_copy(struct trajectory *to, const struct trajectory *from);
 
 /* At rest with the tool at a place that the mechanism can reach; false, and nothing done, if it
  * cannot. */
