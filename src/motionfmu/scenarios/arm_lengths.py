@@ -38,7 +38,9 @@ def arm_of(
     component = joints.partition(".")[0]
     ports = resolver.ports[component]
     if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
-        return Arm((), axes=_axes(*(parameter(f"{component}.{n}") for n in (ORIGIN, DIRECTION))))
+        return Arm(
+            (), axes=axes_in_mm(*(parameter(f"{component}.{n}") for n in (ORIGIN, DIRECTION)))
+        )
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -53,7 +55,11 @@ def arm_of(
     return Arm(lengths, offsets, signs, 1e3 * told(PEN, (0.0,))[0])
 
 
-def _axes(origin: Sequence[float], direction: Sequence[float]) -> tuple[tuple[Three, Three], ...]:
+def axes_in_mm(
+    origin: Sequence[float], direction: Sequence[float]
+) -> tuple[tuple[Three, Three], ...]:
+    """Origins [m], one behind the other, and directions of six axes: in mm, of length 1."""
+
     def rows(numbers: Sequence[float], factor: float) -> list[Three]:
         return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in range(0, 18, 3)]
 

@@ -1,0 +1,44 @@
+"""The moving picture of a program that was run dry: arm, tool, path, the bodies of its cell."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from motionfmu.analysis.dry_run import DryRun
+from motionfmu.report.view.scene import FRAMES, Scene, drawn_samples
+from motionfmu.run.decimate import at, reader
+from motionfmu.scenarios.arm_lengths import LENGTHS, Arm, axes_in_mm
+
+
+def dry_scene(run: DryRun) -> Scene | None:
+    """The moving picture; None of a program that was refused before it moved."""
+    s, count = run.samples, len(run.samples)
+    if count < 2:
+        return None
+    place = s["place"].astype(float)
+    frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
+    extent = float(np.linalg.norm(np.ptp(place, axis=0)))
+    kept = drawn_samples(count, reader(place), extent)
+    rapid = s["feed"][kept] <= 0.0
+    return Scene(
+        s["time"][frames],
+        place[frames],
+        np.radians(s["joint"][frames].astype(float)),
+        arm_in_mm(run.settings),
+        s["time"][kept],
+        at(reader(place), kept),
+        s["speed"][kept].astype(float),
+        rapid=None if rapid.all() else rapid,
+        cell=run.cell,
+    )
+
+
+def arm_in_mm(settings: Mapping[str, Any]) -> Arm:
+    """The arm of a virtual robot's settings, which has its tool in the program."""
+    if settings["arm_by"] == 1:
+        axes = axes_in_mm(settings["axis_origin"], settings["axis_direction"])
+        return Arm((), axes=axes)
+    lengths = tuple(1e3 * float(settings[n]) for n in LENGTHS)
+    offsets, signs = (np.asarray(settings[n], float) for n in ("joint_offset", "joint_sign"))
+    return Arm(lengths, tuple(np.radians(offsets).tolist()), tuple(signs.tolist()))
