@@ -104,8 +104,10 @@ struct robot_job_request {
     /* MOVE */
     enum robot_job_path path;
     int32_t point, via;       /* numbers; via of CIRCLE only */
+    int32_t next, next_user;  /* of SPLINE: the point it goes on to, -1: it ends; its user frame */
     enum robot_job_speed tag; /* VJ, V or VR */
     double speed;
+    double acc[2];      /* [%] of the accelerations to speed up, slow down */
     int32_t level;      /* PL; 0: stop at the point */
     double corner;      /* CR [mm]; 0: by level */
     int32_t tool, user; /* those of the point, or in force */
