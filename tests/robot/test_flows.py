@@ -136,7 +136,7 @@ def test_a_spline_passes_its_points() -> None:
     places, rests = [], False
     while not rests:
         now = robot.run(10 * CYCLE)
-        places.append(now.pose[:3])
+        places.append(now.pose_command[:3])
         rests = bool(now.done)
     off = np.linalg.norm(np.array(places)[:, None] - np.array(ROW), axis=2)
     at = off.argmin(axis=0)
