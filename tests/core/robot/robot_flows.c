@@ -1,6 +1,7 @@
-/* Moves that flow, at random: joints, lines, circles, turns of the tool in a row, with zones and
- * stops, given at once or late, with holds, overrides and aborts. In every cycle each joint keeps
- * its speed, acceleration and jerk, and the tip is within the zone of the ways that were
+/* Moves that flow, at random: joints, lines, circles, splines, turns of the tool in a row, with
+ * zones, stops and shares of accelerations, given at once or late, with holds, overrides, jogs and
+ * aborts. In every cycle each joint keeps its speed, acceleration and jerk (a jog, which does not
+ * flow, its speed and acceleration), and the tip is within the zone of the ways that were
  * programmed, which are computed here by themselves.
  *
  *     robot_flows [first number]
@@ -9,7 +10,7 @@
 
 #include "robot_rig.h"
 
-enum { MOVES = 12, STEPS = 800, CYCLES = 600000, FAR = 8, STRIDE = 61 };
+enum { MOVES = 12, WAYS = MOVES + 4, STEPS = 800, CYCLES = 600000, FAR = 8, STRIDE = 61 };
 
 static uint64_t seed;
 
@@ -25,12 +26,16 @@ static bool chance(double share)
 }
 
 /* The ways as programmed, as points of the tip, and the zone at the start of each; how many. */
-static double way[MOVES][STEPS + 1][3], zone_of[MOVES + 1];
+static double way[WAYS][STEPS + 1][3], zone_of[WAYS + 1];
 static int ways;
 
 /* Joints in every cycle so far. */
 static double q[CYCLES][OPW_JOINTS];
 static int cycles;
+
+/* Cycles of jogs: their number up to each cycle. */
+static int jogs[CYCLES];
+static bool jogging;
 
 static void tip(const struct robot_config *c, const double joint[OPW_JOINTS], double at[3])
 {
@@ -43,8 +48,31 @@ static void cycle(const struct robot_config *c)
     robot_cycle(&robot, c);
     CHECK(cycles < CYCLES);
     if (cycles < CYCLES) {
-        memcpy(q[cycles++], robot.joint, sizeof q[0]);
+        memcpy(q[cycles], robot.joint, sizeof q[0]);
+        jogs[cycles] = (cycles > 0 ? jogs[cycles - 1] : 0) + jogging;
+        cycles++;
     }
+}
+
+/* Whether a jog was under way in one of the cycles that a third difference spans. */
+static bool jogged(int n)
+{
+    const int last = n < cycles ? n : cycles - 1, first = n - 3 * FAR - 2;
+    return jogs[last] > jogs[first < 0 ? 0 : first < cycles ? first : cycles - 1];
+}
+
+/* What rounding of a pose may do to a joint whose jog comes by a singular place, as robot_random
+ * has it. [rad] */
+static double rounding(const struct robot_config *c, int n, int joint)
+{
+    double most = 0.0, factor[3];
+
+    for (int k = n - 2; k <= n; k++) {
+        opw_factors(&c->arm.opw, q[k < 0 ? 0 : k < cycles ? k : cycles - 1], factor);
+        const double arm = 1e-15 / fmin(fabs(factor[1]), fmin(1.0, fabs(factor[0])));
+        most = fmax(most, joint > 2 ? arm / fabs(factor[2]) : arm);
+    }
+    return fmin(2e-5, most);
 }
 
 static const double *at_cycle(int n)
@@ -68,6 +96,12 @@ static double most_taken(const struct robot_config *c)
             const double j = (x - 3.0 * at_cycle(n - FAR)[i] + 3.0 * at_cycle(n - 2 * FAR)[i]
                               - at_cycle(n - 3 * FAR)[i])
                              / far / far / far;
+            if (jogged(n)) {
+                const double noise = rounding(c, n, i) / CYCLE;
+                most = fmax(most, (fabs(v) - 2.0 * noise) / l->speed);
+                most = fmax(most, (fabs(a) - 4.0 * noise / CYCLE) / l->acc);
+                continue;
+            }
             most = fmax(most, fmax(fabs(v) / l->speed, fabs(a) / l->acc));
             most = fmax(most, c->smooth > 0.0 ? fabs(j) * c->smooth / l->acc : 0.0);
         }
@@ -265,6 +299,95 @@ static double ramps(const struct robot_config *c, double way)
     return way > v * v / a ? way / v + v / a : 2.0 * sqrt(way / a);
 }
 
+/* A spline that goes on, but whose next move was refused: where its latest one began. */
+static struct pose hanging;
+static bool hangs;
+
+/* A spline of up to four poses, each a draw from the one before; `end` becomes where it leads. Its
+ * ways are kept with those of all moves. */
+static void some_spline(const struct robot_config *c, double end[OPW_JOINTS], bool late)
+{
+    const int number = (int)draw(1.0, 5.0);
+    struct pose pose[6];
+    struct robot_refusal why;
+
+    pose[0] = manipulator_pose(&c->arm, end);
+    for (int k = 1; k <= number; k++) {
+        struct robot_move m = some_move(c, end);
+        while (m.kind == ROBOT_JOINTS) {
+            m = some_move(c, end);
+        }
+        pose[k] = m.target.pose;
+        for (int i = 0; i < 3; i++) {
+            pose[k].at[i] += pose[k - 1].at[i] - pose[0].at[i];
+        }
+    }
+    for (int k = 1; k <= number; k++) {
+        struct robot_move m = some_move(c, end);
+        m.kind = ROBOT_SPLINE;
+        m.target.by_joints = false;
+        m.target.pose = pose[k];
+        m.goes_on = k < number;
+        m.next = pose[k < number ? k + 1 : k];
+        const struct pose *const p[4] = { k > 1   ? &pose[k - 2]
+                                          : hangs ? &hanging
+                                                  : NULL,
+                                          &pose[k - 1], &pose[k], m.goes_on ? &pose[k + 1] : NULL };
+        if (robot_move(&robot, c, &m, &why) != ROBOT_OK) {
+            return;
+        }
+        spline_points(p, way[ways]);
+        hangs = m.goes_on;
+        hanging = pose[k - 1];
+        zone_of[++ways] = m.goes_on ? 0.0 : m.zone;
+        robot_end(&robot, end);
+        for (int n = late && chance(0.3) ? (int)draw(0.0, 8000.0) : 0; n > 0; n--) {
+            cycle(c);
+        }
+    }
+}
+
+/* A jog from rest, of the joints or in the base, and the way of it. */
+static void some_jog(const struct robot_config *c, double end[OPW_JOINTS])
+{
+    double direction[6] = { 0.0 }, from[OPW_JOINTS];
+    struct robot_refusal why;
+    const enum robot_frame frame = chance(0.5) ? ROBOT_IN_JOINTS : ROBOT_IN_BASE;
+
+    for (int n = 0; !robot_idle(&robot) && n < CYCLES; n++) {
+        cycle(c);
+    }
+    direction[(int)draw(0.0, 6.0)] = chance(0.5) ? 1.0 : -1.0;
+    memcpy(from, robot.joint, sizeof from);
+    if (robot_jog(&robot, c, frame, direction, draw(0.05, 1.0), 0.0, &why) != ROBOT_OK) {
+        return;
+    }
+    jogging = true;
+    hangs = false;
+    for (int n = (int)draw(1.0, 6000.0); n > 0; n--) {
+        cycle(c);
+    }
+    robot_release(&robot);
+    for (int n = 0; !robot_idle(&robot) && n < CYCLES; n++) {
+        cycle(c);
+    }
+    jogging = false;
+    robot_end(&robot, end);
+    for (int k = 0; k <= STEPS; k++) {
+        const double part = (double)k / STEPS;
+        double joint[OPW_JOINTS], a[3], b[3];
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            joint[i] = from[i] + part * (end[i] - from[i]);
+        }
+        tip(c, frame == ROBOT_IN_JOINTS ? joint : from, a);
+        tip(c, frame == ROBOT_IN_JOINTS ? joint : end, b);
+        for (int i = 0; i < 3; i++) {
+            way[ways][k][i] = a[i] + part * (b[i] - a[i]);
+        }
+    }
+    zone_of[++ways] = 0.0;
+}
+
 struct outcome {
     int moves, aborted;
     double taken, off, time;
@@ -289,10 +412,21 @@ static struct outcome sequence(int32_t number)
     robot_start(&robot, &c, end);
     ways = cycles = 0;
     memcpy(q[cycles++], end, sizeof end);
+    jogs[0] = 0;
+    hangs = false;
     zone_of[0] = 0.0;
     for (int tries = 0; ways < MOVES && tries < 3 * MOVES && !aborted; tries++) {
+        if (chance(0.15)) {
+            some_spline(&c, end, late);
+            continue;
+        }
+        if (!meddles && chance(0.05)) {
+            some_jog(&c, end);
+            continue;
+        }
         const struct robot_move m = some_move(&c, end);
         if (robot_move(&robot, &c, &m, &why) == ROBOT_OK) {
+            hangs = false;
             points_of(&c, &m, end, way[ways]);
             zone_of[++ways] = m.zone;
             robot_end(&robot, end);
