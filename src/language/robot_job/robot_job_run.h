@@ -77,11 +77,13 @@ struct robot_job_run {
 
 /* What a program sees of the world. */
 struct robot_job_inputs {
-    int64_t now;                    /* [ns] from 0, never less than before */
-    int64_t reached;                /* number of moves that have reached their points */
-    uint32_t di;                    /* bit 0 is IN#(1) */
-    double ai[ROBOT_JOB_ANALOGS];   /* [V] */
-    struct robot_job_point here[2]; /* the arm, when it rests: in pulses, in the base */
+    int64_t now;                  /* [ns] from 0, never less than before */
+    int64_t reached;              /* number of moves that have reached their points */
+    uint32_t di;                  /* bit 0 is IN#(1) */
+    double ai[ROBOT_JOB_ANALOGS]; /* [V] */
+    /* Where the arm is, when it rests: in pulses, in the base. GETS alone asks for it. */
+    void (*here)(const void *arm, struct robot_job_point here[2]);
+    const void *arm;
 };
 
 enum robot_job_answer {

@@ -753,7 +753,7 @@ static void feeds(void)
 
 int main(int argc, char **argv)
 {
-    const int32_t first = argc > 2 ? atoi(argv[1]) : 0, number = argc > 2 ? atoi(argv[2]) : 24;
+    const int32_t first = argc > 2 ? atoi(argv[1]) : 0, number = argc > 2 ? atoi(argv[2]) : 16;
     struct outcome all = { .time = 0.0 };
 
     straight_on();

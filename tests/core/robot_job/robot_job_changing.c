@@ -13,11 +13,20 @@ static const struct robot_job_point HERE[2] = {
     { .value = { 700.5, -20.25, 300, 180, 0, -90 }, .kind = ROBOT_JOB_POSE, .tool = 1 },
 };
 
+/* How often somebody has asked. */
+static int asked;
+
+static void where(const void *arm, struct robot_job_point here[2])
+{
+    memcpy(here, arm, sizeof HERE);
+    asked++;
+}
+
 /* The moves of a program: path, values of the position, tool, user frame, speed; UNTIL and frames
  * of increments; its outputs. A move is reached when somebody asks. */
 static const char *run_text(const char *text)
 {
-    struct robot_job_inputs in = { .here = { HERE[0], HERE[1] } };
+    struct robot_job_inputs in = { .here = where, .arm = HERE };
     struct robot_job_request r = { .answer = ROBOT_JOB_BUSY };
     trace[0] = '\0';
     if (read_program(text)) {
@@ -209,6 +218,15 @@ static const struct {
     { "MOVL P1 V=R000", "line 1: operand of the wrong kind \"R000\"" },
 };
 
+/* Where the arm is, is asked for by GETS, once for each, and by nothing that waits. */
+static void asked_by_gets(void)
+{
+    asked = 0;
+    run_text("MOVL P2 V=9\nWAIT IN#(1)=OFF\nGETS PX1 $PX000\nLOOP 3\n"
+             "GETS PX2 $PX001\nENDLOOP\nSET P3 P2\nTIMER T=1");
+    CHECK_EQ(asked, 4);
+}
+
 /* A position may come with a job that is read later. */
 static void later_text(void)
 {
@@ -236,6 +254,7 @@ int main(void)
     for (size_t i = 0; i < sizeof GOOD / sizeof *GOOD; i++) {
         CHECK_TEXT(run_text(GOOD[i].text), GOOD[i].trace);
     }
+    asked_by_gets();
     later_text();
     return check_result();
 }
