@@ -154,6 +154,9 @@ static const struct {
     { "MOVS P2 V=9\nMOVL P4 V=9\nMOVS P2 V=8\nMOVS P4 V=7",
       "L1000,100,350,180,0,0 T0 U0 9;L0,0,0,180,0,0 T0 U2 9;L1000,100,350,180,0,0 T0 U0 8;"
       "L0,0,0,180,0,0 T0 U2 7;reach 4;" },
+    { "MOVS P2 V=9\nMOVS P4 V=8\nMOVS P2 V=7",
+      "L1000,100,350,180,0,0 T0 U0 9;S0,0,0,180,0,0 T0 U2 8 next 1000 U0;"
+      "S1000,100,350,180,0,0 T0 U0 7;reach 3;" },
     { "SET B001 4\nMOVS P2 V=9\nMOVS P3 V=8 PL=3\nMOVS P[B001] VR=7 ACC=50\nMOVS P2 V=6\n"
       "NOP\nMOVS P3 V=5",
       "L1000,100,350,180,0,0 T0 U0 9;S1100,0,350,180,0,0 T0 U0 8 next 0 U2;"
