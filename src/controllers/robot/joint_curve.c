@@ -17,6 +17,13 @@ static const double APART = 1.0 / 64.0;
  * on until the power is above WIDE. */
 static const double UNEVEN = 1.02, WIDE = 300.0;
 
+/* A spline whose joints are off in a piece this short comes too near to a singular place. [mm] */
+static const double LEAP = 1e-2;
+
+/* A spline's piece this short is as slow as its slowest place: where the tip turns back its speed
+ * falls to 0, and shorter pieces would have bends of rounding. [mm] */
+static const double FINE = 0.1;
+
 /* Where a spline hardly goes on, it does so at this rate. */
 static const double CUSP = 1e-6;
 
@@ -293,7 +300,8 @@ static bool between(struct fit *f, const struct joint_curve_node *a,
     struct joint_curve_node middle;
 
     segment_between(&p, &from, &to, c.length[STEPS]);
-    const bool good = (!c.free || c.most <= f->uneven * c.least) && near(f, a, b, &c, &p);
+    const bool even = c.most <= f->uneven * c.least || (f->spline && mm <= FINE);
+    const bool good = (!c.free || even) && near(f, a, b, &c, &p);
     if (good || (mm <= LEAST && !f->spline)) {
         p.feed = p.cap = f->l->feed * c.least;
         if (f->count == JOINT_CURVE_PIECES) {
@@ -306,7 +314,7 @@ static bool between(struct fit *f, const struct joint_curve_node *a,
         f->piece[f->count++] = p;
         return true;
     }
-    if (mm <= LEAST) { /* a spline's joints jump */
+    if (f->spline && mm <= LEAP) {
         return false;
     }
     return reach(f, a, 0.5 * (a->part + b->part), &middle) && between(f, a, &middle)
