@@ -158,17 +158,19 @@ static int read_all_jobs(struct fmu *f, struct controller_blob *b, char **text)
                                               : 0;
 }
 
-/* Tell of the words of a job that have no effect here, of each where it stands first. */
-static void note_idle_words(struct fmu *f, const struct controller_blob *b)
+/* A spline that cannot be driven is refused before anything moves. */
+static int refuse_splines(struct fmu *f, const struct controller_blob *b)
 {
-    for (int i = 0; i < ROBOT_JOB_IDLE_WORDS; i++) {
-        const struct robot_job_mention *m = &b->job.idle[i];
-        if (m->line > 0) {
-            fmu_warn(f, "%s: line %d: note: no effect \"%s\", column %d", b->file[m->text],
-                     (int)m->line, robot_job_idle_name((enum robot_job_idle_word)i),
-                     (int)m->column);
+    const struct robot_job_program *p = &b->job;
+
+    for (int32_t i = 0, job = 0; i < p->count; i++) {
+        job += job + 1 < p->jobs && p->job[job + 1].start <= i;
+        if (p->instruction[i].path == ROBOT_JOB_SPLINE) {
+            return fmu_fail(f, "%s: line %d: MOVS needs moves that flow: soft.flow = true",
+                            b->file[p->job[job].text], (int)p->instruction[i].line);
         }
     }
+    return 0;
 }
 
 static int read_jobs(struct fmu *f, struct controller_blob *b)
@@ -186,10 +188,8 @@ static int read_jobs(struct fmu *f, struct controller_blob *b)
                    ? fmu_fail(f, "job = \"%s\": no such job in %s", job, f->s.v.program)
                    : 0;
     }
+    code = code == 0 && !f->s.v.flow ? refuse_splines(f, b) : code;
     b->has_job = code == 0;
-    if (b->has_job) {
-        note_idle_words(f, b);
-    }
     return code;
 }
 

@@ -96,11 +96,17 @@ static void check_request(const struct robot_job_request *r, const struct robot_
     }
 }
 
+static void somewhere(const void *arm, struct robot_job_point here[2])
+{
+    (void)arm;
+    here[0] = (struct robot_job_point){ .kind = ROBOT_JOB_PULSES };
+    here[1] = (struct robot_job_point){ .kind = ROBOT_JOB_POSE };
+}
+
 static void run_program(const uint8_t *data, size_t size)
 {
     static struct robot_job_run kept;
-    struct robot_job_inputs in = { .here = { { .kind = ROBOT_JOB_PULSES },
-                                             { .kind = ROBOT_JOB_POSE } } };
+    struct robot_job_inputs in = { .here = somewhere };
     const struct robot_job_start start = { .vj = 10.0, .v = 100.0, .vr = 20.0 };
     robot_job_begin(&kept, &program, &start);
     for (size_t n = 0; n < CALLS; n++) {

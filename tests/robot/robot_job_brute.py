@@ -320,7 +320,7 @@ class Brute:
 
     def simple(self, line: int, words: list[str]) -> Iterator[tuple]:
         word = words[0]
-        if word in ("MOVJ", "MOVL", "MOVC"):
+        if word in ("MOVJ", "MOVL", "MOVC", "MOVS"):
             yield from self.move(line, words)
         elif word == "SPEED":
             for tag, value in (w.split("=") for w in words[1:]):
@@ -361,10 +361,21 @@ class Brute:
         else:
             self.calculate(word, words[1], words[2])
 
+    def in_row(self) -> int:
+        """3 for a part of a curve, 1 for a line: the first of a row, and rows of one or two."""
+        lines, at = self.jobs[self.stack[-1].job], self.stack[-1].at - 1
+        first = last = at
+        while first > 0 and lines[first - 1][1].startswith("MOVS"):
+            first -= 1
+        while last + 1 < len(lines) and lines[last + 1][1].startswith("MOVS"):
+            last += 1
+        return 3 if last - first > 1 and at > first else 1
+
     def move(self, line: int, words: list[str]) -> Iterator[tuple]:
         points = [int(w[1:]) for w in words[1:] if re.fullmatch(r"P\d+", w)]
         tags = dict(w.split("=") for w in words[1:] if "=" in w)
-        path, via = "JLC".index(words[0][3]), 0
+        path, via = "JLCS".index(words[0][3]), 0
+        path = self.in_row() if path == 3 else path
         if path == 2 and len(points) == 1:
             lines = self.jobs[self.stack[-1].job]
             at = self.stack[-1].at - 1

@@ -67,6 +67,9 @@ ARC = st.builds(
     TAGS,
     picked("NOP", "DOUT OT#(4) ON"),
 )
+ROW = st.lists(st.builds("MOVS P00{}{}".format, picked(1, 2, 3), TAGS), min_size=1, max_size=5).map(
+    "\n".join
+)
 NWAIT = picked("", "", " NWAIT")
 ARGUMENTS = st.builds(
     "".join, st.lists(st.builds(" ARGF{}".format, CONSTANT | VARIABLE), max_size=2)
@@ -81,6 +84,7 @@ SIMPLE = st.one_of(
     st.builds("GETARG {} IARG#({})".format, VARIABLE, picked(1, 2)),
     st.builds("MOVC P002 P003{}\nNOP".format, TAGS),
     ARC,
+    ROW,
     picked("SPEED VJ=20", "SPEED V=50 VR=5", "SPEED VR=3 VJ=30", "SPEED V=77"),
     picked("PL 2", "PL 0", "TOOL 1", "TOOL 0", "USER 2", "USER 0", "NOP", "' says nothing"),
     st.builds("DOUT {} {}".format, OUTPUT, picked("ON", "OFF")),

@@ -11,6 +11,7 @@
 
 #include "segment.h"
 #include "tool_path.h"
+#include "tool_spline.h"
 
 /* A radian counts as so many mm. [mm/rad] */
 #define JOINT_CURVE_LEVER 1000.0
@@ -20,6 +21,7 @@ enum { JOINT_CURVE_PIECES = 256 };
 
 struct joint_curve_limits {
     double feed;              /* [mm/s] most speed of the tool along its path */
+    double spin;              /* [rad/s] of its turning; of a spline */
     double speed[OPW_JOINTS]; /* [rad/s] of the joints */
     double off;               /* [rad] farthest that a joint may be from the inverse kinematics */
 };
@@ -34,5 +36,30 @@ int32_t joint_curve_line(const double from[OPW_JOINTS], const double to[OPW_JOIN
 int32_t joint_curve_path(const struct tool_path *w, const struct arm_geometry *g,
                          const double start[OPW_JOINTS], const struct joint_curve_limits *l,
                          struct segment piece[JOINT_CURVE_PIECES]);
+
+/* The joints at a place of a tool's way, with their derivatives by it. */
+struct joint_curve_node {
+    double part;             /* 0..1 of the way */
+    double r[OPW_JOINTS];    /* [mm] */
+    double d[2][OPW_JOINTS]; /* [1] [1/mm] */
+};
+
+/* What becomes of a spline. */
+struct joint_curve_spline {
+    int32_t count; /* of pieces; 0: there are none */
+    struct segment piece[JOINT_CURVE_PIECES];
+    double until[JOINT_CURVE_PIECES]; /* 0..1 of the way at the end of each piece */
+    struct joint_curve_node end;
+    bool lost; /* why there are none: out of reach; else joints would jump, or there are too many */
+    double at; /* 0..1 of the way where that is */
+    double
+        slow; /* 0..1 of the way where a joint's speed is below what the feed asks for; -1: none */
+};
+
+/* The joints along a spline from a node where it starts; without derivatives (part -1) these are
+ * found. */
+void joint_curve_spline(const struct tool_spline *s, const struct manipulator *arm,
+                        const struct joint_curve_node *start, const struct joint_curve_limits *l,
+                        struct joint_curve_spline *c);
 
 #endif

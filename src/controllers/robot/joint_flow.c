@@ -288,6 +288,12 @@ static void obey(const struct joint_flow *f, struct corner *c)
     for (int64_t n = c->first; n <= c->last; n++) {
         c->curve.feed = el_min(c->curve.feed, piece_at(f, n)->curve.feed);
         c->curve.cap = el_min(c->curve.cap, piece_at(f, n)->curve.cap);
+        for (int i = 0; i < 2; i++) {
+            const double share = piece_at(f, n)->curve.share[i], so_far = c->curve.share[i];
+            c->curve.share[i] = share <= 0.0    ? so_far
+                                : so_far <= 0.0 ? share
+                                                : el_min(share, so_far);
+        }
     }
 }
 
@@ -368,7 +374,9 @@ void joint_flow_add(struct joint_flow *f, const struct manipulator *arm,
         set_out(f, l);
     }
     for (int32_t n = 0; n < count; n++) {
-        *piece_of(f, f->made++) = (struct joint_flow_piece){ piece[n], move->line, move->solved };
+        struct joint_flow_piece *p = piece_of(f, f->made++);
+        *p = (struct joint_flow_piece){ piece[n], move->line, move->solved };
+        memcpy(p->curve.share, move->share, sizeof move->share);
         length += piece[n].length;
     }
     if (f->open) {
@@ -378,7 +386,12 @@ void joint_flow_add(struct joint_flow *f, const struct manipulator *arm,
     f->idle = 0;
     f->zone = move->zone;
     f->room = move->zone.part * length;
-    if (move->zone.off > 0.0 || move->zone.radius > 0.0) {
+    if (move->goes_on) {
+        f->zone = (struct joint_flow_zone){ 0.0, 0.0, 0.0 };
+        f->room = 0.0;
+        f->open = true;
+        f->held = f->made - 1;
+    } else if (move->zone.off > 0.0 || move->zone.radius > 0.0) {
         hold_back(f, f->room);
     } else {
         close(f);

@@ -52,6 +52,8 @@ bool joint_flow_room(const struct joint_flow *f);
 /* What all pieces of a move have in common. */
 struct joint_flow_move {
     struct joint_flow_zone zone; /* at its end */
+    double share[2];             /* of the joints' accelerations, see struct segment */
+    bool goes_on;                /* without a corner: the next move begins as this one ends */
     int32_t line;
     bool solved;
 };

@@ -115,7 +115,8 @@ void robot_feed(struct robot *r)
         c.index = ++r->index;
         c.feed = c.cap = p->cap;
         if (c.tolerance > 0.0) {
-            c.ramp = (struct ramp_limits){ p->acc, p->acc, 0.0, 0.0 };
+            c.ramp = (struct ramp_limits){ robot_share(r->move.acc) * p->acc,
+                                           robot_share(r->move.dec) * p->acc, 0.0, 0.0 };
             c.tolerance =
                 w->next + 1 == w->count && r->move.zone > 0.0 ? r->move.zone : c.tolerance;
         }

@@ -48,7 +48,8 @@ enum robot_kind {
     ROBOT_JOINTS, /* all joints start and end together, the slowest decides */
     ROBOT_LINE,
     ROBOT_CIRCLE, /* through via.at to the target */
-    ROBOT_ARC     /* about a centre; target.pose gives the attitude at its end only */
+    ROBOT_ARC,    /* about a centre; target.pose gives the attitude at its end only */
+    ROBOT_SPLINE  /* of a row of poses as one smooth curve (tool_spline.h); if moves flow */
 };
 
 enum robot_singular {
@@ -60,13 +61,17 @@ enum robot_singular {
 struct robot_move {
     enum robot_kind kind;
     struct robot_target target;
-    double via[3];               /* [mm] of a circle */
+    double via[3]; /* [mm] of a circle */
+    bool goes_on;  /* a spline passes its target, towards next */
+    struct pose next;
     double centre[3], normal[3]; /* [mm], unit vector of an arc */
     double rise;                 /* [mm] of an arc along its normal, then an axis of the base */
     double sweep;                /* [rad] of an arc, counter-clockwise about the normal */
     double feed;                 /* [mm/s] of the tip; 0 the highest */
     double spin;                 /* [rad/s] of the tool's turning; 0 the highest */
     double share;                /* > 0..1 of the joints' speeds; of a move of joints */
+    double acc, dec;             /* 0..1 share of the accelerations with which it speeds up, slows
+                                  * down; 0 is 1 */
     double zone;                 /* [mm] tolerance of the corner with the next move; 0 exact stop */
     double radius;               /* [mm] instead: of the corner, if moves flow; 0: by the zone */
     double part;                 /* 0..0.5 most of either move that the corner takes if moves flow;
@@ -87,7 +92,9 @@ enum robot_status {
     ROBOT_OTHER_TURN,   /* nor to its whole turns of a joint */
     ROBOT_NO_CIRCLE,    /* start, via and end are on one line, or the start is on the axis */
     ROBOT_OFF_PLANE,    /* an arc's start is not in the plane of its centre across its normal */
-    ROBOT_NO_UNIT       /* an arc's normal is no unit vector */
+    ROBOT_NO_UNIT,      /* an arc's normal is no unit vector */
+    ROBOT_NO_SPLINE,    /* two poses in a row are the same */
+    ROBOT_NO_FLOW       /* a spline, where moves do not flow */
 };
 
 /* Why a move is refused. */
@@ -101,6 +108,13 @@ struct robot_refusal {
 
 enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
 
+/* The latest move, if it is a spline that goes on. */
+struct robot_spline {
+    bool goes_on;
+    struct pose start;           /* where it began */
+    struct joint_curve_node end; /* where the next one does */
+};
+
 struct robot {
     struct trajectory trajectory;
     struct ring ring;
@@ -110,9 +124,10 @@ struct robot {
     struct pose tool;           /* in force */
     struct tool_path tool_path; /* of the latest move; its segments go into the ring one by one */
     struct robot_move move;     /* that move */
-    struct command command;     /* what its segments have in common */
-    bool stop;                  /* an exact stop before its first segment */
-    double rear[AXES];          /* place at the end of the latest move */
+    struct robot_spline spline;
+    struct command command;        /* what its segments have in common */
+    bool stop;                     /* an exact stop before its first segment */
+    double rear[AXES];             /* place at the end of the latest move */
     double rear_joint[OPW_JOINTS]; /* [rad] there */
     enum arm_move_kind rear_kind;
     double rear_zone;

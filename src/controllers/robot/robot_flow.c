@@ -18,7 +18,7 @@ static const double USED = 1.0 - 1e-9, USED_AT_ONCE = 1.0 - 1e-3;
 
 bool robot_flows(const struct robot *r, const struct robot_config *c, const struct robot_move *move)
 {
-    return c->flow && !r->jogging && move->singular != ROBOT_WRIST;
+    return c->flow && !r->jogging && (move->singular != ROBOT_WRIST || move->kind == ROBOT_SPLINE);
 }
 
 static struct speed_limits limits_of(const struct robot_config *c)
@@ -34,6 +34,12 @@ static struct speed_limits limits_of(const struct robot_config *c)
     return l;
 }
 
+/* A share as a piece has it: all is no limit of its own. */
+static double part_of(double share)
+{
+    return share < 1.0 ? share : 0.0;
+}
+
 /* The pieces join; the tool path, now among them, is done. */
 static void add(struct robot *r, const struct robot_config *c, const struct robot_move *move,
                 bool stop, bool solved, int32_t count, const struct segment *piece)
@@ -42,7 +48,11 @@ static void add(struct robot *r, const struct robot_config *c, const struct robo
     const double part = move->part > 0.0 ? move->part : 0.5;
     const struct joint_flow_zone none = { 0.0, 0.0, part },
                                  zone = { move->zone, move->radius, part };
-    const struct joint_flow_move m = { stop ? none : zone, move->line, solved };
+    const struct joint_flow_move m = { stop ? none : zone,
+                                       { part_of(move->acc), part_of(move->dec) },
+                                       move->kind == ROBOT_SPLINE && move->goes_on,
+                                       move->line,
+                                       solved };
     struct manipulator arm;
 
     manipulator_with(&c->arm, &r->tool, &arm);
@@ -72,21 +82,30 @@ void robot_flow_line(struct robot *r, const struct robot_config *c, const struct
     go(r, c, move, from, to, move->share, false);
 }
 
+struct joint_curve_limits robot_flow_limits(const struct robot *r, const struct robot_config *c,
+                                            double feed)
+{
+    const double tool = sqrt(r->tool.at[0] * r->tool.at[0] + r->tool.at[1] * r->tool.at[1]
+                             + r->tool.at[2] * r->tool.at[2]);
+    struct joint_curve_limits l = { .feed = feed,
+                                    .spin = c->spin,
+                                    .off = OFF / (manipulator_reach(&c->arm) + tool) };
+
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        l.speed[i] = robot_joint_speed(c, i);
+    }
+    return l;
+}
+
 bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct robot_move *move,
                      const double *turning, const double from[OPW_JOINTS], double feed)
 {
     struct segment piece[JOINT_CURVE_PIECES];
     struct manipulator arm;
-    const double tool = sqrt(r->tool.at[0] * r->tool.at[0] + r->tool.at[1] * r->tool.at[1]
-                             + r->tool.at[2] * r->tool.at[2]);
-    struct joint_curve_limits l = { .feed = feed,
-                                    .off = OFF / (manipulator_reach(&c->arm) + tool) };
+    const struct joint_curve_limits l = robot_flow_limits(r, c, feed);
 
     manipulator_with(&c->arm, &r->tool, &arm);
     const struct arm_geometry g = { &arm, &r->moves };
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        l.speed[i] = robot_joint_speed(c, i);
-    }
     const int32_t count = joint_curve_path(&r->tool_path, &g, from, &l, piece);
     if (count == 0) {
         return false;
@@ -96,4 +115,10 @@ bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct
     }
     add(r, c, move, false, true, count, piece);
     return true;
+}
+
+void robot_flow_pieces(struct robot *r, const struct robot_config *c, const struct robot_move *move,
+                       int32_t count, const struct segment *piece)
+{
+    add(r, c, move, false, true, count, piece);
 }

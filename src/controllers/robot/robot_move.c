@@ -60,17 +60,18 @@ static bool all_from_0(const double *x, int n)
     return good;
 }
 
-/* CCN 17: a row of limits that all must hold. */
+/* CCN 21: a row of limits that all must hold. */
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
-    const double from_0[] = { m->feed, m->spin, m->zone, m->radius, m->part };
+    const double from_0[] = { m->feed, m->spin, m->acc, m->dec, m->zone, m->radius, m->part };
     return all_sound(t->joint, OPW_JOINTS) && all_sound(t->pose.at, 3) && all_sound(t->pose.turn, 4)
            && all_sound(m->via, 3) && all_sound(m->centre, 3) && all_sound(m->normal, 3)
+           && (!m->goes_on || (all_sound(m->next.at, 3) && all_sound(m->next.turn, 4)))
            && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1)
            && (m->rise == 0.0 || axis_of(m->normal) >= 0)
-           && all_from_0(from_0, sizeof from_0 / sizeof *from_0) && m->part <= 0.5
-           && (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0))
+           && all_from_0(from_0, sizeof from_0 / sizeof *from_0) && m->part <= 0.5 && m->acc <= 1.0
+           && m->dec <= 1.0 && (m->kind != ROBOT_JOINTS || (m->share > 0.0 && m->share <= 1.0))
            && t->branch >= ROBOT_ANY_BRANCH && t->branch < OPW_BRANCHES;
 }
 
@@ -194,10 +195,9 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
     return false;
 }
 
-/* Whether joints at the end of a path are those that its target asks for.
- * CCN 16: a target says the end by joints, by a branch, by turns, or leaves it open. */
-static enum robot_status check_end(const struct manipulator *arm, const struct robot_target *t,
-                                   const double end[OPW_JOINTS], struct robot_refusal *why)
+/* CCN 16: a target says the end by joints, by a branch, by turns, or leaves it open. */
+enum robot_status robot_check_end(const struct manipulator *arm, const struct robot_target *t,
+                                  const double end[OPW_JOINTS], struct robot_refusal *why)
 {
     const int branch = t->by_joints ? manipulator_branch(arm, t->joint) : t->branch;
     double factor[3];
@@ -245,13 +245,22 @@ static enum robot_status told(const struct manipulator *arm, enum tool_path_stat
     }
 }
 
+double robot_feed_of(const struct robot_config *c, const struct robot_move *move)
+{
+    return move->feed > 0.0 ? el_min(move->feed, c->feed) : c->feed;
+}
+
+double robot_spin_of(const struct robot_config *c, const struct robot_move *move)
+{
+    return move->spin > 0.0 ? el_min(move->spin, c->spin) : c->spin;
+}
+
 /* Speed along the path that feed and turning allow. */
 static double feed_of(const struct robot *r, const struct robot_config *c,
                       const struct robot_move *move, const double by[3])
 {
     const double angle = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
-    const double feed = move->feed > 0.0 ? el_min(move->feed, c->feed) : c->feed;
-    const double spin = move->spin > 0.0 ? el_min(move->spin, c->spin) : c->spin;
+    const double feed = robot_feed_of(c, move), spin = robot_spin_of(c, move);
     const double length = r->tool_path.path.length;
 
     if (!(angle > SAME) || move->singular == ROBOT_WRIST) {
@@ -319,7 +328,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     r->tool_path.count = r->tool_path.next = 0;
     if (r->tool_path.path.length < NOWHERE) {
         arm_moves_drop(&r->moves);
-        return check_end(&arm, &move->target, r->rear_joint, why);
+        return robot_check_end(&arm, &move->target, r->rear_joint, why);
     }
     const struct tool_path_limits l = limits_of(r, c, move, by, chained);
     memcpy(joint, r->rear_joint, sizeof joint);
@@ -327,7 +336,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     status = told(&arm, tool_path_plan(&r->tool_path, &g, &l, joint, &fault), &fault, why);
     if (status == ROBOT_OK && !r->jogging) {
         why->part = 1.0;
-        status = check_end(&arm, &move->target, joint, why);
+        status = robot_check_end(&arm, &move->target, joint, why);
     }
     if (status != ROBOT_OK) {
         double slope[AXES], place[AXES];
@@ -453,16 +462,20 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
                              const double by[3], struct robot_refusal *why)
 {
     const struct rear before = keep(r);
-    const enum robot_status status = move->kind == ROBOT_JOINTS ? robot_to_joints(r, c, move, why)
-                                     : pose                     ? along(r, c, move, pose, by, why)
-                                                                : along_path(r, c, move, why);
+    const enum robot_status status = move->kind == ROBOT_JOINTS   ? robot_to_joints(r, c, move, why)
+                                     : move->kind == ROBOT_SPLINE ? robot_to_spline(r, c, move, why)
+                                     : pose                       ? along(r, c, move, pose, by, why)
+                                                                  : along_path(r, c, move, why);
 
     if (status != ROBOT_OK) {
         put_back(r, &before);
         return status;
     }
+    r->spline.goes_on = move->kind == ROBOT_SPLINE && move->goes_on;
     r->move = *move;
     r->command.line = move->line;
+    r->command.ramp.acc *= robot_share(move->acc);
+    r->command.ramp.dec *= robot_share(move->dec);
     robot_feed(r);
     return ROBOT_OK;
 }
@@ -473,6 +486,9 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     memset(why, 0, sizeof *why);
     if (!robot_ready(r)) {
         return ROBOT_BUSY;
+    }
+    if (move->kind == ROBOT_SPLINE && !robot_flows(r, c, move)) {
+        return ROBOT_NO_FLOW;
     }
     if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;

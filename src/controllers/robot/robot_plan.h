@@ -22,6 +22,12 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
 /* Speed that a joint may have: its own, or what a slot's pulses are. [rad/s] */
 double robot_joint_speed(const struct robot_config *c, int joint);
 
+/* Share that 0 or a number stands for. */
+static inline double robot_share(double share)
+{
+    return share > 0.0 ? share : 1.0;
+}
+
 /* A move of the joints to target angles [rad], at a share 0..1 of their limits, becomes the latest
  * of the arm, and its command. */
 void robot_plan_joints(struct robot *r, const struct robot_config *c,
@@ -48,6 +54,26 @@ void robot_flow_line(struct robot *r, const struct robot_config *c, const struct
  * pieces than there are. */
 bool robot_flow_path(struct robot *r, const struct robot_config *c, const struct robot_move *move,
                      const double *turning, const double from[OPW_JOINTS], double feed);
+
+/* A spline joins the moves that flow. */
+enum robot_status robot_to_spline(struct robot *r, const struct robot_config *c,
+                                  const struct robot_move *move, struct robot_refusal *why);
+
+/* Whether joints at the end of a path are those that its target asks for. */
+enum robot_status robot_check_end(const struct manipulator *arm, const struct robot_target *t,
+                                  const double end[OPW_JOINTS], struct robot_refusal *why);
+
+/* What a curve of the joints may take at a feed of the tool [mm/s]. */
+struct joint_curve_limits robot_flow_limits(const struct robot *r, const struct robot_config *c,
+                                            double feed);
+
+/* A move's pieces join those that flow. */
+void robot_flow_pieces(struct robot *r, const struct robot_config *c, const struct robot_move *move,
+                       int32_t count, const struct segment *piece);
+
+/* Speed of the tool that a move asks for [mm/s], and of its turning [rad/s]. */
+double robot_feed_of(const struct robot_config *c, const struct robot_move *move);
+double robot_spin_of(const struct robot_config *c, const struct robot_move *move);
 
 /* Put commands of the latest move into the ring, as many as it has room for. */
 void robot_feed(struct robot *r);

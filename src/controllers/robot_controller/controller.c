@@ -81,11 +81,20 @@ static int32_t tool_of(const struct controller *s, const struct controller_confi
     return n;
 }
 
+/* Whose arm GETS asks for. */
+struct arm_asked {
+    const struct controller *s;
+    const struct controller_config *c;
+    const struct orders_text *t;
+};
+
 /* Where the arm is, as positions of a job: in pulses, and as a pose in the base with all of its
  * configuration, but for turns that end just there, which are then what is nearest. */
-static void arm_here(const struct controller *s, const struct controller_config *c,
-                     const struct orders_text *t, struct robot_job_point here[2])
+static void arm_here(const void *asked, struct robot_job_point here[2])
 {
+    const struct controller *s = ((const struct arm_asked *)asked)->s;
+    const struct controller_config *c = ((const struct arm_asked *)asked)->c;
+    const struct orders_text *t = ((const struct arm_asked *)asked)->t;
     static const double TURN = 6.283185307179586, EDGE = 1e-9;
     static const int TURNED[3] = { 0, 3, 5 };
     struct manipulator arm = c->robot.arm;
@@ -113,18 +122,15 @@ static void arm_here(const struct controller *s, const struct controller_config 
     }
 }
 
-static struct robot_job_inputs inputs_of(const struct controller *s,
-                                         const struct controller_config *c,
-                                         const struct orders_text *t, const struct fpga_shown *card,
-                                         uint32_t di, int64_t clock)
+static struct robot_job_inputs inputs_of(const struct arm_asked *asked,
+                                         const struct fpga_shown *card, uint32_t di, int64_t clock)
 {
     struct robot_job_inputs in = { .now = clock * FPGA_CLOCK_NS,
-                                   .reached = s->reached - s->first,
-                                   .di = di };
+                                   .reached = asked->s->reached - asked->s->first,
+                                   .di = di,
+                                   .here = arm_here,
+                                   .arm = asked };
     memcpy(in.ai, card->irq_ai, sizeof in.ai);
-    if (t->job && s->orders.on && in.reached >= s->orders.moves) { /* only then it is asked */
-        arm_here(s, c, t, in.here);
-    }
     return in;
 }
 
@@ -153,12 +159,13 @@ static void time_run(struct controller *s, const struct controller_config *c,
 static void poll(struct controller *s, const struct controller_config *c,
                  const struct orders_text *t, const struct fpga_shown *card, int64_t until)
 {
+    const struct arm_asked asked = { s, c, t };
     struct layers_copy seen;
 
     for (int64_t at = s->layers.poll; layers_poll(&s->layers, &c->layers, until, &seen);
          at = s->layers.poll) {
         if (c->user && controller_running(s)) {
-            const struct robot_job_inputs in = inputs_of(s, c, t, card, seen.inputs, at);
+            const struct robot_job_inputs in = inputs_of(&asked, card, seen.inputs, at);
             controller_program_poll(s, c, t, &in, at);
         }
     }
@@ -172,7 +179,8 @@ static int32_t decide(struct controller *s, const struct controller_config *c,
 {
     controller_panel_run(s, c, t, panel, clock);
     look_at_moves(s);
-    const struct robot_job_inputs in = inputs_of(s, c, t, card, (uint32_t)card->irq_inputs, clock);
+    const struct arm_asked asked = { s, c, t };
+    const struct robot_job_inputs in = inputs_of(&asked, card, (uint32_t)card->irq_inputs, clock);
     s->known = -1;
     const int32_t lines = s->stopped ? 0 : controller_program_run(s, c, t, panel, &in);
     s->start.pressed = s->replay.pressed = false;

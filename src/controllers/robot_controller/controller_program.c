@@ -158,11 +158,11 @@ bool controller_program_move(struct controller *s, const struct controller_confi
         return false;
     }
     arm.tool = *tool;
-    if (m.kind == ROBOT_CIRCLE) {
-        const struct pose via =
-            order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
+    if (m.kind == ROBOT_CIRCLE || m.goes_on) {
+        m.next = order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
         for (int i = 0; i < 3; i++) {
-            m.via[i] = via.at[i] + order->shift[i];
+            m.next.at[i] += order->shift[i];
+            m.via[i] = m.next.at[i];
         }
     }
     if (order->goes_on) {

@@ -51,7 +51,7 @@ struct order {
     int64_t after; /* number of the move; of another order: of the move before it */
     int64_t known; /* [clock] at which the driver could have it */
     struct robot_move move;
-    struct robot_target via; /* where a circle passes */
+    struct robot_target via; /* where a circle passes, or a spline goes on to */
     struct pose tool;        /* with which the move is made */
     double shift[3];         /* [mm] by which target and via are shifted in the base */
     bool goes_on;            /* the target is to be found: `step` from where the move before ends */

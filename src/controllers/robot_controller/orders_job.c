@@ -52,12 +52,15 @@ static void job_move(struct order *order, const struct robot_job_run *run,
     struct robot_move *m = &order->move;
 
     *m = (struct robot_move){ .line = r->line, .singular = c->singular, .share = 1.0 };
-    m->kind = r->path == ROBOT_JOB_JOINT  ? ROBOT_JOINTS
-              : r->path == ROBOT_JOB_LINE ? ROBOT_LINE
-                                          : ROBOT_CIRCLE;
+    m->kind = r->path == ROBOT_JOB_JOINT    ? ROBOT_JOINTS
+              : r->path == ROBOT_JOB_LINE   ? ROBOT_LINE
+              : r->path == ROBOT_JOB_CIRCLE ? ROBOT_CIRCLE
+                                            : ROBOT_SPLINE;
     m->share = r->tag == ROBOT_JOB_VJ ? r->speed / 100.0 : 1.0;
     m->feed = r->tag == ROBOT_JOB_V ? r->speed : 0.0;
     m->spin = r->tag == ROBOT_JOB_VR ? r->speed * DEGREE : 0.0;
+    m->acc = r->acc[0] / 100.0;
+    m->dec = r->acc[1] / 100.0;
     m->zone = r->corner > 0.0 ? r->corner : c->zone[r->level];
     m->radius = r->corner;
     order->until = r->until + 1;
@@ -81,6 +84,11 @@ static void job_move(struct order *order, const struct robot_job_run *run,
     if (m->kind == ROBOT_CIRCLE) {
         target_of(&order->via, robot_job_place(run, t->job, t->points, r->via),
                   &t->points->user[r->user], c->pulses);
+    }
+    m->goes_on = m->kind == ROBOT_SPLINE && r->next >= 0;
+    if (m->goes_on) {
+        target_of(&order->via, robot_job_place(run, t->job, t->points, r->next),
+                  &t->points->user[r->next_user], c->pulses);
     }
 }
 

@@ -12,6 +12,7 @@ static int end_job(struct robot_job_reading *in)
         return 0;
     }
     in->s.line = in->last;
+    in->splines = 0;
     if (robot_job_move_arc_over(in) || robot_job_block_all_closed(in)) {
         return -1;
     }
@@ -171,7 +172,6 @@ void robot_job_begin_reading(struct robot_job_program *p)
     p->count = p->jobs = p->labels = p->callees = p->positions = p->terms = p->texts = 0;
     memset(p->wanted, 0, sizeof p->wanted);
     memset(p->changed, 0, sizeof p->changed);
-    memset(p->idle, 0, sizeof p->idle);
     p->changes_any = false;
 }
 

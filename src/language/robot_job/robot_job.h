@@ -82,7 +82,7 @@ struct robot_job_term {
     struct robot_job_operand left, right;
 };
 
-enum robot_job_path { ROBOT_JOB_JOINT, ROBOT_JOB_LINE, ROBOT_JOB_CIRCLE };
+enum robot_job_path { ROBOT_JOB_JOINT, ROBOT_JOB_LINE, ROBOT_JOB_CIRCLE, ROBOT_JOB_SPLINE };
 
 /* What the speed of a move counts: VJ [% of the joints' highest speeds], V [mm/s] or VR [deg/s] of
  * the tool; DEFAULT: the speed in force. */
@@ -148,13 +148,16 @@ struct robot_job_instruction {
     int32_t until;                     /* input that ends a move, from 0; -1: none */
     bool until_on;                     /* by coming on, not by going off */
     enum robot_job_path path;
+    bool goes_on; /* of a SPLINE: the next instruction is the one it goes on with */
     enum robot_job_speed tag;
     int32_t inside; /* the LOOP it stands in, -1: none */
     double speed;   /* in the unit of the tag */
-    int32_t level;  /* PL; ROBOT_JOB_ANY: the level in force; of SETE, GETE: element from 0; of
+    struct robot_job_operand
+        acc[2];    /* [%] of the accelerations to speed up, slow down; none: all */
+    int32_t level; /* PL; ROBOT_JOB_ANY: the level in force; of SETE, GETE: element from 0; of
                      * GETS: 0 pulses, 1 a pose */
-    double corner;  /* CR [mm]; 0: the level decides */
-    int64_t time;   /* [ns] length of a TIMER or WAIT; -1: without end */
+    double corner; /* CR [mm]; 0: the level decides */
+    int64_t time;  /* [ns] length of a TIMER or WAIT; -1: without end */
 };
 
 struct robot_job {
@@ -182,9 +185,6 @@ struct robot_job_mention {
     int32_t text, line, column, offset, length;
 };
 
-/* Words that are read and have no effect, which is told once for each. */
-enum robot_job_idle_word { ROBOT_JOB_ACC, ROBOT_JOB_DEC, ROBOT_JOB_IDLE_WORDS };
-
 struct robot_job_label {
     int32_t offset, length; /* [byte] place of its name in the text */
     int32_t job, to, line;
@@ -202,7 +202,6 @@ struct robot_job_program {
     struct robot_job_mention wanted[ROBOT_JOB_POINTS]; /* positions that no file has so far */
     bool changed[ROBOT_JOB_POINTS];                    /* positions that the program sets */
     bool changes_any;                                  /* one of them is P[..] of a variable */
-    struct robot_job_mention idle[ROBOT_JOB_IDLE_WORDS];
 };
 
 /* Read a program that may go to these points. -1: it is refused, the report says why, and *p is
@@ -223,13 +222,14 @@ const struct robot_job_point *robot_job_point(const struct robot_job_program *p,
                                               const struct robot_job_points *points,
                                               int32_t number);
 
-/* Name of a word without effect. */
-const char *robot_job_idle_name(enum robot_job_idle_word w);
-
 /* Least and greatest speed of a tag, and what one of a variable counts, in its unit. */
 double robot_job_speed_low(enum robot_job_speed tag);
 double robot_job_speed_high(enum robot_job_speed tag);
 double robot_job_speed_unit(enum robot_job_speed tag);
+
+/* Least and greatest share of ACC and DEC, as in the maker's language. [%] */
+#define ROBOT_JOB_ACC_MIN 20.0
+#define ROBOT_JOB_ACC_MAX 100.0
 
 /* Least and greatest value of a variable of a kind: B, I, D; R takes anything finite. */
 double robot_job_low(enum robot_job_operand_kind kind);

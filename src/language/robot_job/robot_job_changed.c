@@ -149,7 +149,7 @@ enum robot_job_fault robot_job_change(struct robot_job_run *run, const struct ro
                                       const struct robot_job_inputs *in,
                                       const struct robot_job_instruction *c)
 {
-    struct robot_job_point by;
+    struct robot_job_point by, here[2];
     memset(&by, 0, sizeof by);
     if (c->op <= ROBOT_JOB_OP_PLACE_SUB || c->op == ROBOT_JOB_OP_GETE) {
         const enum robot_job_fault fault = source(run, p, points, c, &by);
@@ -167,7 +167,10 @@ enum robot_job_fault robot_job_change(struct robot_job_run *run, const struct ro
     }
     switch (c->op) {
     case ROBOT_JOB_OP_PLACE_SET: *q = by; return ROBOT_JOB_OK;
-    case ROBOT_JOB_OP_GETS:      *q = in->here[c->level]; return ROBOT_JOB_OK;
+    case ROBOT_JOB_OP_GETS:
+        in->here(in->arm, here);
+        *q = here[c->level];
+        return ROBOT_JOB_OK;
     case ROBOT_JOB_OP_SETE:
         begin(q, NULL);
         q->value[c->level] = robot_job_value(run, in, &c->right) / per(q, c->level);

@@ -45,7 +45,7 @@
     /* no name, or one with more than ROBOT_JOB_NAME_MAX characters */ \
     X(ROBOT_JOB_BAD_NAME, "name too long") \
     X(ROBOT_JOB_BAD_ARC_POINTS, "MOVC of one point: three in a row, start, via, end") \
-    /* the two speeds of an arc differ; other: line of the first */ \
+    /* the two speeds, ACC or DEC of an arc differ; other: line of the first */ \
     X(ROBOT_JOB_BAD_ARC_SPEED, "via and end with different speeds") \
     /* points of an arc with another tool or user frame */ \
     X(ROBOT_JOB_BAD_ARC_FRAMES, "via and end with different tools or user frames") \

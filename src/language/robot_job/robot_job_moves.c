@@ -7,8 +7,6 @@
 #define VR_MAX     1000.0  /* [deg/s] */
 #define VJ_MIN     0.01    /* [%] */
 #define VJ_MAX     100.0   /* [%] */
-#define SHARE_MIN  20.0    /* [%] of ACC and DEC, as in the maker's language */
-#define SHARE_MAX  100.0   /* [%] */
 #define CORNER_MIN 0.1     /* [mm] */
 #define CORNER_MAX 6553.5  /* [mm] as in the maker's language */
 
@@ -32,11 +30,6 @@ double robot_job_speed_high(enum robot_job_speed tag)
 double robot_job_speed_unit(enum robot_job_speed tag)
 {
     return SPEED[tag].unit;
-}
-
-const char *robot_job_idle_name(enum robot_job_idle_word w)
-{
-    return w == ROBOT_JOB_ACC ? "ACC" : "DEC";
 }
 
 /* Take VJ, V or VR and its value, a number or a variable, which is then c->right. 1: taken, 0:
@@ -74,32 +67,28 @@ static bool other_axes(const struct robot_job_scan *s, struct robot_job_span w)
                || robot_job_scan_is(s, two, "BP") || robot_job_scan_is(s, two, "EX"));
 }
 
-/* Take ACC or DEC with its share [%], which nothing follows from here. 1: taken, 0: the word is
- * none. */
-static int idle_tag(struct robot_job_reading *in, struct robot_job_span w)
+/* Take ACC or DEC with its share [%], a number or a variable. 1: taken, 0: the word is none. */
+static int share_tag(struct robot_job_reading *in, struct robot_job_span w,
+                     struct robot_job_instruction *c)
 {
     struct robot_job_scan *s = &in->s;
-    struct robot_job_operand share;
-    double value;
-    for (int i = 0; i < ROBOT_JOB_IDLE_WORDS; i++) {
-        struct robot_job_mention *m = &in->p->idle[i];
-        if (!robot_job_scan_is(s, w, robot_job_idle_name((enum robot_job_idle_word)i))) {
-            continue;
-        }
-        if (m->line == 0) {
-            *m = (struct robot_job_mention){ .text = in->p->texts,
-                                             .line = s->line,
-                                             .column = robot_job_scan_column(s, w.at),
-                                             .offset = w.at,
-                                             .length = w.length };
-        }
-        if (!robot_job_scan_take(s, '=')) {
-            return robot_job_scan_unexpected(s);
-        }
-        const int named = robot_job_operand_whole(in, &share);
-        return named ? named : robot_job_scan_number(s, SHARE_MIN, SHARE_MAX, &value) ? -1 : 1;
+    const bool slows = robot_job_scan_is(s, w, "DEC");
+    struct robot_job_operand *share = &c->acc[slows];
+    if (!slows && !robot_job_scan_is(s, w, "ACC")) {
+        return 0;
     }
-    return 0;
+    if (share->kind != ROBOT_JOB_NOTHING) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+    }
+    if (!robot_job_scan_take(s, '=')) {
+        return robot_job_scan_unexpected(s);
+    }
+    const int named = robot_job_operand_whole(in, share);
+    if (named) {
+        return named;
+    }
+    share->kind = ROBOT_JOB_CONSTANT;
+    return robot_job_scan_number(s, ROBOT_JOB_ACC_MIN, ROBOT_JOB_ACC_MAX, &share->number) ? -1 : 1;
 }
 
 /* CCN 18: a case for each tag. */
@@ -114,7 +103,7 @@ static int take_tag(struct robot_job_reading *in, struct robot_job_span w,
                    ? 0
                    : robot_job_scan_fault(s, ROBOT_JOB_BAD_KIND, w);
     }
-    status = status == 0 ? idle_tag(in, w) : status;
+    status = status == 0 ? share_tag(in, w, c) : status;
     if (status != 0) {
         return status < 0 ? -1 : 0;
     }
@@ -177,6 +166,16 @@ static bool same_operand(const struct robot_job_operand *a, const struct robot_j
            && a->by.index == b->by.index;
 }
 
+static bool same_shares(const struct robot_job_instruction *a,
+                        const struct robot_job_instruction *b)
+{
+    bool same = true;
+    for (int i = 0; i < 2; i++) {
+        same = same && same_operand(&a->acc[i], &b->acc[i]) && a->acc[i].number == b->acc[i].number;
+    }
+    return same;
+}
+
 /* MOVC of one point: the first of three is a line, the second is kept, the third makes the arc. */
 static int arc_point(struct robot_job_reading *in, struct robot_job_instruction *c)
 {
@@ -197,12 +196,22 @@ static int arc_point(struct robot_job_reading *in, struct robot_job_instruction 
             return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_UNTIL);
         }
         if (c->tag != in->via.tag || c->speed != in->via.speed
-            || !same_operand(&c->right, &in->via.right)) {
+            || !same_operand(&c->right, &in->via.right) || !same_shares(c, &in->via)) {
             in->s.r->other = in->via.line;
             return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_SPEED);
         }
         return same_frames(in, c);
     default: return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_POINTS);
+    }
+}
+
+/* MOVS: the first of a row is a line, and so is the second, until a third makes a curve of both. */
+static void spline_point(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    c->path = ++in->splines > 2 ? ROBOT_JOB_SPLINE : ROBOT_JOB_LINE;
+    if (in->splines > 2) {
+        c[-1].path = ROBOT_JOB_SPLINE;
+        c[-1].goes_on = true;
     }
 }
 
@@ -309,6 +318,9 @@ int robot_job_move(struct robot_job_reading *in, enum robot_job_path path)
     }
     if (tags(in, c)) {
         return -1;
+    }
+    if (path == ROBOT_JOB_SPLINE) {
+        spline_point(in, c);
     }
     if (path == ROBOT_JOB_CIRCLE && !second) {
         return arc_point(in, c);

@@ -42,6 +42,7 @@ struct robot_job_reading {
     int32_t arc_line; /* line of the latest of them */
     struct robot_job_span arc_at;
     struct robot_job_instruction via; /* the second of them */
+    int32_t splines;                  /* MOVS in a row so far */
     int32_t first, jobs;              /* instructions and jobs of the texts before */
     enum {
         ROBOT_JOB_INSIDE,     /* among instructions */
@@ -114,7 +115,7 @@ int robot_job_place_here(struct robot_job_reading *in);
 /* robot_job_lacking: whether a word is INFORM's, but not of this controller. */
 bool robot_job_lacks(const struct robot_job_scan *s, struct robot_job_span w);
 
-/* robot_job_moves: MOVJ MOVL MOVC IMOV SPEED SFTON. */
+/* robot_job_moves: MOVJ MOVL MOVC MOVS IMOV SPEED SFTON. */
 int robot_job_move(struct robot_job_reading *in, enum robot_job_path path);
 int robot_job_move_by(struct robot_job_reading *in);
 int robot_job_move_speed(struct robot_job_reading *in);

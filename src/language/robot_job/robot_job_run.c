@@ -117,6 +117,37 @@ static enum robot_job_fault speed(struct robot_job_run *run, const struct robot_
                : ROBOT_JOB_BAD_RANGE;
 }
 
+/* The shares of ACC and DEC. */
+static enum robot_job_fault shares(struct robot_job_run *run, const struct robot_job_inputs *in,
+                                   const struct robot_job_instruction *c, double share[2])
+{
+    bool good = true;
+    for (int i = 0; i < 2; i++) {
+        const bool given = c->acc[i].kind != ROBOT_JOB_NOTHING;
+        share[i] = given ? robot_job_value(run, in, &c->acc[i]) : ROBOT_JOB_ACC_MAX;
+        good = good && share[i] >= ROBOT_JOB_ACC_MIN && share[i] <= ROBOT_JOB_ACC_MAX;
+    }
+    return good ? ROBOT_JOB_OK : ROBOT_JOB_BAD_RANGE;
+}
+
+/* The point of the next line, to which a spline goes on, unless that has another tool. What is wrong
+ * with it shows where it is done. */
+static void go_on(struct robot_job_run *run, const struct robot_job_program *p,
+                  const struct robot_job_points *points, const struct robot_job_instruction *next,
+                  struct robot_job_request *r)
+{
+    const enum robot_job_fault before = run->fault;
+    int32_t number;
+
+    if (robot_job_which(run, p, points, next->to, &next->to_by, &number) == ROBOT_JOB_OK) {
+        const struct robot_job_point *at = robot_job_place(run, p, points, number);
+        const int32_t tool = at->tool != ROBOT_JOB_ANY ? at->tool : run->tool;
+        r->next = tool == r->tool ? number : -1;
+        r->next_user = at->user != ROBOT_JOB_ANY ? at->user : run->user;
+    }
+    run->fault = before;
+}
+
 /* Request a move to a point, and number it. */
 static enum robot_job_fault move(struct robot_job_run *run, const struct robot_job_program *p,
                                  const struct robot_job_points *points,
@@ -134,6 +165,7 @@ static enum robot_job_fault move(struct robot_job_run *run, const struct robot_j
     if (fault == ROBOT_JOB_OK && c->tag != ROBOT_JOB_DEFAULT) {
         fault = speed(run, in, c, &r->speed);
     }
+    fault = fault == ROBOT_JOB_OK ? shares(run, in, c, r->acc) : fault;
     if (fault != ROBOT_JOB_OK) {
         return fault;
     }
@@ -152,6 +184,10 @@ static enum robot_job_fault move(struct robot_job_run *run, const struct robot_j
     r->shift = run->shift;
     r->shift_user = run->shift_user;
     memcpy(r->shift_by, run->shift_by, sizeof r->shift_by);
+    r->next = -1;
+    if (c->goes_on) {
+        go_on(run, p, points, c + 1, r);
+    }
     r->increment = c->increment;
     if (c->increment != ROBOT_JOB_NOT_BY) { /* from where the tool is, which is shifted already */
         r->tool = run->hand;

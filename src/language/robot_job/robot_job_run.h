@@ -77,11 +77,13 @@ struct robot_job_run {
 
 /* What a program sees of the world. */
 struct robot_job_inputs {
-    int64_t now;                    /* [ns] from 0, never less than before */
-    int64_t reached;                /* number of moves that have reached their points */
-    uint32_t di;                    /* bit 0 is IN#(1) */
-    double ai[ROBOT_JOB_ANALOGS];   /* [V] */
-    struct robot_job_point here[2]; /* the arm, when it rests: in pulses, in the base */
+    int64_t now;                  /* [ns] from 0, never less than before */
+    int64_t reached;              /* number of moves that have reached their points */
+    uint32_t di;                  /* bit 0 is IN#(1) */
+    double ai[ROBOT_JOB_ANALOGS]; /* [V] */
+    /* Where the arm is, when it rests: in pulses, in the base. GETS alone asks for it. */
+    void (*here)(const void *arm, struct robot_job_point here[2]);
+    const void *arm;
 };
 
 enum robot_job_answer {
@@ -104,8 +106,10 @@ struct robot_job_request {
     /* MOVE */
     enum robot_job_path path;
     int32_t point, via;       /* numbers; via of CIRCLE only */
+    int32_t next, next_user;  /* of SPLINE: the point it goes on to, -1: it ends; its user frame */
     enum robot_job_speed tag; /* VJ, V or VR */
     double speed;
+    double acc[2];      /* [%] of the accelerations to speed up, slow down */
     int32_t level;      /* PL; 0: stop at the point */
     double corner;      /* CR [mm]; 0: by level */
     int32_t tool, user; /* those of the point, or in force */

@@ -72,6 +72,7 @@ struct word {
 static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "MOVL", MOVE, ROBOT_JOB_LINE, 0, 0 },
                                      { "MOVC", MOVE, ROBOT_JOB_CIRCLE, 0, 0 },
+                                     { "MOVS", MOVE, ROBOT_JOB_SPLINE, 0, 0 },
                                      { "IMOV", INCREMENT, 0, 0, 0 },
                                      { "SPEED", SPEED, 0, 0, 0 },
                                      { "PL", LEVEL, 0, 0, 0 },
@@ -622,6 +623,9 @@ int robot_job_words(struct robot_job_reading *in)
             return -1;
         }
         s->at = at;
+    }
+    if (word->form != MOVE || word->what != ROBOT_JOB_SPLINE) {
+        in->splines = 0;
     }
     if (instruction(in, word)) {
         return -1;

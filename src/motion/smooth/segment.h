@@ -21,6 +21,8 @@ struct segment {
     double feed;             /* [mm/s] least programmed feed of the commands in it */
     double cap;              /* [mm/s] highest speed any override may bring */
     struct ramp_limits ramp; /* least limits of the commands in it */
+    double share[2];         /* 0..1 of the axes' accelerations that speeding up, slowing down along
+                              * it may take; 0: all */
     bool joint;              /* it joins two others at a corner */
     bool even;               /* feed and cap are speeds of u, whatever moves */
     bool rest; /* the motion comes to rest at its end: the next one goes on elsewhere */

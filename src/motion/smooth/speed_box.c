@@ -164,10 +164,14 @@ void speed_box_make(struct speed_box *g, const struct segment *p, const struct s
         g->cap = l->speed[k] > 0.0 ? el_min(g->cap, l->speed[k] / size(r[0])) : g->cap;
         if (l->acc[k] > 0.0) {
             add_row(g, r, 1.0 / l->acc[k], inverse(l->jerk[k], l->acc[k]));
+            g->along[0] = g->along[1] = el_max(g->along[0], size(r[0]) / l->acc[k]);
         }
     }
     if (!speed_by_axes(l)) {
         path_rule(g, p, b);
+    }
+    for (int n = 0; n < 2; n++) {
+        g->along[n] = p->share[n] > 0.0 ? g->along[n] / p->share[n] : 0.0;
     }
     finish(g);
     g->ideal = g->length / el_min(g->brisk, g->feed);
@@ -201,6 +205,9 @@ bool speed_box_join(struct speed_box *g, const struct speed_box *next)
             one.row[i].jerk[n] = cover(one.row[i].jerk[n], r->jerk[n]);
         }
     }
+    for (int n = 0; n < 2; n++) {
+        one.along[n] = el_max(one.along[n], next->along[n]);
+    }
     one.length += next->length;
     one.feed = el_min(one.feed, next->feed);
     one.cap = el_min(one.cap, next->cap);
@@ -216,7 +223,8 @@ bool speed_box_join(struct speed_box *g, const struct speed_box *next)
 
 double speed_box_steepest(const struct speed_box *g, double x, double sign)
 {
-    double b = INFINITY;
+    const double along = g->along[sign < 0.0];
+    double b = along > 0.0 ? 2.0 / along : INFINITY;
 
     for (int32_t i = 0; i < g->rows; i++) {
         const struct range p = scaled(g->row[i].acc[0], sign), q = scaled(g->row[i].acc[1], x);
@@ -250,9 +258,15 @@ static double bend(const struct speed_box *g, struct speed_state s, double sign)
     return sign * c;
 }
 
+/* Share of what the way itself may take, by x' = b. */
+static double along_of(const struct speed_box *g, double b)
+{
+    return 0.5 * g->along[b < 0.0] * fabs(b);
+}
+
 double speed_box_acc(const struct speed_box *g, struct speed_state s)
 {
-    double most = 0.0;
+    double most = along_of(g, s.b);
 
     for (int32_t i = 0; i < g->rows; i++) {
         most = el_max(most, size(acc_of(&g->row[i], s)));
@@ -317,6 +331,9 @@ bool speed_box_keeps(const struct speed_box *g, struct speed_state from, double 
     }
     const double x = speed_step_top(from, c, s), v = sqrt(x);
     const double b = larger(fabs(from.b), fabs(to.b));
+    if (larger(along_of(g, from.b), along_of(g, to.b)) > 1.0 + ROUNDING) {
+        return false;
+    }
     for (int32_t i = 0; i < g->rows; i++) {
         const struct speed_row *r = &g->row[i];
         const struct range of_c = scaled(r->jerk[0], 0.5 * c), of_b = scaled(r->jerk[1], 1.5);
@@ -398,6 +415,10 @@ double speed_box_jerk(const struct speed_box *g, double v, double a)
 {
     double j = INFINITY;
 
+    if (along_of(g, 2.0 * a) > 1.0) {
+        return 0.0;
+    }
+    a = fabs(a);
     for (int32_t i = 0; i < g->rows; i++) {
         const struct speed_row *r = &g->row[i];
         const double p = extent(r->jerk[0]);

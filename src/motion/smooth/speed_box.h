@@ -26,6 +26,8 @@ struct speed_box {
                           * limits */
     double brisk;        /* [mm/s] speed up to which enough is left to change it */
     double ideal;        /* [s] time of its parts at their own speeds */
+    double along[2];     /* [s^2/mm] 1 / most acceleration, most braking of the way, beside the
+                           * rows; 0: none */
     int32_t rows;
     struct speed_row row[AXES];
 };
@@ -61,7 +63,8 @@ bool speed_box_turn_to(const struct speed_box *g, struct speed_state to, double 
 /* Length of a step: `rest`, or an even share of it in which x and b do not change too much. */
 double speed_box_stride(const struct speed_box *g, struct speed_state from, double rest);
 
-/* Jerk of the way that keeps the limits while speed and acceleration are up to v and a. [mm/s^3] */
+/* Jerk of the way that keeps the limits while speed and acceleration are up to v and a, or down to
+ * a below 0. [mm/s^3] */
 double speed_box_jerk(const struct speed_box *g, double v, double a);
 
 /* Time in which the jerk reaches the most acceleration. [s] */

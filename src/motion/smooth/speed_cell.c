@@ -98,7 +98,7 @@ static void add_row(struct speed_cell *c, const struct row *r)
     }
 }
 
-static void limit_rows(struct speed_cell *c, struct row row[AXES], int count)
+static void limit_rows(struct speed_cell *c, struct row row[AXES + 1], int count)
 {
     double sum = 0.0;
     bool any = false;
@@ -127,7 +127,8 @@ static void limit_rows(struct speed_cell *c, struct row row[AXES], int count)
 static void limit(struct speed_cell *c, const struct segment *p, const struct speed_limits *l,
                   const struct segment_bounds *b)
 {
-    struct row row[AXES];
+    struct row row[AXES + 1];
+    double pull = 0.0;
     int count = 0;
 
     c->planes = 0;
@@ -143,6 +144,7 @@ static void limit(struct speed_cell *c, const struct segment *p, const struct sp
         if (l->acc[k] > 0.0) {
             row[count].acc[0] = row[count].acc[1] = l->acc[k];
             speed_pull_axis(&row[count++].pull, k, c->length, b);
+            pull = most(pull, larger(b->low[0][k], b->high[0][k]) / l->acc[k]);
         }
     }
     if (!speed_by_axes(l)) {
@@ -151,6 +153,11 @@ static void limit(struct speed_cell *c, const struct segment *p, const struct sp
         row[0].acc[0] = p->ramp.dec;
         row[0].acc[1] = p->ramp.acc;
         count = 1;
+    }
+    if (p->share[0] > 0.0 || p->share[1] > 0.0) { /* the way by itself */
+        row[count++] = (struct row){ .pull = { .most = { pull, 0.0, 0.0 } },
+                                     .acc = { p->share[1] > 0.0 ? p->share[1] : INFINITY,
+                                              p->share[0] > 0.0 ? p->share[0] : INFINITY } };
     }
     limit_rows(c, row, count);
 }

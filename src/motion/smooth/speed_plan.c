@@ -177,7 +177,7 @@ bool speed_road_start(const struct speed_road *r, double at, int32_t box, double
             int32_t at_box = box;
             do {
                 const struct speed_box *g = speed_road_box(r, at_box);
-                jerk = el_min(jerk, speed_box_jerk(g, v, a));
+                jerk = el_min(jerk, speed_box_jerk(g, v, sign * a));
                 if (v * v > speed_road_top(r, g)) {
                     jerk = 0.0;
                 }
@@ -209,7 +209,7 @@ bool speed_road_lands(const struct speed_road *r, double at, int32_t box, struct
     do {
         const struct speed_box *g = speed_road_box(r, i);
         const double rest = i > box ? (end - g->from) / s.way : 1.0; /* x is as rest^(4/3) */
-        if (s.c > speed_box_jerk(g, s.speed, -s.acc) * (1.0 + LANDS)
+        if (s.c > speed_box_jerk(g, s.speed, s.acc) * (1.0 + LANDS)
             || state.x * rest * el_cbrt(rest) > speed_road_top(r, g) * (1.0 + SAME)) {
             return false;
         }
@@ -225,7 +225,7 @@ struct speed_step speed_road_hop(const struct speed_road *r, double at, int32_t 
         double most = INFINITY;
         for (int32_t i = box; i < r->count && speed_road_box(r, i)->from < at + way; i++) {
             const struct speed_box *g = speed_road_box(r, i);
-            const double here = speed_box_jerk(g, v, a);
+            const double here = el_min(speed_box_jerk(g, v, a), speed_box_jerk(g, v, -a));
             most = el_min(most, v * v > speed_road_top(r, g) ? 0.0 : here);
         }
         if (k > 0 && most >= jerk) {

@@ -13,11 +13,20 @@ static const struct robot_job_point HERE[2] = {
     { .value = { 700.5, -20.25, 300, 180, 0, -90 }, .kind = ROBOT_JOB_POSE, .tool = 1 },
 };
 
+/* How often somebody has asked. */
+static int asked;
+
+static void where(const void *arm, struct robot_job_point here[2])
+{
+    memcpy(here, arm, sizeof HERE);
+    asked++;
+}
+
 /* The moves of a program: path, values of the position, tool, user frame, speed; UNTIL and frames
  * of increments; its outputs. A move is reached when somebody asks. */
 static const char *run_text(const char *text)
 {
-    struct robot_job_inputs in = { .here = { HERE[0], HERE[1] } };
+    struct robot_job_inputs in = { .here = where, .arm = HERE };
     struct robot_job_request r = { .answer = ROBOT_JOB_BUSY };
     trace[0] = '\0';
     if (read_program(text)) {
@@ -29,12 +38,16 @@ static const char *run_text(const char *text)
         robot_job_next(&run, &program, &points, &in, 1000, &r);
         if (r.answer == ROBOT_JOB_MOVE) {
             const struct robot_job_point *p = robot_job_place(&run, &program, &points, r.point);
-            snprintf(trace + at, left, "%c%g,%g,%g,%g,%g,%g T%d U%d %g", "JLC"[r.path],
+            snprintf(trace + at, left, "%c%g,%g,%g,%g,%g,%g T%d U%d %g", "JLCS"[r.path],
                      p -> value[0], p -> value[1], p -> value[2], p -> value[3], p -> value[4],
                      p -> value[5], (int)r.tool, (int)r.user, r.speed);
             if (r.path == ROBOT_JOB_CIRCLE) {
                 p = robot_job_place(&run, &program, &points, r.via);
                 snprintf(trace + strlen(trace), 40, " via %g", p->value[0]);
+            }
+            if (r.path == ROBOT_JOB_SPLINE && r.next >= 0) {
+                p = robot_job_place(&run, &program, &points, r.next);
+                snprintf(trace + strlen(trace), 40, " next %g U%d", p->value[0], (int)r.next_user);
             }
             if (r.increment != ROBOT_JOB_NOT_BY) {
                 snprintf(trace + strlen(trace), 40, " by %d", (int)r.increment);
@@ -45,6 +58,9 @@ static const char *run_text(const char *text)
             }
             if (r.until >= 0) {
                 snprintf(trace + strlen(trace), 40, " until %d %d", (int)r.until, r.until_on);
+            }
+            if (r.acc[0] != 100.0 || r.acc[1] != 100.0) {
+                snprintf(trace + strlen(trace), 40, " ramps %g %g", r.acc[0], r.acc[1]);
             }
             strcat(trace, ";");
         } else if (r.answer == ROBOT_JOB_DOUT) {
@@ -119,8 +135,43 @@ static const struct {
     /* UNTIL: what follows waits for its end; what NWAIT lets come with it does not */
     { "MOVL P1 V=9 UNTIL IN#(3)=ON\nDOUT OT#(1) ON\nMOVL P2 V=9",
       "L900,0,350,180,0,0 T1 U0 9 until 2 1;reach 1;1:1=1;L1000,100,350,180,0,0 T0 U0 9;reach 2;" },
-    { "MOVL P1 V=9 NWAIT UNTIL IN#(3)=ON ACC=50 DEC=I000\nDOUT OT#(1) ON\nINC B000\nMOVL P2 V=9",
-      "L900,0,350,180,0,0 T1 U0 9 until 2 1;0:1=1;reach 1;L1000,100,350,180,0,0 T0 U0 9;reach 2;" },
+    { "SET I000 100\nMOVL P1 V=9 NWAIT UNTIL IN#(3)=ON ACC=50 DEC=I000\nDOUT OT#(1) ON\nINC B000\n"
+      "MOVL P2 V=9",
+      "L900,0,350,180,0,0 T1 U0 9 until 2 1 ramps 50 100;0:1=1;reach 1;L1000,100,350,180,0,0 T0 U0 "
+      "9;reach 2;" },
+    /* shares of the accelerations, of the third line of an arc */
+    { "SET B004 20\nMOVJ P0 VJ=5 DEC=B[4]\nMOVL P1 V=9\nMOVC P1 V=9 ACC=99\nMOVC P2 V=9 ACC=I7 "
+      "DEC=30.5\nMOVC P3 V=9 DEC=30.5 ACC=I7",
+      "J0,-20,10,0,90,0 T0 U0 5 ramps 100 20;L900,0,350,180,0,0 T1 U0 9;"
+      "L900,0,350,180,0,0 T1 U0 9 ramps 99 100;6 result out of range" },
+    { "SET I007 100\nMOVL P1 V=9 ACC=I7\nINC I7\nMOVL P1 V=9 DEC=I007",
+      "L900,0,350,180,0,0 T1 U0 9;4 result out of range" },
+    { "MOVC P1 V=9\nMOVC P2 V=9 ACC=50\nMOVC P3 V=9 ACC=51",
+      "line 3: via and end with different speeds \"MOVC P3 V=9 ACC=51\" (line 2)" },
+    { "MOVL P1 ACC=50 ACC=50", "line 1: given twice \"ACC\"" },
+    { "MOVL P1 ACC=50 DEC=100.5", "line 1: value out of range \"100.5\" (20 to 100)" },
+    /* one or two MOVS are lines; more are a curve from the first on, whatever moves the points */
+    { "MOVS P2 V=9\nMOVL P4 V=9\nMOVS P2 V=8\nMOVS P4 V=7",
+      "L1000,100,350,180,0,0 T0 U0 9;L0,0,0,180,0,0 T0 U2 9;L1000,100,350,180,0,0 T0 U0 8;"
+      "L0,0,0,180,0,0 T0 U2 7;reach 4;" },
+    { "MOVS P2 V=9\nMOVS P4 V=8\nMOVS P2 V=7",
+      "L1000,100,350,180,0,0 T0 U0 9;S0,0,0,180,0,0 T0 U2 8 next 1000 U0;"
+      "S1000,100,350,180,0,0 T0 U0 7;reach 3;" },
+    { "SET B001 4\nMOVS P2 V=9\nMOVS P3 V=8 PL=3\nMOVS P[B001] VR=7 ACC=50\nMOVS P2 V=6\n"
+      "NOP\nMOVS P3 V=5",
+      "L1000,100,350,180,0,0 T0 U0 9;S1100,0,350,180,0,0 T0 U0 8 next 0 U2;"
+      "S0,0,0,180,0,0 T0 U2 7 next 1000 U0 ramps 50 100;S1000,100,350,180,0,0 T0 U0 6;"
+      "L1100,0,350,180,0,0 T0 U0 5;reach 5;" },
+    /* a point with another tool begins a curve anew; a point without a value shows where it is */
+    { "MOVS P2 V=9\nMOVS P3 V=8\nMOVS P1 V=7\nMOVS P1 V=6",
+      "L1000,100,350,180,0,0 T0 U0 9;S1100,0,350,180,0,0 T0 U0 8;"
+      "S900,0,350,180,0,0 T1 U0 7 next 900 U0;S900,0,350,180,0,0 T1 U0 6;reach 4;" },
+    { "SET B001 100\nMOVS P2 V=9\nMOVS P3 V=8\nMOVS P[D000] V=7\nMOVS B[B001] V=7",
+      "line 5: unexpected \"B[B001]\"" },
+    { "SET I001 -1\nMOVS P2 V=9\nMOVS P3 V=8\nMOVS P[I001] V=7",
+      "L1000,100,350,180,0,0 T0 U0 9;S1100,0,350,180,0,0 T0 U0 8;4 no such variable" },
+    { "MOVS P1 VJ=9", "line 1: operand of the wrong kind \"VJ=9\"" },
+    { "MOVS P1 P2 V=9", "line 1: unknown word \"P2\"" },
     /* stopped by numbers */
     { "MOVL P5 V=9\nSETE P[B000] (1) 1", "1 a position that has no value yet" },
     { "MOVL P2 V=9\nSET B000 7\nMOVL P[B000] V=9",
@@ -170,16 +221,13 @@ static const struct {
     { "MOVL P1 V=R000", "line 1: operand of the wrong kind \"R000\"" },
 };
 
-/* Words without effect are told where they stand first. */
-static void idle_words(void)
+/* Where the arm is, is asked for by GETS, once for each, and by nothing that waits. */
+static void asked_by_gets(void)
 {
-    CHECK_EQ(read_program("MOVL P1 DEC=20\n  MOVL P1 ACC=100 DEC=30\n"), 0);
-    const struct robot_job_mention *acc = &program.idle[ROBOT_JOB_ACC],
-                                   *dec = &program.idle[ROBOT_JOB_DEC];
-    CHECK(acc->line == 2 && acc->column == 11 && acc->offset == 25 && acc->length == 3);
-    CHECK(dec->line == 1 && dec->column == 9);
-    CHECK_EQ(read_program("NOP"), 0);
-    CHECK(acc->line == 0 && dec->line == 0);
+    asked = 0;
+    run_text("MOVL P2 V=9\nWAIT IN#(1)=OFF\nGETS PX1 $PX000\nLOOP 3\n"
+             "GETS PX2 $PX001\nENDLOOP\nSET P3 P2\nTIMER T=1");
+    CHECK_EQ(asked, 4);
 }
 
 /* A position may come with a job that is read later. */
@@ -209,7 +257,7 @@ int main(void)
     for (size_t i = 0; i < sizeof GOOD / sizeof *GOOD; i++) {
         CHECK_TEXT(run_text(GOOD[i].text), GOOD[i].trace);
     }
-    idle_words();
+    asked_by_gets();
     later_text();
     return check_result();
 }

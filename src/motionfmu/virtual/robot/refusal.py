@@ -24,6 +24,8 @@ STATUS = (
     "NO_CIRCLE",
     "OFF_PLANE",
     "NO_UNIT",
+    "NO_SPLINE",
+    "NO_FLOW",
 )
 _IN_RADIANS = "OUTSIDE"
 _LENGTH = 420
@@ -38,7 +40,7 @@ class RobotError(InputError):
     ----------
     status : str
         Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
-        OFF_PLANE, NO_UNIT of a move;
+        OFF_PLANE, NO_UNIT, NO_SPLINE, NO_FLOW of a move;
         COLLISION; VALUE of an argument; PROGRAM of a text.
     value, limit : float
         What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
