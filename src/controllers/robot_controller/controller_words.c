@@ -5,7 +5,7 @@
 #include "elementary.h"
 #include "robot_job_decimal.h"
 
-static const double DEGREE = 0.017453292519943295;
+static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
 static const char *name_of(enum robot_status status)
 {
@@ -21,6 +21,8 @@ static const char *name_of(enum robot_status status)
     case ROBOT_NO_CIRCLE:    return "three points on one line";
     case ROBOT_OFF_PLANE:    return "the start is not in the plane of the arc's centre";
     case ROBOT_NO_UNIT:      return "the normal of the arc is no unit vector";
+    case ROBOT_TILTED:       return "the arm has no joint that turns the tool so";
+    case ROBOT_NO_JOINT:     return "no such joint";
     }
     return "";
 }
@@ -55,9 +57,9 @@ void controller_refusal_words(enum robot_status status, const struct robot_refus
     case ROBOT_FAR: add_place(&t, r); break;
     case ROBOT_OUTSIDE:
         add(&t, ": joint ", r->which + 1);
-        add(&t, " to ", r->value / DEGREE);
-        add(&t, " deg, limit ", r->limit / DEGREE);
-        add(&t, " deg, at ", 100.0 * r->part);
+        add(&t, " to ", r->value / (r->slides ? MM : DEGREE));
+        add(&t, r->slides ? " mm, limit " : " deg, limit ", r->limit / (r->slides ? MM : DEGREE));
+        add(&t, r->slides ? " mm, at " : " deg, at ", 100.0 * r->part);
         robot_job_text_add(&t, " % of its path");
         break;
     case ROBOT_SINGULAR:
@@ -82,6 +84,14 @@ void controller_refusal_words(enum robot_status status, const struct robot_refus
         add(&t, ": ", r->value);
         add(&t, " mm off it, limit ", r->limit);
         robot_job_text_add(&t, " mm");
+        break;
+    case ROBOT_TILTED:
+        add(&t, ": ", r->value / DEGREE);
+        robot_job_text_add(&t, " deg from the tilt that its tool keeps");
+        break;
+    case ROBOT_NO_JOINT:
+        add(&t, ": joint ", r->which + 1);
+        add(&t, ", the arm has ", r->limit);
         break;
     case ROBOT_NO_UNIT: add(&t, ": its length is ", r->value); break;
     default:            break;
