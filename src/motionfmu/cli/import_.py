@@ -60,7 +60,7 @@ def import_(
 
 def _arm(path: Path, folder: Path, tip: str | None) -> None:
     """Make a machine of an arm, and print what was taken for granted."""
-    from motionfmu.arm_machines import make_machine, taken_lines
+    from motionfmu.arm_machines import joint_count, make_machine, taken_lines
     from motionfmu.arms import table_arm, urdf_arm
 
     if path.suffix.lower() == ".toml":
@@ -71,7 +71,7 @@ def _arm(path: Path, folder: Path, tip: str | None) -> None:
         arm = urdf_arm(path, tip)
     made = make_machine(arm, folder, path.name)
     size = f"reach {made.geometry.reach:.3g} m, {made.values.arm.mass:.4g} kg"
-    print(f"{folder / 'machine.toml'}: {arm.name} to {arm.tip}, six joints, {size}")
+    print(f"{folder / 'machine.toml'}: {arm.name} to {arm.tip}, {joint_count(arm)}, {size}")
     print(f"not in {path.name}, and taken; what is known better goes into machine.toml:")
     for line in taken_lines(made.values.taken):
         print(f"  {line}")
