@@ -54,8 +54,8 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
   final parameter Real windup(unit = "rad") = lost_motion/2*min(max(torque/sided, -1), 1)
     + sign(torque)*(min(size, knee_1)/stiffness_1 + max(min(size, knee_2) - knee_1, 0)/stiffness_2
     + max(size - knee_2, 0)/stiffness_3) "Of the gear";
-  final parameter Real start(unit = "rad") = angle + (1 - stands)*(error_1*sin(motor + phase_1)
-    + error_2*sin(2*motor + phase_2) - windup) "Angle of the joint";
+  final parameter Real start(unit = "rad") = angle + (1 - stands)*error_1*sin(motor + phase_1)
+    + (1 - stands)*error_2*sin(2*motor + phase_2) - (1 - stands)*windup "Angle of the joint";
   annotation(Documentation(info = "<html>
 <p>Torques are those of the angles behind ideal gears; that they change with the wind-up itself
 leaves out 2e-3 of it for the stiffness of such an arm.</p>

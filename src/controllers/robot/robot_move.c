@@ -306,13 +306,16 @@ static bool turns_over(const struct robot *r, const struct manipulator *arm,
     struct pose p = *pose;
     double q[4];
 
+    if (robot_tilted(arm, pose, why)) {
+        return true;
+    }
     if (angle > 1.0) {
         const double part[3] = { by[0] / angle, by[1] / angle, by[2] / angle };
         quaternion_by_vector(part, q);
         rear_turn(r, arm, p.turn);
         quaternion_product(q, p.turn, p.turn);
     }
-    return robot_tilted(arm, &p, why);
+    return angle > 1.0 && robot_tilted(arm, &p, why);
 }
 
 /* CCN 23: a move that turns first is two moves, which are accepted together or refused together; at

@@ -62,7 +62,9 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
     try:
         geometry = driven_geometry(arm)
     except NoOpwGeometry as error:
-        told = "it cannot be driven yet: the controller moves six joints that turn, or a SCARA"
+        told = (
+            "it cannot be driven yet: the controller moves six joints that turn, SCARAs, gantries"
+        )
         raise InputError(f"{source}: {arm.name} is {error}; {told}") from None
     like = arm_machine(machine(LIKE))
     values = arm_values(arm, geometry, like)

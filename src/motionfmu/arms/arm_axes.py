@@ -6,9 +6,11 @@ import numpy as np
 
 from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
 from motionfmu.arms.arm_geometry import (
+    ANGLE,
     SIX,
     NoOpwGeometry,
     OpwGeometry,
+    is_gantry,
     is_scara,
     kind_of,
     opw_geometry,
@@ -192,10 +194,10 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
     try:
         geometry = opw_geometry(arm)
     except NoOpwGeometry as error:
-        if not turns_six(arm) and not is_scara(arm):
+        if not turns_six(arm) and not is_scara(arm) and not is_gantry(arm):
             raise NoOpwGeometry(f"{kind_of(arm)}; {_missing(arm)}") from None
         found = replace(axes_geometry(arm), why=str(error))
-        return found if turns_six(arm) else _in_parallel(found)
+        return _in_parallel(found) if is_scara(arm) else found
     if geometry.deviation <= MOST_DEVIATION:
         return geometry
     why = f"its seven lengths are off by {1e3 * geometry.deviation:.3g} mm at the tip"
@@ -203,14 +205,34 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
 
 
 def _in_parallel(geometry: AxesGeometry) -> AxesGeometry:
-    """The same with all axes exactly parallel to the first: else no tool would keep its tilt."""
+    """The same with all axes exactly parallel to the first: else no tool would keep its tilt.
+
+    A tool whose z is along them but for the digits of the file is so, too.
+    """
     first = geometry.axes[0]
     axes = np.array([first if first @ axis > 0.0 else -first for axis in geometry.axes])
-    found = replace(geometry, axes=axes)
+    found = replace(geometry, axes=axes, flange=_upright(geometry.flange, first))
     random = np.random.default_rng(SEED).uniform(-np.pi, np.pi, (STATES, len(axes)))
     random[:, geometry.sliding] = 0.0
     apart = (found.frames(random)[-1] - geometry.frames(random)[-1]) @ geometry.flange[:, 3]
     return replace(found, deviation=float(np.linalg.norm(apart[:, :3], axis=1).max()))
+
+
+def _upright(frame: Array, axis: Array) -> Array:
+    """A frame turned as little as may be so that its z is along an axis, if it is so nearly."""
+    z = frame[:3, 2]
+    along = axis if axis @ z > 0.0 else -axis
+    across = np.cross(z, along)
+    sine = float(np.linalg.norm(across))
+    if not 0.0 < sine < ANGLE:
+        return frame
+    turned = frame.copy()
+    turned[:3, :3] = about(across / sine, np.arcsin(sine)) @ frame[:3, :3]
+    turned[:3, 2] = along
+    turned[:3, 0] -= along * (along @ turned[:3, 0])
+    turned[:3, 0] /= np.linalg.norm(turned[:3, 0])
+    turned[:3, 1] = np.cross(along, turned[:3, 0])
+    return np.asarray(turned)
 
 
 def _missing(arm: ArmDescription) -> str:
@@ -219,7 +241,7 @@ def _missing(arm: ArmDescription) -> str:
     count = len(arm.driven)
     if count > SIX:
         told.append(f"which of its {count} joints is held still, for a pose leaves {count - SIX}")
-        told[-1] += " of them open (a URDF in which it is fixed has six)"
+        told[-1] += " of them open (--hold)"
     if count < SIX:
         told.append(f"poses of {count} coordinates: a job asks for six, the arm has {count}")
     if names := [j.name for j in arm.joints if j.slides]:

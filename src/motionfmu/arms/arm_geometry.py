@@ -189,6 +189,12 @@ def is_scara(arm: ArmDescription) -> bool:
     return all(axes.parallel(1, k) for k in (2, 3, 4))
 
 
+def is_gantry(arm: ArmDescription) -> bool:
+    """Whether three joints slide, and up to three behind them turn, each by itself."""
+    kinds = "".join("P" if j.slides else "R" for j in arm.joints)
+    return kinds in ("PPP", "PPPR", "PPPRR", "PPPRRR") and not any(j.follows for j in arm.joints)
+
+
 def turns_six(arm: ArmDescription) -> bool:
     """Whether an arm has six joints that turn, each by itself."""
     return len(arm.joints) == SIX and not any(j.slides or j.follows for j in arm.joints)
