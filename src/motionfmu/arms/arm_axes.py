@@ -125,7 +125,7 @@ class AxesGeometry:
         The wrist is the point of axis 5 that is nearest to axis 6.
         """
         turns = np.linspace(-np.pi, np.pi, STEPS, endpoint=False)
-        if len(self.axes) < SIX:
+        if len(self.axes) < SIX or self.sliding:
             return self._few_reach(turns)
         q = np.zeros((STEPS**3, SIX))
         q[:, 1:4] = np.stack(np.meshgrid(turns, turns, turns), -1).reshape(-1, 3)

@@ -1,5 +1,4 @@
-/* Arms of four joints, a SCARA whose joint slides and a palletizer whose linkage keeps the tool
- * level: lines, arcs, moves of joints, jogs at random, by formulas of their own. Every joint keeps
+/* Arms of four joints, a SCARA, a palletizer whose linkage keeps the tool level, a gantry: lines, arcs, moves of joints, jogs at random, by formulas of their own. Every joint keeps
  * speed, acceleration and range in every cycle, the tip its way; places that are not there stay 0;
  * an attitude that the arm has not is refused with its tilt. */
 #include "bounds.h"
@@ -105,6 +104,26 @@ static bool palletizer_joints(const double at[3], double turn, double q[FOUR])
     return true;
 }
 
+static void gantry_tip(const double q[FOUR], double at[3], double *turn)
+{
+    for (int i = 0; i < 3; i++) {
+        at[i] = 1e3 * q[i];
+    }
+    at[2] += HIGH_1;
+    *turn = q[3];
+    tool_at(*turn, at);
+}
+
+static bool gantry_joints(const double at[3], double turn, double q[FOUR])
+{
+    q[0] = 1e-3 * (at[0] - ASIDE * cos(turn));
+    q[1] = 1e-3 * (at[1] - ASIDE * sin(turn));
+    q[2] = 1e-3 * (at[2] + BELOW - HIGH_1);
+    near_turn(&turn, q[3]);
+    q[3] = turn;
+    return true;
+}
+
 static const struct arm ARMS[] = {
     { "scara",
       { .joints = FOUR,
@@ -132,6 +151,19 @@ static const struct arm ARMS[] = {
       { 6, 5, 6, 25 },
       palletizer_tip,
       palletizer_joints },
+    { "gantry",
+      { .joints = FOUR,
+        .joint = { { .origin = { 0, 0, .2 }, .axis = { 1, 0, 0 }, .slides = true },
+                   { .origin = { 0, 0, .1 }, .axis = { 0, 1, 0 }, .slides = true },
+                   { .axis = { 0, 0, 1 }, .slides = true },
+                   { .axis = { 0, 0, 1 } } },
+        .flange = { { 0, 0, 0 }, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } } },
+      { -1, -.6, -.5, -6.28 },
+      { 1, .6, 0, 6.28 },
+      { 1.5, 1.2, .8, 8 },
+      { 4, 5, 6, 60 },
+      gantry_tip,
+      gantry_joints },
 };
 
 static struct robot_config config_of(const struct arm *a)
@@ -361,7 +393,7 @@ static void refused(const struct arm *a, const struct robot_config *c)
     m.target.joint[2] = 5.0;
     m.kind = ROBOT_JOINTS;
     CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OUTSIDE);
-    CHECK(why.which == 2 && why.value == 5.0 && why.slides == (a->tip == scara_tip));
+    CHECK(why.which == 2 && why.value == 5.0 && why.slides == a->chain.joint[2].slides);
     /* A flag of a branch that the arm has not says nothing. */
     m.kind = ROBOT_LINE;
     m.target = (struct robot_target){ .pose = robot.pose };
