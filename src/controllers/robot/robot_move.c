@@ -195,7 +195,7 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
 }
 
 /* Whether joints at the end of a path are those that its target asks for.
- * CCN 16: a target says the end by joints, by a branch, by turns, or leaves it open. */
+ * CCN 17: a target says the end by joints, by a branch, by turns, or leaves it open. */
 static enum robot_status check_end(const struct manipulator *arm, const struct robot_target *t,
                                    const double end[OPW_JOINTS], struct robot_refusal *why)
 {

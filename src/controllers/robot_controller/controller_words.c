@@ -46,6 +46,7 @@ static void add_place(struct robot_job_text *t, const struct robot_refusal *r)
     robot_job_text_add(t, " mm");
 }
 
+/* CCN 18: a case for each refusal that has numbers, in the unit of its joint. */
 void controller_refusal_words(enum robot_status status, const struct robot_refusal *r,
                               char text[CONTROLLER_WORDS])
 {

@@ -156,6 +156,7 @@ class _Values:
         self._take(f"mass, centre, inertia of {names}", parameters, masses, why)
         return replace(arm, joints=tuple(joints))
 
+    # CCN 19: each kind of number that a joint lacks is taken and told by itself.
     def _moving(self, arm: ArmDescription) -> ArmDescription:
         """With speeds, ranges, accelerations and gears for joints that have none."""
         joints = [self._limited(k, j) for k, j in enumerate(arm.joints)]

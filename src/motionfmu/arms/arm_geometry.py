@@ -142,7 +142,7 @@ def _lines(arm: ArmDescription) -> _JointAxes:
     )
 
 
-# CCN 22: one question for each kind of arm, in the order in which they exclude each other.
+# CCN 19: one question for each kind of arm, in the order in which they exclude each other.
 def kind_of(arm: ArmDescription) -> str:
     """Say what kind of arm a chain of joints is.
 
