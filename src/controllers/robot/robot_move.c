@@ -297,8 +297,8 @@ bool robot_tilted(const struct manipulator *arm, const struct pose *pose, struct
     return true;
 }
 
-/* Whether a path that turns the tool by a vector would tilt it as the arm cannot. A whole turn comes
- * back to where it began, so of large ones the first radian is looked at. */
+/* Whether a path that turns the tool by a vector would tilt it as the arm cannot. A whole turn
+ * comes back to where it began, so of large ones the first radian is looked at. */
 static bool turns_over(const struct robot *r, const struct manipulator *arm,
                        const struct pose *pose, const double by[3], struct robot_refusal *why)
 {

@@ -52,8 +52,8 @@ struct chain_axes {
 void chain_axes_at(const struct chain *c, const double joint[CHAIN_JOINTS], struct chain_axes *axes,
                    struct chain_pose *pose);
 
-/* Motion of a place [m] that the flange carries, for a unit rate of joint k: its velocity [m] or, of
- * a sliding joint, [1], and its turning [1], base frame. */
+/* Motion of a place [m] that the flange carries, for a unit rate of joint k: its velocity [m] or,
+ * of a sliding joint, [1], and its turning [1], base frame. */
 void chain_column(const struct chain *c, const struct chain_axes *axes, int k, const double at[3],
                   double column[6]);
 

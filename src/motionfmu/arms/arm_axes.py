@@ -155,7 +155,7 @@ ArmGeometry = OpwGeometry | AxesGeometry
 
 
 def axes_geometry(arm: ArmDescription) -> AxesGeometry:
-    """Take the axes of an arm of up to six joints that follow no others.
+    """Take the axes of an arm of up to six free joints.
 
     Parameters
     ----------

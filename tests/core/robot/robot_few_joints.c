@@ -1,6 +1,7 @@
-/* Arms of four joints, a SCARA, a palletizer whose linkage keeps the tool level, a gantry: lines, arcs, moves of joints, jogs at random, by formulas of their own. Every joint keeps
- * speed, acceleration and range in every cycle, the tip its way; places that are not there stay 0;
- * an attitude that the arm has not is refused with its tilt. */
+/* Arms of four joints, a SCARA, a palletizer whose linkage keeps the tool level, a gantry: lines,
+ * arcs, moves of joints, jogs at random, by formulas of their own. Every joint keeps speed,
+ * acceleration and range in every cycle, the tip its way; places that are not there stay 0; an
+ * attitude that the arm has not is refused with its tilt. */
 #include "bounds.h"
 #include "robot_rig.h"
 
