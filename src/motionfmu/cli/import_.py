@@ -56,8 +56,10 @@ def import_(  # noqa: PLR0913  (each is an option of the command)
             raise InputError("--stop and --step are for an SSP")
         _arm(path, target or Path(path.stem), tip, hold)
         return
-    if tip is not None or hold is not None:
-        raise InputError("--tip and --hold are for an arm")
+    if tip is not None:
+        raise InputError("--tip is for a URDF")
+    if hold is not None:
+        raise InputError("--hold is for an arm")
     from motionfmu.ssp.ssp_import import take
 
     taken = take(path, target or Path(path.stem), stop, step)
