@@ -1,8 +1,8 @@
 /* fmu_recorder - records the signals of a run in a folder of .npy files, one per signal:
  * `<name>.npy` and `time.npy` [s], of shape (rows,) or (rows, count). Rows are collected in blocks
  * of memory and written a block at a time. The folder appears complete at the end, where there was
- * none, an empty one or an older recording. Functions that return an int return 0, or -1 with the
- * reason in recorder.why. */
+ * none, an empty one or an older recording. Or the rows stay in the caller's memory, and there
+ * is no folder. Functions that return an int return 0, or -1 with the reason in recorder.why. */
 #ifndef FMU_RECORDER_H
 #define FMU_RECORDER_H
 
@@ -43,7 +43,7 @@ struct recorder {
     const struct recorder_column *columns; /* the caller's, while it is open */
     struct recorder_stream *streams;       /* those of all columns and of time */
     struct recorder_group *groups;
-    char *blocks;           /* memory of all blocks */
+    char *blocks;           /* memory of all blocks; NULL: they are the caller's, for a whole run */
     int count, group_count; /* number of streams; of groups */
     double time, period;    /* [s] time of the row; from row to row */
     int64_t base;           /* number of the first row, 0 if the run begins at time 0 */
@@ -132,8 +132,8 @@ static inline int64_t recorder_room(size_t width)
     return (int64_t)(steps ? steps * step : step);
 }
 
-/* Order the streams by width, make the groups and place the blocks. */
-static inline bool recorder_layout(struct recorder *r)
+/* Order the streams by width and make the groups. Returns what their blocks take [byte]. */
+static inline size_t recorder_group_streams(struct recorder *r)
 {
     size_t bytes = 0;
     for (int k = 0; k < r->count; k++) {
@@ -147,20 +147,68 @@ static inline bool recorder_layout(struct recorder *r)
         r->streams[place] = s;
         bytes += (size_t)recorder_room(width) * width + RECORDER_LINE;
     }
-    char *at = r->blocks = malloc(bytes);
-    for (int k = 0; k < r->count && at; k++) {
-        struct recorder_stream *s = &r->streams[k];
-        const size_t width = recorder_width(r, s);
+    for (int k = 0; k < r->count; k++) {
+        const size_t width = recorder_width(r, &r->streams[k]);
         struct recorder_group *g = &r->groups[r->group_count - (r->group_count > 0)];
         if (g->width != width) {
             g = &r->groups[r->group_count++];
-            *g = (struct recorder_group){ s, 0, width, 0, recorder_room(width) };
+            *g = (struct recorder_group){ &r->streams[k], 0, width, 0, recorder_room(width) };
         }
         g->count++;
-        s->block = at;
-        at += (size_t)g->room * width + RECORDER_LINE;
+    }
+    return bytes;
+}
+
+/* Place the blocks. */
+static inline bool recorder_layout(struct recorder *r)
+{
+    char *at = r->blocks = malloc(recorder_group_streams(r));
+    for (struct recorder_group *g = r->groups; at && g < r->groups + r->group_count; g++) {
+        for (int k = 0; k < g->count; k++) {
+            g->streams[k].block = at;
+            at += (size_t)g->room * g->width + RECORDER_LINE;
+        }
     }
     return r->blocks;
+}
+
+/* A recorder without blocks; NULL if there is no memory. */
+static inline struct recorder *recorder_new(const struct recorder_column *columns, int count,
+                                            double period)
+{
+    struct recorder *r = calloc(1, sizeof *r);
+    if (!r) {
+        return NULL;
+    }
+    r->columns = columns;
+    r->period = period;
+    r->streams = calloc((size_t)count + 1, sizeof *r->streams);
+    r->groups = calloc((size_t)count + 1, sizeof *r->groups);
+    r->count = r->streams ? count + 1 : 0;
+    if (!r->streams || !r->groups) {
+        recorder_close(r);
+        return NULL;
+    }
+    return r;
+}
+
+/* Open a recorder whose rows stay in the caller's memory: of time and of each column, in this
+ * order, a place for `rows` rows and one more, whose row ends the recording. NULL: no memory. */
+static inline struct recorder *recorder_in_memory(const struct recorder_column *columns, int count,
+                                                  double period, char *const *place, int64_t rows)
+{
+    struct recorder *r = recorder_new(columns, count, period);
+    if (!r) {
+        return NULL;
+    }
+    recorder_group_streams(r);
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
+        g->room = rows + 1;
+        for (int k = 0; k < g->count; k++) {
+            g->streams[k].block = place[g->streams[k].column + 1];
+        }
+    }
+    return r;
 }
 
 /* Open a recorder; the parent of `folder` must exist. `period` is the time from row to row [s].
@@ -170,15 +218,8 @@ static inline struct recorder *recorder_open(const char *folder,
                                              const struct recorder_column *columns, int count,
                                              double period, char *why, size_t room)
 {
-    struct recorder *r = calloc(1, sizeof *r);
-    if (r) {
-        r->columns = columns;
-        r->period = period;
-        r->streams = calloc((size_t)count + 1, sizeof *r->streams);
-        r->groups = calloc((size_t)count + 1, sizeof *r->groups);
-        r->count = r->streams ? count + 1 : 0;
-    }
-    if (!r || !r->streams || !r->groups || !recorder_layout(r)) {
+    struct recorder *r = recorder_new(columns, count, period);
+    if (!r || !recorder_layout(r)) {
         snprintf(why, room, "no memory to record %s", folder);
         recorder_close(r);
         return NULL;
@@ -232,6 +273,10 @@ static inline void recorder_make_room(struct recorder_stream *s, int64_t at, siz
  * hole in the file reads as 0. */
 static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
 {
+    if (!r->blocks) {
+        snprintf(r->why, sizeof r->why, "more rows than there is memory for");
+        return -1;
+    }
     const size_t size = (size_t)(r->row - g->first) * g->width;
     const int64_t next = RECORDER_HEAD + (r->row - r->base) * (int64_t)g->width;
     for (int k = 0; k < g->count; k++) {
@@ -327,6 +372,23 @@ static inline void recorder_begin(struct recorder *r, int64_t row)
     r->full = 0;
 }
 
+/* The same for rows in memory. */
+static inline int recorder_jump(struct recorder *r, int64_t row)
+{
+    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count && row > r->row;
+         g++) {
+        if (row - g->first >= g->room) {
+            return recorder_flush(r, g);
+        }
+        for (int k = 0; k < g->count; k++) {
+            memset(g->streams[k].block + (size_t)(r->row - g->first) * g->width, 0,
+                   (size_t)(row - r->row) * g->width);
+        }
+    }
+    r->row = row;
+    return 0;
+}
+
 /* Set the number of the next row, as after a state was restored: later rows are dropped, and rows
  * that were never recorded are 0. */
 static inline int recorder_at(struct recorder *r, int64_t row)
@@ -336,6 +398,9 @@ static inline int recorder_at(struct recorder *r, int64_t row)
     }
     if (row < r->base) {
         snprintf(r->why, sizeof r->why, "a row before the first one");
+    }
+    if (!r->why[0] && !r->blocks) {
+        return recorder_jump(r, row);
     }
     if (r->why[0] || recorder_flush_all(r) != 0) {
         return -1;
@@ -360,7 +425,10 @@ static inline int recorder_at(struct recorder *r, int64_t row)
  * may be called. */
 static inline int recorder_end(struct recorder *r)
 {
-    if (r->why[0] || recorder_flush_all(r) != 0) {
+    if (r->why[0] || !r->blocks) {
+        return r->why[0] ? -1 : 0;
+    }
+    if (recorder_flush_all(r) != 0) {
         return -1;
     }
     for (int k = 0; k < r->count; k++) {

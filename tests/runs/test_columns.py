@@ -15,7 +15,8 @@ import motionfmu
 from motionfmu.base import columns
 from motionfmu.base.columns import Columns
 from motionfmu.base.errors import InputError
-from motionfmu.run import Result, checks, decimate
+from motionfmu.run import Result, checks, decimate, runner, session
+from motionfmu.run.run_plan import Options
 from motionfmu.run.session import Session
 from motionfmu.scenarios import rates, recording
 from motionfmu.scenarios.body import Bounds
@@ -37,10 +38,52 @@ def scratch(tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.fixture
+def in_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(runner, "HELD", 0)
+    monkeypatch.setattr(session, "HELD_IN_SESSION", 0)
+
+
 def run(scratch: Path) -> Result:
     return motionfmu.load(THEORY).run(stop=0.1, scratch=scratch)
 
 
+def test_small_runs_have_no_files_and_the_same_bits(
+    scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = motionfmu.load(THEORY)
+    till = whole.changed(stop="mcc.done", limit=9.0, settle=3, record={"every": 7})
+    for plan, options in ((whole, {"stop": 0.1}), (whole, {"stop": 0.0333}), (till, {})):
+        monkeypatch.setattr(runner, "HELD", 1 << 30)
+        held = plan.run(scratch=scratch, **options)
+        assert list(scratch.iterdir()) == [] and not isinstance(held.signals, Columns)
+        monkeypatch.setattr(runner, "HELD", 0)
+        filed = plan.run(scratch=scratch, **options)
+        assert isinstance(filed.signals, Columns) and list(held.signals) == list(filed.signals)
+        assert (held.signal_at is not None) == (plan is till)
+        assert held.time.tobytes() == filed.time.tobytes() and not held.time.flags.writeable
+        for name, data in filed.signals.items():
+            mine = held.signals[name]
+            assert (mine.dtype, mine.shape) == (data.dtype, data.shape), name
+            assert mine.tobytes() == data.tobytes() and not mine.flags.writeable, name
+        del filed, data
+        gc.collect()
+
+
+def test_a_run_is_held_up_to_the_bytes_that_it_may_take(
+    scratch: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan = motionfmu.load(THEORY)
+    wanted = recording.size(plan.resolved(Options(stop=0.1)), plan.ends)
+    for room, files in ((wanted, 0), (wanted - 1, 1)):
+        monkeypatch.setattr(runner, "HELD", room)
+        result = run(scratch)
+        assert len(list(scratch.iterdir())) == files
+        del result
+        gc.collect()
+
+
+@pytest.mark.usefixtures("in_files")
 def test_what_is_recorded_goes_with_its_result(scratch: Path) -> None:
     result = run(scratch)
     held = result["card.stock"]
@@ -54,6 +97,7 @@ def test_what_is_recorded_goes_with_its_result(scratch: Path) -> None:
     assert np.array_equal(held, before)
 
 
+@pytest.mark.usefixtures("in_files")
 def test_a_saved_result_is_read_by_numpy_and_stays(scratch: Path, tmp_path: Path) -> None:
     result = run(scratch)
     wanted = {name: data.copy() for name, data in result.items()} | {"time": result.time.copy()}
@@ -90,10 +134,14 @@ def test_whole_files_get_a_second_name_or_a_copy(
         assert copy.read_bytes() == file.read_bytes() and not os.path.samefile(file, copy)
 
 
-def test_runs_of_a_session_do_not_take_each_others_files(scratch: Path) -> None:
+@pytest.mark.parametrize("memory", [0, 1 << 26])
+def test_runs_of_a_session_do_not_take_each_others_rows(
+    scratch: Path, memory: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "HELD_IN_SESSION", memory)
     scenario = motionfmu.load(THEORY)
-    with Session(scenario, ["mcc.p_gain"], stop=0.1, scratch=scratch) as session:
-        found = [session.run({"mcc.p_gain": gain}) for gain in (50, 150, 50)]
+    with Session(scenario, ["mcc.p_gain"], stop=0.1, scratch=scratch) as ready:
+        found = [ready.run({"mcc.p_gain": gain}) for gain in (50, 150, 50)]
     a, b, c = (r["card.err_count"] for r in found)
     assert not np.array_equal(a, b) and np.array_equal(a, c)
 

@@ -17,6 +17,7 @@ from public_arms import universal
 from py_mini_racer import MiniRacer
 
 import motionfmu
+from motionfmu.arms.arm_description import turn_of
 from motionfmu.report import write_report
 from motionfmu.report.run_summary import without_leaps
 from motionfmu.report.view.arm import chain
@@ -54,7 +55,8 @@ function atob(text) {
 @pytest.fixture(scope="module")
 def script() -> MiniRacer:
     engine = MiniRacer()
-    engine.eval(ATOB + (SHARED / "view_math.js").read_text())
+    files = ("view_math.js", "machine_faces.js", "depth_buffer.js")
+    engine.eval(ATOB + "".join((SHARED / name).read_text() for name in files))
     return engine
 
 
@@ -187,6 +189,97 @@ def test_the_scripts_are_small_and_whole(script: MiniRacer) -> None:
         script.eval(f"new Function({json.dumps(text)})")  # a wrong word would not compile
     for word in ("http:", "https:", "import(", "fetch("):
         assert not any(word in t for t in texts), "the page needs no network"
+
+
+def by_rays(faces: list, wide: int, high: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each pixel the nearest face, from 1, by its middle; 1/depth; its way to an edge."""
+    x, y = np.meshgrid(np.arange(wide) + 0.5, np.arange(high) + 0.5)
+    nearest, word, edge = (
+        np.zeros((high, wide)),
+        np.zeros((high, wide), int),
+        np.full((high, wide), 9.0),
+    )
+    for number, corners in enumerate(faces, 1):
+        c = np.array(corners)
+        inside, sign = np.ones((high, wide), bool), 0.0
+        for a, b in zip(c, np.roll(c, -1, axis=0), strict=True):
+            side = (b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])
+            (ux, uy), (vx, vy) = c[1, :2] - c[0, :2], c[2, :2] - c[0, :2]
+            sign = sign or math.copysign(1.0, ux * vy - uy * vx)
+            inside &= sign * side > 0.0
+            edge = np.minimum(edge, np.abs(side) / np.linalg.norm(b[:2] - a[:2]))
+        plane = np.linalg.solve(np.column_stack([c[:3, :2], np.ones(3)]), c[:3, 2])
+        depth = plane[0] * x + plane[1] * y + plane[2]
+        front = inside & (depth > nearest)
+        nearest[front], word[front] = depth[front], number
+    return word, nearest, edge
+
+
+def convex(rng: np.random.Generator, count: int) -> list[list[float]]:
+    """Corners of a face in a plane of 1/depth, in order round it."""
+    angles = np.sort(rng.uniform(0.0, 2.0 * math.pi, count))
+    at, size = rng.uniform(-5.0, 45.0, 2), rng.uniform(6.0, 30.0, 2)
+    tilt, middle = rng.uniform(-2e-5, 2e-5, 2), rng.uniform(2e-3, 4e-3)
+    points = at + size * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    return [[*p, middle + float(tilt @ p)] for p in points.tolist()]
+
+
+def test_each_pixel_shows_the_nearest_face(script: MiniRacer) -> None:
+    """Faces that cross each other, some partly outside of the picture."""
+    rng, (wide, high), seen = np.random.default_rng(8), (40, 30), []
+    for _ in range(40):
+        faces = [convex(rng, int(n)) for n in rng.integers(3, 7, 6)]
+        drawn = of(
+            script,
+            f"(() => {{ const near = new Float32Array({wide * high}),"
+            f" words = new Uint32Array({wide * high});"
+            f" {json.dumps(faces)}.forEach((f, k) =>"
+            f" fillFace(near, {wide}, {high}, f, words, k + 1));"
+            " return [Array.from(words), Array.from(near)]; })()",
+        )
+        words, near = (np.reshape(v, (high, wide)) for v in drawn)
+        word, nearest, edge = by_rays(faces, wide, high)
+        clear = edge > 1e-6
+        assert np.allclose(near[clear], nearest[clear], rtol=1e-5, atol=1e-9)
+        ordered = np.abs(near - nearest) < 1e-9  # two that are equally near are left out
+        assert (words == word)[clear & ordered].mean() > 0.999
+        seen.append(len(np.unique(word)))
+    assert np.mean(seen) > 4.0
+
+
+def test_a_face_is_cut_before_the_camera(script: MiniRacer) -> None:
+    corners = [[0, 0, 0], [10, 0, 0], [10, 0, 20], [0, 0, 20]]
+    depth = "(p) => p[2]"
+    kept = of(script, f"clipped({corners}, {depth}, 5)")
+    assert sorted(kept) == [[0, 0, 5], [0, 0, 20], [10, 0, 5], [10, 0, 20]]
+    assert of(script, f"clipped({corners}, {depth}, 30)") == []
+    assert of(script, f"clipped({corners}, {depth}, -1)") == corners
+
+
+def test_a_line_is_left_out_where_a_face_hides_it(script: MiniRacer) -> None:
+    """It goes through a plane at depth 100 that stands from x = 20 to 60."""
+    hides = "({ hidden: ([x, y, d], slack) => x >= 20 && x < 60 && d - slack > 100 })"
+    line = "[[0, 5, 80, true], [80, 5, 120, true]]"
+    (first, second) = of(script, f"shownPieces({line}, {hides}, 0)")
+    share = (1 / 80 - 1 / 100) / (1 / 80 - 1 / 120)  # of the picture, at which it is behind
+    assert first[0][0] == 0 and 80 * share - 5 < first[-1][0] <= 80 * share
+    assert 60 <= second[0][0] < 65 and second[-1][0] == 80
+    assert all(1 / p[2] == pytest.approx(1 / 80 + (1 / 120 - 1 / 80) * p[0] / 80) for p in first)
+    assert len(of(script, f"shownPieces({line}, {hides}, 30)")) == 1
+    assert of(script, f"shownPieces([[0,0,9,false],[9,0,9,true]], {hides}, 0)") == [
+        [[9, 0, 9, True]]
+    ]
+
+
+def test_bodies_of_a_cell_are_drawn_where_they_stand(script: MiniRacer) -> None:
+    """Corners of a turned box are as far from its middle, in its own directions, as its halves."""
+    turn = turn_of(0.3, -0.7, 1.1)
+    body = {"half": [30, 20, 10], "turn": turn.tolist(), "centre": [100, 200, 300]}
+    faces = of(script, f"cellFaces([{json.dumps(body)}], [1, 2, 3])")
+    corners = np.array([f["corners"] for f in faces]) - body["centre"]
+    assert np.allclose(np.abs(corners @ turn), body["half"])
+    outward = np.einsum("fkx,fx->fk", corners, [f["normal"] for f in faces])
+    assert (outward > 0.0).all()
 
 
 @pytest.fixture(scope="module")

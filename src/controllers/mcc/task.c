@@ -376,21 +376,23 @@ int task_point(struct mcc *m, const struct source *s)
 {
     const struct mechanism machine = machine_mechanism(&m->machine);
     const double frame = machine_dda_time(&m->machine);
-    const struct trajectory before = m->trajectory;
+    const bool ramping = m->trajectory.abort;
     const int32_t head = m->ring.head, count = m->ring.count;
     struct point point;
     int32_t error;
     const struct trajectory_beside beside = mcc_beside(m);
+    struct trajectory before;
     double left = frame;
     int made = 0;
 
+    trajectory_copy(&before, &m->trajectory);
     do {
         left = trajectory_advance(&m->trajectory, &beside, left);
         made += s ? refill(m, s, head) : 0;
     } while (left > 0.0 && !trajectory_resting(&m->trajectory, &m->ring));
     trajectory_point(&m->trajectory, &beside, &machine, frame, &point);
-    if (!reaction_point(m, &machine, before.abort, &point, &error)) {
-        m->trajectory = before;
+    if (!reaction_point(m, &machine, ramping, &point, &error)) {
+        trajectory_copy(&m->trajectory, &before);
         m->ring.head = head;
         m->ring.count = count;
         reaction_stop(m, error);

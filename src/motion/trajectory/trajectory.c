@@ -1,6 +1,7 @@
 #include "trajectory.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "el_extremes.h"
@@ -14,6 +15,18 @@ void trajectory_start(struct trajectory *p)
 {
     memset(p, 0, sizeof *p);
     p->override[0] = p->override[1] = p->adaptive = 1.0;
+}
+
+void trajectory_copy(struct trajectory *to, const struct trajectory *from)
+{
+    memcpy(to, from, offsetof(struct trajectory, axes));
+    if (from->motion == TRAJECTORY_AXES) {
+        to->axes = from->axes;
+    }
+    to->mix.count = from->mix.count;
+    for (int i = 0; i < from->mix.count; i++) {
+        to->mix.move[i] = from->mix.move[i];
+    }
 }
 
 bool trajectory_stand(struct trajectory *p, const struct mechanism *m, const double place[AXES])

@@ -37,34 +37,37 @@ struct trajectory_beside {
 
 struct trajectory {
     enum trajectory_motion motion; /* the motion under way, or the latest */
-    struct mix mix; /* TRAJECTORY_MIX; in TRAJECTORY_AXES the command, none: by orders */
-    struct lookahead lookahead; /* TRAJECTORY_CHAIN */
-    struct curve curve;         /* TRAJECTORY_CURVE */
-    struct axes axes;           /* TRAJECTORY_AXES */
-    double rest[AXES];          /* [mm] where nothing is under way */
-    bool joints;                /* `rest` is a place of joints */
-    int32_t pulses[AXES];       /* [pulses] position of the latest point */
-    double override[2];         /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
-    double adaptive;            /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
-    uint32_t overrides;         /* enum outputs_overrides */
-    bool hold;                  /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
-    bool leave;                 /* ramp to rest, then drop the command under way */
-    bool abort;                 /* ramp to rest, then drop everything */
-    bool stopped;               /* M0, M1: at rest until trajectory_continue */
-    bool single;                /* each block waits for trajectory_continue */
-    bool allowed;               /* the next block may begin nevertheless */
-    int32_t block;              /* line of the latest block */
-    bool confirm;               /* in-position check: a motion that ends at rest waits for it */
-    bool confirming;            /* one waits now */
-    bool untold;                /* outputs or line have changed since the latest point */
+    struct lookahead lookahead;    /* TRAJECTORY_CHAIN */
+    struct curve curve;            /* TRAJECTORY_CURVE */
+    double rest[AXES];             /* [mm] where nothing is under way */
+    bool joints;                   /* `rest` is a place of joints */
+    int32_t pulses[AXES];          /* [pulses] position of the latest point */
+    double override[2];            /* overrides of lines and arcs, of point-to-point; 1 is 100 % */
+    double adaptive;               /* share of the feed while OUTPUTS_ADAPTIVE; 1 at the start */
+    uint32_t overrides;            /* enum outputs_overrides */
+    bool hold;                     /* a hold is asked for; it acts unless OUTPUTS_HOLD_OFF */
+    bool leave;                    /* ramp to rest, then drop the command under way */
+    bool abort;                    /* ramp to rest, then drop everything */
+    bool stopped;                  /* M0, M1: at rest until trajectory_continue */
+    bool single;                   /* each block waits for trajectory_continue */
+    bool allowed;                  /* the next block may begin nevertheless */
+    int32_t block;                 /* line of the latest block */
+    bool confirm;                  /* in-position check: a motion that ends at rest waits for it */
+    bool confirming;               /* one waits now */
+    bool untold;                   /* outputs or line have changed since the latest point */
     struct outputs outputs;
     struct outputs_surface surface; /* if it has a speed, outputs.spindle is the most */
     double end[AXES];               /* [mm] end of the latest command begun that takes time */
     int32_t started, line;          /* index and source line of the latest command begun */
+    struct axes axes;               /* TRAJECTORY_AXES */
+    struct mix mix; /* TRAJECTORY_MIX; in TRAJECTORY_AXES the command, none: by orders */
 };
 
 /* At rest at the origin, pulses 0. */
 void trajectory_start(struct trajectory *p);
+
+/* Copy what the motion under way uses, a tenth of it all: to go back to it later. */
+void trajectory_copy(struct trajectory *to, const struct trajectory *from);
 
 /* At rest with the tool at a place that the mechanism can reach; false, and nothing done, if it
  * cannot. */

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     FAILED,
     Folder,
@@ -27,6 +28,7 @@ from motionfmu.cli.common import (
 
 if TYPE_CHECKING:
     from motionfmu.analysis.dry_run import DryRun, InputChange
+    from motionfmu.job_editor import EditedJob
     from motionfmu.run import Scenario
 
 SHOWN = 12  # lines on the console
@@ -50,6 +52,12 @@ def job(  # noqa: PLR0913  (each is an option of the command)
     set_: Set = [],  # noqa: B006
     folder: Folder = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON, write nothing.")] = False,
+    edit: Annotated[
+        bool,
+        typer.Option("--edit", help="A page to edit it at, judged at each change; Ctrl-C ends."),
+    ] = False,
+    port: Annotated[int, typer.Option(help="Port of that page on 127.0.0.1; 0: any.")] = 8771,
+    open_: Annotated[bool, typer.Option("--open", help="Open it in the browser.")] = False,
 ) -> None:
     """Judge a robot's program before it moves: reach, limits, collisions, cycle time, by line.
 
@@ -58,6 +66,9 @@ def job(  # noqa: PLR0913  (each is an option of the command)
     """
     changes = [_change(text) for text in input_]
     scenario = loaded(path, machine)
+    if edit:
+        _edit(scenario, changes, settings(set_), cell, (port, open_))
+        return
     target = folder or results(scenario.name, "job")
     run = _run(scenario, changes, settings(set_), cell)
     if as_json:
@@ -94,6 +105,48 @@ def _run(
             bar.update(task, description=f"{scenario.name}: {seconds:.0f} s")
 
         return dry_run(scenario, changes, given, told, around)
+
+
+def _edit(
+    scenario: "Scenario",
+    changes: "list[InputChange]",
+    given: dict[str, object],
+    cell: Path | None,
+    page: tuple[int, bool],
+) -> None:
+    """Serve the page of the program until Ctrl-C."""
+    import asyncio
+
+    needed("live")
+    from motionfmu.analysis.collisions import read_cell
+    from motionfmu.base.page_server import PORT_MAX
+    from motionfmu.job_editor import EditedJob
+
+    if not 0 <= page[0] <= PORT_MAX:
+        raise InputError(f"--port {page[0]}: 0 to {PORT_MAX} wanted")
+    edited = EditedJob(scenario, given, changes, read_cell(cell) if cell else None)
+    asyncio.run(_serve(edited, *page))
+
+
+async def _serve(edited: "EditedJob", port: int, opened: bool) -> None:
+    import asyncio
+    import secrets
+    import webbrowser
+
+    from motionfmu.base.page_server import PageServer
+    from motionfmu.cli.card import on_end, stopped
+    from motionfmu.job_editor import application
+
+    ended = asyncio.Event()
+    came = on_end(ended.set)
+    token = secrets.token_urlsafe(16)
+    async with PageServer(application(edited, token), port) as there:
+        address = f"http://127.0.0.1:{there}/?token={token}"
+        out.print(f"page: {address}", soft_wrap=True)
+        if opened:
+            webbrowser.open(address)
+        await ended.wait()
+    stopped(came)
 
 
 def _tell(run: "DryRun") -> None:

@@ -133,11 +133,11 @@ def _key(
     system: System, recorded: Sequence[End], name: str, given: Mapping[str, Values] | None
 ) -> str:
     """A hash of what the system is; both versions of FMI have the same, as they have states."""
-    fmus = dict.fromkeys(system.components.values())
+    fmus = {fmu: digest(fmu) for fmu in system.components.values()}
     until, wired = system.until, {w.target.name for w in system.wires}
     lists: list[object] = [
-        [f"{c} {Path(fmu).name} {digest(fmu)}" for c, fmu in system.components.items()],
-        [digest(fmu) for fmu in fmus],
+        [f"{c} {Path(fmu).name} {fmus[fmu]}" for c, fmu in system.components.items()],
+        list(fmus.values()),
         [f"{w.target.name} {w.source.name}" for w in system.wires],
         sorted(wired & {s.end.name for s in system.settings}),
         [e.name for e in recorded],

@@ -1,5 +1,6 @@
 """Files in the resources of a system's FMUs, and their places in the resources of its program."""
 
+import functools
 from collections.abc import Mapping
 from dataclasses import replace
 
@@ -13,6 +14,11 @@ from motionfmu.scenarios.values import start_values as usual
 
 def files(fmu: str) -> dict[str, bytes]:
     """The files that parameters of an FMU may name as ``resource:NAME``, by this name."""
+    return _files(fmu, fmus.state(fmu))
+
+
+@functools.cache
+def _files(fmu: str, state: fmus.FileState) -> dict[str, bytes]:
     with fmus.opened(fmu) as archive:
         found = [n for n in archive.namelist() if n.startswith(f"{RESOURCES}/") and n[-1] != "/"]
         places = {n.removeprefix(f"{RESOURCES}/"): n for n in found}

@@ -2,8 +2,10 @@
 
 from collections.abc import Sequence
 from html import escape
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motionfmu.analysis.cycle_time import CAUSES, CommandedMotion, Lifted, Share
 from motionfmu.base import units
@@ -16,6 +18,8 @@ from motionfmu.run.axis_figures import AxisFigure
 
 HEIGHT = 500  # [pixel] of the path
 POINTS, TOLD = 12_000, 5_000  # of the path: at most; and with words at most
+# A step across a plane is below this share of its length; so much of the way lies in the plane.
+ACROSS, MOSTLY = 0.02, 0.6
 COLORS = {
     "feed": AXES[0],
     "speed": AXES[2],
@@ -86,9 +90,11 @@ def add_cycle_time(page: Page, plan: CommandedMotion, lifted: Sequence[Lifted] =
 
 def path_by_cause(plan: CommandedMotion) -> Diagram:
     """The path, coloured by what limits the motion on it."""
-    rows = plan.rows[:: max(1, len(plan.rows) // POINTS)]
+    rows = _working(plan.rows)
+    rows = rows[:: max(1, len(rows) // POINTS)]
     place, cause = rows["place"][:, :3], rows["cause"]
-    width = 3 if np.ptp(place[:, 2]) > 1e-9 else 2
+    shown = _seen(place)
+    place, width = place[:, shown], len(shown)
     lines = []
     shares: dict[str, float] = {}
     for share in plan.shares():
@@ -108,7 +114,26 @@ def path_by_cause(plan: CommandedMotion) -> Diagram:
                 words = [f"{r['speed']:.4g} mm/s" for r in rows[kept]]
             told = list(np.insert(np.array(words, object), gaps, ""))
         lines.append(path_lines(points, name=name, color=COLORS[name], width=2.2, hover=told))
-    return path_diagram("XYZ"[:width], lines, HEIGHT)
+    return path_diagram("".join("XYZ"[k] for k in shown), lines, HEIGHT)
+
+
+def _working(rows: NDArray[Any]) -> NDArray[Any]:
+    """Rows from the first to the last move with a feed, where there are some; else all."""
+    there = np.flatnonzero(rows["feed"] > 0.0)
+    return rows[there[0] : there[-1] + 1] if len(there) else rows
+
+
+def _seen(place: NDArray[np.float64]) -> list[int]:
+    """Two axes, if the path hardly goes but along their plane, else all three."""
+    steps = np.abs(np.diff(place, axis=0))
+    way = np.linalg.norm(steps, axis=1)
+    if not way.any():
+        return [0, 1]
+    flat = [float(way[s <= ACROSS * way].sum()) for s in steps.T]
+    across = int(np.argmax([share + 1e-9 * k for k, share in enumerate(flat)]))
+    if flat[across] < MOSTLY * way.sum():
+        return [0, 1, 2]
+    return [k for k in range(3) if k != across]
 
 
 def add_axes(page: Page, found: Sequence[AxisFigure]) -> None:

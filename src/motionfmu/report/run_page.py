@@ -22,6 +22,7 @@ from motionfmu.report.html_tables import (
     warning_list,
 )
 from motionfmu.report.iso9283_section import write_iso9283
+from motionfmu.report.limit_section import add_limit_use
 from motionfmu.report.numbers import figure, length
 from motionfmu.report.path_chart import outlier_words, path_chart, path_titles
 from motionfmu.report.polar_chart import polar_chart
@@ -137,9 +138,12 @@ def page_text(
     add_summary(page, result, ran)
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
-    views = add_view(page, scene_of(result, deviations(result) or [from_contour(contour)]))
+    lines = deviations(result) or [from_contour(contour)]
+    views = add_view(page, scene_of(result, lines, contour.cutting))
     add_performance(page, result)
     add_tools(page, result, ran.tools)
+    if ran.use is not None:
+        add_limit_use(page, result.time, ran.use)
     add_axes(page, ran.axes)
     if ran.plan is not None:
         add_cycle_time(page, ran.plan)

@@ -18,6 +18,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.base.extras import Missing
 from motionfmu.report.html_page import Page
 from motionfmu.report.html_tables import facts
+from motionfmu.report.limit_section import LimitUse
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.time_charts import Speeds, speed_chart
 from motionfmu.report.view.scene import STANDS, position, tool_signal
@@ -25,6 +26,7 @@ from motionfmu.run import Scenario
 from motionfmu.run.axis_figures import AxisFigure, axis_figures
 from motionfmu.run.decimate import Read, at, blocks, reader
 from motionfmu.run.figures import Chart
+from motionfmu.run.limit_shares import cycle_bounds, limit_shares
 from motionfmu.run.tool_gap import ToolGap, tool_gaps
 
 Array = NDArray[np.float64]
@@ -56,6 +58,7 @@ class RunSummary:
     tools: tuple[ToolGap, ...]  # each beside its command
     axes: tuple[AxisFigure, ...] = ()  # of a machine whose limits are known
     plan: CommandedMotion | None = None  # of its program, if the machine names its axes
+    use: LimitUse | None = None  # how it uses the limits of its axes
 
     @property
     def cycle(self) -> float | None:
@@ -66,6 +69,7 @@ class RunSummary:
     def numbers(self) -> dict[str, Any]:
         """The summary as numbers for JSON."""
         gains = [{"name": g.name, "axis": g.axis, "value": g.value, "kp": g.kp} for g in self.gains]
+        bounds = self.use and self.use.bounds
         return {
             "began_at": self.began,
             "cycle_time": self.cycle,
@@ -73,6 +77,7 @@ class RunSummary:
             "position_gains": gains,
             "tools": [tool.numbers() for tool in self.tools],
             "axes": [axis.numbers() for axis in self.axes],
+            "bounds": bounds and bounds.numbers(),
             "program": None if self.plan is None else self.plan.numbers(),
         }
 
@@ -81,13 +86,16 @@ def summary_of(result: ReportInput, contour: ContourResult | None) -> RunSummary
     """Find out how a run went."""
     scenario, given = result.scenario, result.options.get("set", {})
     axes: tuple[AxisFigure, ...] = ()
-    plan = None
+    plan, use = None, None
     if isinstance(scenario, Scenario) and scenario.document.body.axis:
-        axes = tuple(axis_figures(result, scenario.axis_limits(given)))
+        limits = scenario.axis_limits(given)
+        axes = tuple(axis_figures(result, limits))
+        shares = limit_shares(result, limits)
+        use = LimitUse(shares, cycle_bounds(result, shares), axes)
         plan = driven(result)
         with contextlib.suppress(InputError):  # none of its components plans a part program
             plan = plan or planned(scenario, given)
-    return replace(_motion_of(result, contour), axes=axes, plan=plan)
+    return replace(_motion_of(result, contour), axes=axes, plan=plan, use=use)
 
 
 def _motion_of(result: ReportInput, contour: ContourResult | None) -> RunSummary:

@@ -8,6 +8,7 @@ from motionfmu.report.cycle_time_section import add_axes, add_cycle_time
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import check_table, expected_table, warning_list
 from motionfmu.report.iso9283_section import add_iso9283
+from motionfmu.report.limit_section import add_limit_use
 from motionfmu.report.record_section import add_record
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary
@@ -78,6 +79,8 @@ def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) ->
     views = add_view(page, scene_of(result, deviations(result)))
     add_performance(page, result)
     add_tools(page, result, ran.tools)
+    if ran.use is not None:
+        add_limit_use(page, result.time, ran.use)
     add_axes(page, ran.axes)
     if ran.plan is not None:
         add_cycle_time(page, ran.plan)

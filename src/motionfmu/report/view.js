@@ -10,6 +10,8 @@ function machineView(data) {
   const path = { time: numbers(data.path.time), speed: numbers(data.path.speed) };
   const xyz = data.path.point.map(numbers);
   path.point = Array.from(path.time, (_, k) => xyz.map((c) => c[k]));
+  path.rapid = new Uint8Array(path.time.length);
+  for (const [from, to] of data.path.rapid) path.rapid.fill(1, from, to + 1);
   const lines = data.lines.map((l) => {
     const [foot, gap] = [l.foot.map(numbers), l.gap.map(numbers)];
     return Array.from(foot[0], (_, k) => ({
@@ -17,10 +19,14 @@ function machineView(data) {
   });
   const onPath = bounds(path.point);
   const size = onPath.radius || 1;
+  const worked = path.point.filter((_, k) => !path.rapid[k]);
+  const onWork = worked.length ? bounds(worked) : onPath;
   const whole = machineBounds();
   const first = time[0], last = time[time.length - 1];
   const STEP = 0.02; // share of the run per key
-  let now = last, playing = false, stamp = 0, pending = false;
+  const FLAT = 0.05; // height of strokes that are on paper, in their size
+  const SMALL = 0.25; // of the machine's size: strokes that would not be legible beside it
+  let now = data.begin ?? last, playing = false, stamp = 0, pending = false;
   const view = { azimuth: -0.95, elevation: 0.42, target: [0, 0, 0], distance: 1 };
 
   function machineBounds() {
@@ -34,6 +40,7 @@ function machineView(data) {
     for (let k = 0; k < time.length; k += stride) {
       points.push(...armPoints(data.arm, joints.map((s) => s[k])));
     }
+    for (const face of cellFaces(data.cell, [0, 0, 0])) points.push(...face.corners);
     return bounds(points);
   }
 
@@ -43,14 +50,18 @@ function machineView(data) {
     return armFaces(data.arm, sampled(time, joints, now), whole.radius / 1100, theme, sampled(time, tool, now));
   }
 
-  let theme = {};
+  let theme = {}, cell = [];
   function readTheme() {
     const style = getComputedStyle(root), colors = isDark() ? page.dark : {};
     const get = (name) => style.getPropertyValue(name).trim();
     const own = (list) => list.map((color) => other(color, colors));
     theme = { ...machineColours(isDark()), ink: get("--ink"), muted: get("--muted"), line: get("--floor"), accent: get("--accent"),
-      colours: own(data.colours), curves: own(data.curves) };
+      colours: own(data.colours), curves: own(data.curves), rapid: other(data.rapid, colors),
+      paper: isDark() ? [44, 57, 69] : [222, 228, 234] };
+    cell = cellFaces(data.cell, theme.cell);
   }
+
+  const solids = depthBuffer();
 
   function draw() {
     pending = false;
@@ -65,14 +76,18 @@ function machineView(data) {
     pen.clearRect(0, 0, width, height);
     const look = camera(view, width, height);
     floor(look);
-    const items = pathItems(look);
-    const factor = Number(part("magnify")?.value ?? 0);
-    lines.forEach((line, j) => items.push(...deviation(line, j, 10 ** factor, look)));
-    if (part("machine").checked) {
-      const alpha = part("solid").checked ? 1 : 0.28;
-      items.push(...facesToDraw(pen, machine(), view, look, alpha));
+    const shown = part("machine").checked, solid = part("solid").checked;
+    solids.size(width, height, ratio);
+    if (shown && !solid) {
+      solids.faces([...cell, ...machine()], view, look);
+      solids.paint(pen, 0.28);
+      solids.size(width, height, ratio);
     }
-    items.sort((a, b) => b.depth - a.depth).forEach((item) => item.draw());
+    solids.faces(shown && solid ? [...paper(), ...cell, ...machine()] : paper(), view, look);
+    solids.paint(pen, 1);
+    paths(look);
+    const factor = Number(part("magnify")?.value ?? 0);
+    lines.forEach((line, j) => deviation(line, j, 10 ** factor, look));
     const tip = look(sampled(time, tool, now));
     if (tip[3]) {
       pen.beginPath();
@@ -94,57 +109,53 @@ function machineView(data) {
   const shownFactor = (f) => Number(f.toPrecision(2)).toLocaleString("en");
 
   function floor(look) {
-    const z = data.arm ? 0 : onPath.low[2] - 0.08 * size;
+    const z = data.floor ?? (data.arm ? 0 : onPath.low[2] - 0.08 * size);
     const base = data.arm ? bounds([[whole.low[0], whole.low[1], 0], [whole.high[0], whole.high[1], 0]])
       : bounds([[onPath.low[0] - 0.5 * size, onPath.low[1] - 0.5 * size, z],
         [onPath.high[0] + 0.5 * size, onPath.high[1] + 0.5 * size, z]]);
     const step = floorSquares(pen, look, base, z, theme.line);
     part("grid").textContent = step >= 1000 ? `${step / 1000} m` : `${step} mm`;
-    // The paper under a flat path.
-    const thick = onPath.high[2] - onPath.low[2];
-    if (thick < 0.02 * size) {
-      const m = 0.12 * size, [l, h] = [onPath.low, onPath.high];
-      const sheet = [[l[0] - m, l[1] - m], [h[0] + m, l[1] - m], [h[0] + m, h[1] + m],
-        [l[0] - m, h[1] + m]].map(([x, y]) => look([x, y, l[2]]));
-      if (sheet.every((p) => p[3])) {
-        pen.beginPath();
-        sheet.forEach((p, k) => (k ? pen.lineTo(p[0], p[1]) : pen.moveTo(p[0], p[1])));
-        pen.closePath();
-        pen.fillStyle = theme.line;
-        pen.globalAlpha = 0.45;
-        pen.fill();
-        pen.globalAlpha = 1;
-      }
-    }
   }
 
-  // The path in pieces of one colour, so that the machine may stand before and behind it.
-  function pathItems(look) {
-    const items = [], shown = path.point.map(look), done = before(path.time, now);
-    const level = (k) => Math.round(15 * (path.speed[k] / (data.fastest || 1)));
-    const faded = lines.length ? 0.55 : 1;
+  // The paper under strokes that lie in a plane, but for some at which a pen comes and goes.
+  function paper() {
+    const [l, h] = [onWork.low, onWork.high], m = 0.12 * onWork.radius;
+    const heights = worked.map((p) => p[2]).sort((a, b) => a - b);
+    const [z, top] = [0.1, 0.8].map((share) => heights[Math.floor(share * heights.length)]);
+    if (!heights.length || top - z > FLAT * onWork.radius || !onWork.radius) return [];
+    const corners = [[l[0] - m, l[1] - m, z], [h[0] + m, l[1] - m, z], [h[0] + m, h[1] + m, z], [l[0] - m, h[1] + m, z]];
+    return [{ corners, normal: [0, 0, 1], color: theme.paper, both: true, lift: -slack() / 2 }];
+  }
+
+  const slack = () => 0.004 * view.distance; // by which a line may lie in a face
+
+  // The path: strokes by their speed, rapids thin and dashed; what is to come is faint.
+  function paths(look) {
+    const shown = path.point.map(look), done = before(path.time, now);
+    const level = (k) => Math.round(15 * Math.min(1, path.speed[k] / (data.fastest || 1)));
+    const style = (k) => (path.rapid[k] ? -1 : level(k));
     for (let a = 0; a < shown.length - 1;) {
       let b = a + 1;
       const visited = a < done;
-      while (b < shown.length - 1 && b - a < 24 && level(b) === level(a) && (b < done) === visited) b++;
-      const piece = shown.slice(a, b + 1);
-      const color = colour(theme.colours, level(a) / 15);
-      items.push({ depth: piece[piece.length >> 1][2],
-        draw: () => stroke(pen, piece, color, visited ? 2.6 : 1.6, visited ? faded : 0.22) });
+      while (b < shown.length - 1 && style(b) === style(a) && (b < done) === visited) b++;
+      const rapid = path.rapid[a], color = rapid ? theme.rapid : colour(theme.colours, level(a) / 15);
+      const width = rapid ? 1.2 : visited ? 2.6 : 1.6;
+      pen.setLineDash(rapid ? [3, 3] : []);
+      line3d(shown.slice(a, b + 1), color, width, visited ? (lines.length ? 0.55 : 1) : 0.22);
       a = b;
     }
-    return items;
+    pen.setLineDash([]);
+  }
+
+  function line3d(points, color, width, alpha) {
+    const hides = part("machine").checked && part("solid").checked;
+    for (const piece of hides ? shownPieces(points, solids, slack()) : [points]) {
+      stroke(pen, piece, color, width, alpha);
+    }
   }
 
   function deviation(line, number, factor, look) {
-    const shown = line.map((p) => look(add(p.foot, p.gap, factor)));
-    const color = theme.curves[number % theme.curves.length], items = [];
-    for (let a = 0; a < shown.length - 1; a += 12) {
-      const piece = shown.slice(a, a + 13);
-      items.push({ depth: piece[piece.length >> 1][2] - 1e-3 * size,
-        draw: () => stroke(pen, piece, color, 1.4, 0.95) });
-    }
-    return items;
+    line3d(line.map((p) => look(add(p.foot, p.gap, factor))), theme.curves[number % theme.curves.length], 1.4, 0.95);
   }
 
   function later() {
@@ -176,18 +187,18 @@ function machineView(data) {
   }
 
   const WAYS = {
-    whole: () => [whole, -0.95, 0.42], path: () => [onPath, -0.95, 0.75],
-    top: () => [onPath, -Math.PI / 2, Math.PI / 2 - 1e-3], front: () => [whole, -Math.PI / 2, 0.05],
+    whole: () => [whole, -0.95, 0.42], path: () => [onWork, -0.95, 0.75],
+    top: () => [onWork, -Math.PI / 2, Math.PI / 2 - 1e-3], front: () => [whole, -Math.PI / 2, 0.05],
     side: () => [whole, 0, 0.05],
   };
   function lookFrom(name) {
     const [what, azimuth, elevation] = WAYS[name]();
     Object.assign(view, { azimuth, elevation, target: [...what.centre],
-      distance: (canvas.clientWidth < canvas.clientHeight ? 4 : 3.2) * (what.radius || 1) });
+      distance: (canvas.clientWidth < canvas.clientHeight ? 5 : what === whole ? 3.2 : 4.2) * (what.radius || 1) });
     later();
   }
 
-  const limits = () => [0.02 * size, 40 * whole.radius];
+  const limits = () => [0.02 * (onWork.radius || size), 40 * whole.radius];
   const { zoom, turn } = cameraControls(canvas, view, limits, later);
   canvas.addEventListener("dblclick", () => lookFrom("whole"));
   const keys = {
@@ -212,7 +223,10 @@ function machineView(data) {
   new ResizeObserver(later).observe(canvas);
   addEventListener("theme", () => { readTheme(); later(); });
   readTheme();
-  lookFrom("whole");
+  // Strokes that are small beside the machine are what is to be read at first.
+  const begin = data.arm && onWork.radius < SMALL * whole.radius ? "path" : "whole";
+  part("look").value = begin;
+  lookFrom(begin);
   // For those who write in the console, and for tests.
   root.machineView = { view, go, play, lookFrom, zoom, turn, draw };
 }

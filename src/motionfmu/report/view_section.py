@@ -6,13 +6,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.collisions import CellBody
 from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.report.html_page import Page
 from motionfmu.report.numbers import figure
-from motionfmu.report.style import AXES
+from motionfmu.report.style import AXES, RAPID
 from motionfmu.report.view.scene import Scene
 
-PICTURE = ("view_math.js", "machine_faces.js", "camera_controls.js")  # of a machine, shared
+PICTURE = (
+    "view_math.js",
+    "machine_faces.js",
+    "depth_buffer.js",
+    "camera_controls.js",
+)  # of a machine, shared
 SCRIPTS = (*PICTURE, "view.js")
 LEVELS = 65535
 # From slow to fast: lightness rises, so it reads in grey as well.
@@ -28,22 +34,35 @@ KEYS = (
 )
 
 
-def add_view(page: Page, scene: Scene | None) -> dict[str, Any]:
-    """Add the section and give the data of its script; without a scene there are none."""
+def add_view(
+    page: Page,
+    scene: Scene | None,
+    told: str = "The machine as it was recorded.",
+    begin: float | None = None,
+) -> dict[str, Any]:
+    """Add the section and give the data of its script; without a scene there are none.
+
+    It begins at a time, or at the end.
+    """
     if scene is None:
         return {}
     duration = float(scene.time[-1] - scene.time[0])
     wanted = min(SPEEDS, key=lambda s: abs(np.log(s * PLAYED / max(duration, 1e-9))))
     deviates = any(np.abs(line.gap).max(initial=0.0) > 0.0 for line in scene.lines)
     factor = _magnify(scene) if deviates else 1.0
-    fastest = float(np.percentile(scene.speed, 99.5)) or 1.0
-    note = "The machine as it was recorded; colour is the speed of the tool."
+    rapid = np.zeros(len(scene.speed), bool) if scene.rapid is None else scene.rapid
+    fastest = float(np.percentile(scene.speed[~rapid], 99.5)) or 1.0
+    note = f"{told} Colour is the speed of the tool."
     if deviates:
         count = len(scene.lines)
         what = "its line" if count == 1 else f"its {count} lines, one colour each,"
         note += f" Beside the path {what} with the deviation magnified."
-    page.section("The machine in motion", note, _html(wanted, factor, deviates, fastest))
-    return {"views": [view_data(scene, fastest)]}
+    page.section(
+        "The machine in motion",
+        note,
+        _html(wanted, factor, deviates, _scale(scene, rapid, fastest)),
+    )
+    return {"views": [view_data(scene, fastest) | {"begin": begin}]}
 
 
 def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
@@ -68,7 +87,11 @@ def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
             "time": quantised(scene.path_time),
             "point": [quantised(c) for c in scene.path.T],
             "speed": quantised(np.minimum(scene.speed, fastest)),
+            "rapid": _ranges(scene.rapid),
         },
+        "floor": scene.cell.floor,
+        "cell": [_body(body) for body in scene.cell.bodies],
+        "rapid": RAPID,
         "fastest": fastest,
         "lines": [
             {
@@ -81,6 +104,22 @@ def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
         "curves": ["#a8204a", *AXES[1:]],
         "axes": ["#b3341f", "#2d7a2d", "#2a5db0"],
     }
+
+
+def _ranges(there: NDArray[np.bool_] | None) -> list[list[int]]:
+    """First and last place of each run of true ones."""
+    if there is None or not there.any():
+        return []
+    cuts = np.flatnonzero(np.diff(np.concatenate([[False], there, [False]])))
+    return [[int(a), int(b) - 1] for a, b in cuts.reshape(-1, 2)]
+
+
+def _body(body: CellBody) -> dict[str, Any]:
+    """A body of the cell as the script takes it."""
+    if body.bar is not None:
+        return {"bar": body.bar.tolist(), "radius": body.radius}
+    half = [] if body.half is None else body.half.tolist()
+    return {"half": half, "turn": body.turn.tolist(), "centre": body.center.tolist()}
 
 
 def quantised(values: NDArray[Any]) -> dict[str, Any]:
@@ -113,7 +152,19 @@ def _errors(scene: Scene) -> tuple[float, float]:
     return float(np.percentile(gaps, 95)), float(gaps.max())
 
 
-def _html(speed: float, factor: float, deviates: bool, fastest: float) -> str:
+def _scale(scene: Scene, rapid: NDArray[np.bool_], fastest: float) -> str:
+    """What the colours mean."""
+    text = (
+        f'<span class="ramp" style="background:linear-gradient(90deg,{",".join(SPEED)})"></span>'
+        f" 0 to {figure(fastest)} mm/s"
+    )
+    if rapid.any():
+        fastest = float(np.percentile(scene.speed[rapid], 99.0))
+        text += f'; <span class="rapid"></span> rapids, up to {figure(fastest)} mm/s'
+    return text
+
+
+def _html(speed: float, factor: float, deviates: bool, colours: str) -> str:
     speeds = "".join(
         f'<option value="{s:g}"{" selected" if s == speed else ""}>&times; {s:g}</option>'
         for s in SPEEDS
@@ -127,7 +178,6 @@ def _html(speed: float, factor: float, deviates: bool, fastest: float) -> str:
         else ""
     )
     shown = '; deviation <span data-view="factor"></span>' if deviates else ""
-    scale = ",".join(SPEED)
     return (
         '<div class="machine" id="view">'
         '<canvas tabindex="0" role="img" aria-label="The machine in motion"></canvas>'
@@ -138,7 +188,6 @@ def _html(speed: float, factor: float, deviates: bool, fastest: float) -> str:
         f'<label>View <select data-view="look">{looks}</select></label>'
         '<label><input type="checkbox" data-view="machine" checked> machine</label>'
         f'<label><input type="checkbox" data-view="solid" checked> solid</label>{slider}</div>'
-        f'<p class="note"><span class="ramp" style="background:linear-gradient(90deg,{scale})">'
-        f"</span> 0 to {figure(fastest)} mm/s; squares of the floor: "
+        f'<p class="note">{colours}; squares of the floor: '
         f'<span data-view="grid"></span>{shown}. <span class="keys">{KEYS}</span></p></div>'
     )

@@ -27,6 +27,8 @@ class AxisFigure:
     time_at_limit: float  # [s] at or beyond its limit, low or high
     time_above: float = 0.0  # [s] above what may last, in all
     longest_above: float = 0.0  # [s] the longest such time without a break
+    low_at: float = 0.0  # [s] of the least value
+    high_at: float = 0.0  # [s] of the greatest
 
     @property
     def share(self) -> float | None:
@@ -78,6 +80,7 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
     n, step = limit.derivative, float(time[1] - time[0])
     tail, low, high, squares, count, reached = np.zeros(0), np.inf, -np.inf, 0.0, 0, 0
     largest, at = 0.0, float(time[0])
+    low_at = high_at = at
     above, longest, run = 0, 0, 0  # samples
     for block in blocks(len(time), read):
         raw = np.asarray(block, float)
@@ -91,7 +94,10 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
         k = int(np.argmax(np.abs(x)))
         if abs(x[k]) > abs(largest):
             largest, at = float(x[k]), float(time[min(count + k + n, len(time) - 1)])
-        low, high = min(low, float(x.min())), max(high, float(x.max()))
+        ends = int(np.argmin(x)), int(np.argmax(x))
+        when = [float(time[min(count + k + n, len(time) - 1)]) for k in ends]
+        low, low_at = min((low, low_at), (float(x[ends[0]]), when[0]), key=lambda e: e[0])
+        high, high_at = max((high, high_at), (float(x[ends[1]]), when[1]), key=lambda e: e[0])
         squares, count = squares + float(x @ x), count + len(x)
         reached += int(np.count_nonzero(_at_limit(x, limit)))
         if limit.continuous is not None:
@@ -100,8 +106,10 @@ def _figure(time: NDArray[np.float64], read: Read, limit: AxisLimit) -> AxisFigu
             most, run = _longest(over, run)
             longest = max(longest, most)
     rms = float(np.sqrt(squares / count)) if count else 0.0
-    times = (n * step for n in (reached, above, longest))
-    return AxisFigure(limit, low, high, largest, at, rms, *times)
+    at_limit, over_time, longest_time = (n * step for n in (reached, above, longest))
+    return AxisFigure(
+        limit, low, high, largest, at, rms, at_limit, over_time, longest_time, low_at, high_at
+    )
 
 
 def _longest(over: NDArray[np.bool_], before: int) -> tuple[int, int]:

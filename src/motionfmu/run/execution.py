@@ -17,6 +17,8 @@ from motionfmu.scenarios import recording
 from motionfmu.scenarios.system import End, System
 
 PLANNED = "path.csv"
+# [byte] Signals of a run that take no more stay in memory; a session keeps no run but the latest.
+HELD, HELD_IN_SESSION = 1 << 22, 1 << 26
 
 
 def own_settings(scenario: RunPlan, folder: Path) -> dict[str, Any]:
@@ -45,10 +47,10 @@ class Execution:
             raise InputError(told)
         return planned
 
-    def job(self, fmi: int) -> EngineJob:
+    def job(self, fmi: int, memory: int) -> EngineJob:
         """The job for an engine; a system with wires of elements needs FMI 2."""
         given = 2 if self.system.elementwise else fmi
-        return EngineJob(self.system, self.recorded, self.folder, given)
+        return EngineJob(self.system, self.recorded, self.folder, given, memory=memory)
 
     def run(self, engine: Callable[[System], EngineResult], options: Options) -> Result:
         """Run it in an engine; an FMU's error message says where the refused value stands."""
@@ -65,7 +67,7 @@ class Execution:
             never = (f"{until.name} never came within {limit:.9g} s",)
         return Result(
             scenario=self.scenario,
-            time=ran.signals.time if ran.signals.time is not None else self._time(ran.steps),
+            time=self._time(ran.steps) if ran.time is None else ran.time,
             signals=ran.signals,
             parameters={s.end.name: s.values for s in self.system.settings},
             geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,

@@ -12,7 +12,7 @@ from motionfmu.base.toml_lines import shown
 from motionfmu.run import engines
 from motionfmu.run.controller_plan import bounded
 from motionfmu.run.engines.engine_job import EngineResult
-from motionfmu.run.execution import Execution, own_settings
+from motionfmu.run.execution import HELD, Execution, own_settings
 from motionfmu.run.result import Result
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import agreement, grids
@@ -138,7 +138,7 @@ class Scenario(RunPlan):
             execution = Execution.plan(self, given, self.ends, folder)
 
             def master(system: System) -> EngineResult:
-                with closing(engines.opened(chosen, execution.job(asked.fmi))) as ready:
+                with closing(engines.opened(chosen, execution.job(asked.fmi, HELD))) as ready:
                     ran = ready.run(system, asked.progress)
                 early = [*agreement.warnings(system), *grids.warnings(system)]
                 return replace(ran, warnings=[*early, *ran.warnings])

@@ -10,7 +10,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import engines
 from motionfmu.run.controller_plan import bounded
 from motionfmu.run.engines.engine_job import Engine, EngineResult
-from motionfmu.run.execution import Execution, own_settings
+from motionfmu.run.execution import HELD_IN_SESSION, Execution, own_settings
 from motionfmu.run.result import Result
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios.system import End, Setting, System
@@ -78,7 +78,9 @@ class Session:
         self._known = _known(scenario)
         used = scenario.ends if signals is None else list(signals)
         self._execution = Execution.plan(scenario, base, used, self._folder)
-        return engines.opened(self._options.engine, self._execution.job(self._options.fmi))
+        return engines.opened(
+            self._options.engine, self._execution.job(self._options.fmi, HELD_IN_SESSION)
+        )
 
     def _values(self, given: Mapping[str, Any]) -> list[Setting]:
         """All settings of a run; a value for one element leaves the others as they are."""

@@ -46,6 +46,7 @@ class View(BaseModel):
     model_config = STRICT
     tool: Name | None = None
     joints: Name | None = None
+    works: Name | None = None  # above 0 while the tool works; else it moves from place to place
     lengths: Annotated[list[float], Field(min_length=7, max_length=7)] | None = None
     offsets: Six = [0.0] * 6
     signs: Six = [1.0] * 6

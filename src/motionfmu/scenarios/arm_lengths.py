@@ -41,7 +41,7 @@ def arm_of(
     ports = resolver.ports[component]
     if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
         names = (ORIGIN, DIRECTION, SLIDES, COUNT)
-        return Arm((), axes=_axes(*(parameter(f"{component}.{n}") for n in names)))
+        return Arm((), axes=axes_in_mm(*(parameter(f"{component}.{n}") for n in names)))
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -56,12 +56,14 @@ def arm_of(
     return Arm(lengths, offsets, signs, 1e3 * told(PEN, (0.0,))[0])
 
 
-def _axes(
+def axes_in_mm(
     origin: Sequence[float],
     direction: Sequence[float],
-    slides: Sequence[float],
-    count: Sequence[float],
+    slides: Sequence[float] = (0,) * 6,
+    count: Sequence[float] = (6,),
 ) -> tuple[tuple[Three, Three, bool], ...]:
+    """Origins [m], one behind the other, directions, whether they slide: in mm, of length 1."""
+
     def rows(numbers: Sequence[float], factor: float) -> list[Three]:
         ends = range(0, 3 * int(count[0]), 3)
         return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in ends]

@@ -188,6 +188,7 @@ class FigureLimit(BaseModel):
     signal: Name
     derivative: int = Field(default=0, ge=0, le=3)  # the figure is this derivative by time
     limit: Bound | None = None  # of the figure's size
+    over: Name | None = None  # parameter, a time: the limit is divided by it; 0: there is none
     low: Bound | None = None
     high: Bound | None = None
     continuous: Bound | None = None  # of its RMS

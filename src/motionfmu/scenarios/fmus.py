@@ -104,13 +104,21 @@ def extra(name: str, file: str) -> str | None:
 
 def digest(name: str) -> str:
     """A hash of all files in the archive of a built FMU, from the archive's own check sums."""
+    return _digest(name, state(name))
+
+
+FileState = tuple[str, int, int]
+
+
+def state(name: str) -> FileState:
+    """What tells that the file of a built FMU is another one: path, time of change, size."""
     path = fmu_path(name)
     stat = path.stat()
-    return _digest(name, (str(path), stat.st_mtime_ns, stat.st_size))
+    return str(path), stat.st_mtime_ns, stat.st_size
 
 
 @functools.cache
-def _digest(name: str, state: tuple[str, int, int]) -> str:
+def _digest(name: str, state: FileState) -> str:
     with opened(name) as archive:
         rows = [f"{i.filename} {i.CRC:08x} {i.file_size}" for i in archive.infolist()]
     return disk_cache.key(*rows)

@@ -20,6 +20,7 @@ BOUNDS = ("limit", "low", "high", "continuous")
 # Of a joint that slides among others that turn: mm for °, in m.
 _OF_DEGREES = {"deg": 1e-3, "deg/s": 1e-3, "deg/s2": 1e-3}
 _DEGREES = {"m": 1e3, "mm": 1.0, "um": 1e-3, "rad": math.degrees(1.0)}
+_SECOND = units.parse("s").exponents
 _PER_TIME = re.compile(r"(.*)/s(\d*)")
 
 
@@ -50,7 +51,7 @@ def wanted(resolver: Resolver) -> list[str]:
     for figure, given in document.body.limits.items():
         with faults.each():
             found.append(_signal(resolver, figure).name)
-            for key in (*BOUNDS, "overload", "when"):
+            for key in (*BOUNDS, "overload", "when", "over"):
                 with faults.each():
                     _check_bound(resolver, figure, key, getattr(given, key))
     faults.tell()
@@ -123,7 +124,9 @@ def _check_bound(resolver: Resolver, figure: str, key: str, value: Any) -> None:
     if end.port.type == "String" or (end.port.type == "Boolean" and key != "when"):
         raise document.error(f"{value} is {end.port.type}: a number wanted", table, key)
     _check_rows(document, end, table, key)
-    if key != "when":
+    if key == "over" and units.parse(end.port.unit or "1").exponents != _SECOND:
+        raise document.error(f"{value} is no time", table, key)
+    if key in BOUNDS:
         _factor(resolver, figure, key, end)
 
 
@@ -143,6 +146,9 @@ def _figure_unit(resolver: Resolver, figure: str) -> str:
 def _factor(resolver: Resolver, figure: str, key: str, end: End) -> float:
     """What a parameter's value is multiplied with; one without unit is in the figure's."""
     wanted, own = _figure_unit(resolver, figure), end.port.unit
+    over = resolver.document.body.limits[figure].over
+    if key == "limit" and over is not None and own is not None:
+        own += f"/{resolver.end(over, f'limits.{figure}', 'over').port.unit}"
     if own is None or own == wanted:
         return 1.0
     try:
@@ -173,6 +179,10 @@ def _of_axis(
             found[key] = float(_value(other, row, given)) * factor
         else:
             found[key] = value[place] if isinstance(value, tuple) else value
+    if "limit" in found and source.over is not None:
+        time = float(_value(resolver.end(source.over, "", ""), row, given))
+        limit = found.pop("limit")
+        found |= {"limit": limit / time} if time else {}
     unit, scale = _shown_as(axis, _figure_unit(resolver, figure))
     found = {key: value * scale for key, value in found.items()} | {"scale": scale}
     if acts and source.overload is not None:

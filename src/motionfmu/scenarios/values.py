@@ -1,7 +1,7 @@
 """The values a scenario gives: before the run, and while it runs."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from motionfmu.base.errors import Faults, InputError
@@ -22,6 +22,8 @@ from motionfmu.scenarios.system import (
 # Limits of the types that are whole numbers.
 WHOLE = {f"Int{n}": (-(2 ** (n - 1)), 2 ** (n - 1) - 1) for n in (8, 16, 32, 64)}
 WHOLE |= {f"UInt{n}": (0, 2**n - 1) for n in (8, 16, 32, 64)}
+# What a resolver keeps of the scenario's own values.
+WRITTEN = "written"
 # In words, which values of a scenario each type takes.
 KINDS: dict[str, Any] = {
     "Float64": (int, float),
@@ -107,17 +109,32 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
     A value of one element, ``component.variable[i]``, leaves the others as they are.
     """
     document, faults = resolver.document, Faults()
-    found: dict[str, Setting] = {}
-    for layer, pairs in enumerate((document.body.set, *stronger)):
-        for name in sorted(pairs, key=lambda n: resolver.split(n)[1] is not None):
-            with faults.each():
-                try:
-                    given = setting(resolver, name, pairs[name], found)
-                    found[given.end.name] = given
-                except InputError as error:
-                    raise error if layer == 0 else unplaced(document, error) from None
+    found = dict(resolver.known.get(WRITTEN, {}))
+    if not found:
+        _add(resolver, document.body.set, found, faults, lambda error: error)
+        if not faults.lines:
+            resolver.known[WRITTEN] = dict(found)
+    for pairs in stronger:
+        _add(resolver, pairs, found, faults, lambda error: unplaced(document, error))
     faults.tell()
     return list(found.values())
+
+
+def _add(
+    resolver: Resolver,
+    pairs: Mapping[str, Any],
+    found: dict[str, Setting],
+    faults: Faults,
+    told: Callable[[InputError], InputError],
+) -> None:
+    """Add the settings of some values, those of whole arrays first."""
+    for name in sorted(pairs, key=lambda n: resolver.split(n)[1] is not None):
+        with faults.each():
+            try:
+                given = setting(resolver, name, pairs[name], found)
+                found[given.end.name] = given
+            except InputError as error:
+                raise told(error) from None
 
 
 def setting(resolver: Resolver, name: str, value: Any, found: Mapping[str, Setting]) -> Setting:

@@ -17,6 +17,12 @@ def wanted(resolver: Resolver) -> list[str]:
     if view.tool is not None:
         check_position(resolver, view.tool, TABLE, "tool")
         found.append(view.tool)
+    if view.works is not None:
+        works = recording.output(resolver, view.works, TABLE, "works").port
+        if works.shape or works.type == "String":
+            text = f"works = {view.works!r}: a single number wanted"
+            raise resolver.document.error(text, TABLE, "works")
+        found.append(view.works)
     if view.joints is not None:
         if recording.output(resolver, view.joints, TABLE, "joints").port.shape != (recording.AXES,):
             text = f"joints = {view.joints!r}: six angles wanted"

@@ -121,6 +121,53 @@ static void test_restored(void)
     }
 }
 
+/* Rows in memory are those of the files, after a restored state, too; one more than there is room
+ * for ends the recording. */
+static void test_in_memory(void)
+{
+    enum { ROWS = 100, FIRST = 40 };
+    static double time[ROWS + 1], six[ROWS + 1][6], one[ROWS + 1], two[ROWS + 1][2], late[ROWS + 1];
+    static int32_t count[ROWS + 1], counts[ROWS + 1][6];
+    static bool on[ROWS + 1], many[ROWS + 1][6];
+    char *const place[] = { (char *)time, (char *)six, (char *)count,  (char *)many, (char *)one,
+                            (char *)two,  (char *)on,  (char *)counts, (char *)late };
+    struct recorder *r = recorder_in_memory(columns, COLUMNS, 1e-4, place, ROWS);
+    recorder_begin(r, FIRST);
+    CHECK_EQ(rows(r, FIRST, FIRST + 60), 0);
+    CHECK_EQ(recorder_at(r, FIRST + 50), 0);
+    CHECK_EQ(recorder_at(r, FIRST + 55), 0);
+    CHECK_EQ(rows(r, FIRST + 55, FIRST + ROWS), 0);
+    for (int k = 0; k < ROWS; k++) {
+        const bool jumped = k >= 50 && k < 55;
+        set(FIRST + k);
+        if (jumped) {
+            memset(&now, 0, sizeof now);
+        }
+        CHECK(time[k] == (jumped ? 0.0 : (FIRST + k) * 1e-4) && one[k] == now.one);
+        CHECK(late[k] == now.late && count[k] == now.count && on[k] == now.on);
+        CHECK(!memcmp(six[k], now.six, sizeof *six) && !memcmp(two[k], now.two, sizeof *two));
+        CHECK(!memcmp(counts[k], now.counts, sizeof *counts));
+        CHECK(!memcmp(many[k], now.many, sizeof *many));
+    }
+    CHECK_EQ(recorder_at(r, FIRST - 1), -1);
+    recorder_close(r);
+    for (int jump = 0; jump < 2; jump++) {
+        r = recorder_in_memory(columns, COLUMNS, 1e-4, place, ROWS);
+        recorder_begin(r, 0);
+        CHECK_EQ(rows(r, 0, ROWS), 0);
+        CHECK_EQ(jump ? recorder_at(r, ROWS + 1) : rows(r, ROWS, ROWS + 1), -1);
+        CHECK(strstr(r->why, "more rows than there is memory for"));
+        CHECK_EQ(recorder_row(r), -1);
+        CHECK_EQ(recorder_end(r), -1);
+        recorder_close(r);
+    }
+    r = recorder_in_memory(columns, COLUMNS, 1e-4, place, ROWS);
+    recorder_begin(r, 0);
+    CHECK_EQ(rows(r, 0, ROWS), 0);
+    CHECK_EQ(recorder_end(r), 0);
+    recorder_close(r);
+}
+
 /* No room: told with the file, nothing is left, and what comes after it is refused, too. */
 static void test_full(const char *part)
 {
@@ -180,6 +227,7 @@ int main(int arguments, char **argument)
     if (arguments == 1) {
         test_given_up(part);
         test_restored();
+        test_in_memory();
         test_full(part);
         test_refused();
         CHECK(!there(part) && !there(old) && !there(folder));

@@ -109,14 +109,14 @@ class Arcs:
     def _frame(self, points: Array) -> tuple[Array, Array, Array]:
         """Points in the arc's own frame."""
         # Sums of three products: matrix products of a library with threads would be slower.
-        u, v, w = (points[:, i] - c for i, c in enumerate(np.moveaxis(self.centre, -1, 0)))
+        u, v, w = (points[:, i] - c for i, c in enumerate(self.centre.T))
         x, y, z = (a * u + b * v + c * w for a, b, c in self._rows)
         return x, y, z
 
     @cached_property
     def _rows(self) -> Array:
         """Elements of the axes, each a number or (n,)."""
-        return np.moveaxis(self.axes, (-2, -1), (0, 1))
+        return self.axes if self.axes.ndim == 2 else self.axes.transpose(1, 2, 0)
 
     def _turned(self, x: Array, y: Array, z: Array) -> Array:
         """Vectors (n, 3) of the arc's own frame in space."""

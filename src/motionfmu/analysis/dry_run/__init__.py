@@ -6,6 +6,7 @@ from motionfmu.analysis.dry_run.robot_dry_run import (
     InputChange,
     LineReserve,
     dry_run,
+    program_files,
 )
 
-__all__ = ["DryMove", "DryRun", "InputChange", "LineReserve", "dry_run"]
+__all__ = ["DryMove", "DryRun", "InputChange", "LineReserve", "dry_run", "program_files"]

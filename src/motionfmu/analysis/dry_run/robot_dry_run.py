@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -134,6 +134,10 @@ class DryRun:
         Names of the joints.
     approaches : tuple of Approach
         How near the arm comes to itself and to its cell, by line.
+    settings : mapping
+        Of the virtual robot that ran it.
+    cell : Cell
+        What stood around it.
     """
 
     file: Path
@@ -145,6 +149,8 @@ class DryRun:
     fault_line: int
     axes: tuple[str, ...]
     approaches: tuple[Approach, ...] = ()
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    cell: Cell = field(default_factory=Cell)
 
     @property
     def collisions(self) -> list[Approach]:
@@ -295,7 +301,7 @@ def dry_run(
         There is no soft controller with a program, a setting is wrong, or the program waits for an
         input that does not come.
     """
-    value = _values(scenario, set or {})
+    _, value = _values(scenario, set or {})
     settings = _settings(value)
     try:
         robot = VirtualRobot(**settings)
@@ -321,11 +327,37 @@ def dry_run(
     line = int(number[1]) if number else 0
     cell = cell or Cell()
     near = approaches(samples, ArmParts.of(settings, cell.radii), cell) if len(samples) else []
-    return DryRun(file, samples, low, high, top, fault, line, AXES, tuple(near))
+    return DryRun(file, samples, low, high, top, fault, line, AXES, tuple(near), settings, cell)
 
 
-def _values(scenario: Scenario, set: Mapping[str, Any]) -> Callable[[str], Any]:
-    """Values of the soft controller that has a program, by the parameter."""
+def program_files(
+    scenario: Scenario, set: Mapping[str, Any] | None = None
+) -> tuple[str, Path, Path | None]:
+    """Where the program of a soft controller is.
+
+    Parameters
+    ----------
+    scenario : Scenario
+    set : mapping, optional
+        Values by ``component.variable``, stronger than the scenario's.
+
+    Returns
+    -------
+    tuple
+        The component, its program, its points or None.
+
+    Raises
+    ------
+    InputError
+        There is no soft controller with a program.
+    """
+    name, value = _values(scenario, set or {})
+    points = str(value("points"))
+    return name, Path(str(value("program"))), Path(points) if points else None
+
+
+def _values(scenario: Scenario, set: Mapping[str, Any]) -> tuple[str, Callable[[str], Any]]:
+    """The soft controller that has a program, and its values by the parameter."""
     given = {s.end.name: s.values for s in scenario.resolved(Options(set=set)).settings}
     for name, ports in scenario.resolver.ports.items():
         if not ports.keys() >= KNOWN or given.get(f"{name}.program", ("",)) == ("",):
@@ -337,7 +369,7 @@ def _values(scenario: Scenario, set: Mapping[str, Any]) -> Callable[[str], Any]:
             values = values_in(given, name, ports[key])
             return np.array(values) if ports[key].shape else values[0]
 
-        return value
+        return name, value
     raise InputError(f"{scenario.name}: it has no robot's controller with a program")
 
 

@@ -25,7 +25,8 @@ function armFaces(arm, joints, s, colours, tool) {
   put(tube(p.forearm, p.wrist, 58 * s, 36 * s), colours.body);
   hub(p.wrist, bend, 46, 40);
   put(tube(p.wrist, p.flange, 30 * s, 26 * s), colours.body);
-  if (arm.pen > 0) put(tube(p.flange, p.tip, 9 * s, 3 * s, 8), colours.tool);
+  const tip = arm.pen > 0 ? p.tip : tool;
+  if (tip && Math.hypot(...add(tip, p.flange, -1)) > 20 * s) put(tube(p.flange, tip, 9 * s, 3 * s, 8), colours.tool);
   return faces;
 }
 
@@ -67,40 +68,22 @@ function gantryFaces(place, { low, high, radius }, colours) {
 
 function machineColours(dark) {
   return { body: [142, 160, 180], joint: dark ? [104, 124, 146] : [62, 80, 100],
-    tool: [190, 40, 60] };
+    tool: [190, 40, 60], cell: dark ? [118, 108, 92] : [206, 192, 168] };
 }
 
-// Colour of a face in the light.
+// Bodies of a cell: boxes by their corners, bars with their ends and radius.
+function cellFaces(bodies, color) {
+  return bodies.flatMap(({ turn, half, centre, bar, radius }) => {
+    const made = bar ? tube(bar[0], bar[1], radius, radius, 18) : box(half.map((x) => -x), half).map((f) => ({
+      corners: f.corners.map((p) => add(centre, times(turn, p))), normal: times(turn, f.normal) }));
+    return made.map((f) => ({ ...f, color }));
+  });
+}
+
+// Colour of a face in the light: red, green, blue.
 function shade(color, normal) {
   const light = 0.62 + 0.38 * dot(normal, unit([0.35, -0.5, 0.8]));
-  return `rgb(${color.map((c) => Math.round(Math.min(255, c * (0.45 + 0.62 * light)))).join(",")})`;
-}
-
-// Faces that look to the camera, each as something to draw at its depth.
-function facesToDraw(pen, faces, view, look, alpha) {
-  const items = [];
-  const eye = [Math.cos(view.elevation) * Math.cos(view.azimuth),
-    Math.cos(view.elevation) * Math.sin(view.azimuth), Math.sin(view.elevation)];
-  const from = add(view.target, eye, view.distance);
-  for (const face of faces) {
-    const middle = face.corners.reduce((s, p) => add(s, p, 1 / face.corners.length), [0, 0, 0]);
-    if (dot(face.normal, add(from, middle, -1)) <= 0) continue;
-    const shown = face.corners.map(look);
-    if (!shown.every((p) => p[3])) continue;
-    const color = shade(face.color, face.normal);
-    items.push({ depth: look(middle)[2], draw: () => {
-      pen.beginPath();
-      shown.forEach((p, k) => (k ? pen.lineTo(p[0], p[1]) : pen.moveTo(p[0], p[1])));
-      pen.closePath();
-      pen.globalAlpha = alpha;
-      pen.fillStyle = pen.strokeStyle = color;
-      pen.lineWidth = 0.7;
-      pen.fill();
-      if (alpha === 1) pen.stroke();
-      pen.globalAlpha = 1;
-    } });
-  }
-  return items;
+  return color.map((c) => Math.round(Math.min(255, c * (0.45 + 0.62 * light))));
 }
 
 // A line through points on the screen; where one is behind the camera it is broken.

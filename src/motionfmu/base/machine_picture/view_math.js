@@ -72,13 +72,15 @@ function armReach(arm) {
   return [ways.slice(1).reduce((sum, way) => sum + way, 0), Math.max(0, arm.axes[0][0][2])];
 }
 
+const NEAR = 0.05; // part of the camera's distance from which on something is seen
+
 // A camera looks at a point from a distance; azimuth from x, elevation from the floor.
 function camera(view, width, height) {
   const [ca, sa] = [Math.cos(view.azimuth), Math.sin(view.azimuth)];
   const [ce, se] = [Math.cos(view.elevation), Math.sin(view.elevation)];
   const eye = [ce * ca, ce * sa, se], right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce];
   const focus = 1.9 * Math.min(width, height);
-  const near = 0.05 * view.distance;
+  const near = NEAR * view.distance;
   return (p) => {
     const d = add(p, view.target, -1);
     const depth = view.distance - dot(d, eye);
@@ -88,29 +90,21 @@ function camera(view, width, height) {
   };
 }
 
-// Faces of a tube from a to b, each with its corners and outward normal; radii at both ends. A long
-// one is cut into pieces, so that it is sorted well by depth.
+// Faces of a tube from a to b, each with its corners and outward normal; radii at both ends.
 function tube(a, b, radius, end = radius, sides = 14) {
-  const way = add(b, a, -1), axis = unit(way);
+  const axis = unit(add(b, a, -1));
   const u = unit(cross(axis, Math.abs(axis[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
   const v = cross(axis, u);
-  const pieces = Math.max(1, Math.ceil(Math.hypot(...way) / (1.5 * Math.max(radius, end))));
-  const rings = Array.from({ length: pieces + 1 }, (_, i) => {
-    const f = i / pieces, r = radius + f * (end - radius), centre = add(a, way, f);
-    return Array.from({ length: sides }, (_, k) => {
+  const [low, high] = [[a, radius], [b, end]].map(([centre, r]) =>
+    Array.from({ length: sides }, (_, k) => {
       const t = 2 * Math.PI * k / sides;
       return add(add(centre, u, r * Math.cos(t)), v, r * Math.sin(t));
-    });
-  });
-  const faces = [{ corners: rings[0], normal: axis.map((x) => -x) },
-    { corners: rings[pieces], normal: axis }];
+    }));
+  const faces = [{ corners: low, normal: axis.map((x) => -x) }, { corners: high, normal: axis }];
   for (let k = 0; k < sides; k++) {
     const n = (k + 1) % sides, t = 2 * Math.PI * (k + 0.5) / sides;
     const normal = add(add([0, 0, 0], u, Math.cos(t)), v, Math.sin(t));
-    for (let i = 0; i < pieces; i++) {
-      const corners = [rings[i][k], rings[i][n], rings[i + 1][n], rings[i + 1][k]];
-      faces.push({ corners, normal });
-    }
+    faces.push({ corners: [low[k], low[n], high[n], high[k]], normal });
   }
   return faces;
 }

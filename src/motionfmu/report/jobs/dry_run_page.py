@@ -10,9 +10,12 @@ from motionfmu.report.cycle_time_section import add_cycle_time
 from motionfmu.report.diagram import Diagram, LevelMark, SamplesMark, Scale, Subplot
 from motionfmu.report.html_page import RUN, Page, PageFrame
 from motionfmu.report.html_tables import cards, table
+from motionfmu.report.jobs.dry_scene import dry_scene
 from motionfmu.report.jobs.gcode_page import clock, metres
+from motionfmu.report.jobs.reach_section import add_reach
 from motionfmu.report.samples import Samples
 from motionfmu.report.style import AXES
+from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.checks import Verdict
 
 HEIGHT = 190  # [pixel] of a plot
@@ -91,8 +94,15 @@ def page_text(run: DryRun) -> str:
         told = "".join(f"<p><b>{escape(text)}</b></p>" for text in run.faults)
         page.section("It cannot run as it is", "", told)
     page.sections.append(cards(rows))
+    told = "The arm as its controller commands it, and what stands around it."
+    if run.collisions:
+        told += " It stands where it first comes too near."
+    views = add_view(
+        page, dry_scene(run), told, min((a.time for a in run.collisions), default=None)
+    )
     if len(run.samples):
         add_cycle_time(page, run.motion)
+        add_reach(page, run)
         note = "1 and \N{MINUS SIGN}1 are the ends of the range, and the highest speeds."
         place = page.place("joints", reserves_chart(run), True, RUN)
         page.section("Joints and their limits", note, place)
@@ -105,4 +115,8 @@ def page_text(run: DryRun) -> str:
         cells = [tuple(map(escape, line_cells(x, run))) for x in lines]
         page.section("Lines", note, table(HEADS, cells, numeric=0))
     about = "A robot's program, run dry"
-    return page.text(PageFrame(run.file.name, about, "dry run", verdict, FOOTER))
+    return page.text(
+        PageFrame(run.file.name, about, "dry run", verdict, FOOTER),
+        SCRIPTS if views else (),
+        **views,
+    )

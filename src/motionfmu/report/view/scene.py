@@ -1,15 +1,17 @@
 """The moving picture of a run: its frames, its path and its deviations [mm]."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.collisions import Cell
 from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.base import units
 from motionfmu.run.decimate import Read, at, ends, reader
 from motionfmu.run.run_record import RunRecord
+from motionfmu.scenarios import limited_signals
 from motionfmu.scenarios.arm_lengths import Arm, arm_of
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.view_signals import JOINTS
@@ -45,9 +47,15 @@ class Scene:
     path: Array  # (m, 3) [mm]
     speed: Array  # (m,) of the tool [mm/s]
     lines: tuple[DeviationLine, ...] = ()
+    rapid: NDArray[np.bool_] | None = None  # (m,) where the tool does no work
+    cell: Cell = field(default_factory=Cell)  # what stands around the arm
 
 
-def scene_of(run: RunRecord, lines: Sequence[DeviationLine] = ()) -> Scene | None:
+def scene_of(
+    run: RunRecord,
+    lines: Sequence[DeviationLine] = (),
+    works: NDArray[np.bool_] | None = None,
+) -> Scene | None:
     """The moving picture of a run; None where nothing moves that it could show."""
     view = run.resolver.document.body.view
     name = tool_signal(run)
@@ -61,7 +69,7 @@ def scene_of(run: RunRecord, lines: Sequence[DeviationLine] = ()) -> Scene | Non
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
         return None
     frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
-    kept = _path(count, tool, float(np.linalg.norm(high - low)))
+    kept = drawn_samples(count, tool, float(np.linalg.norm(high - low)))
     before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
     way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
     return Scene(
@@ -73,7 +81,27 @@ def scene_of(run: RunRecord, lines: Sequence[DeviationLine] = ()) -> Scene | Non
         at(tool, kept),
         way / (run.time[after] - run.time[before]),
         tuple(lines),
+        rapids(run, kept, works),
     )
+
+
+def rapids(
+    run: RunRecord, samples: NDArray[np.int64], works: NDArray[np.bool_] | None = None
+) -> NDArray[np.bool_] | None:
+    """Where a tool goes from place to place; None where that is not known, or it does nothing else.
+
+    By what an analysis says, by the signal that [view] names, or by a controller whose moves of the
+    joints have no feed.
+    """
+    feed = f"{limited_signals.controller(run.resolver)}.{limited_signals.FEED}"
+    signal = run.resolver.document.body.view.works or feed
+    if works is not None:
+        found = ~works[samples]
+    elif signal in run.signals:
+        found = np.asarray(at(reader(run[signal]), samples)) <= 0
+    else:
+        return None
+    return None if found.all() else found
 
 
 def position(run: RunRecord, name: str) -> Read:
@@ -113,7 +141,7 @@ def millimetres(resolver: Resolver, name: str, values: Array) -> Array:
     return np.asarray(values[:, :3] * (unit.factor / units.parse("mm").factor))
 
 
-def _path(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
+def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
     """Samples that draw the path: where it bends, and some at even times for the colour."""
     coarse = max(1, count // (20 * POINTS))
     some = np.arange(0, count, coarse)

@@ -8,13 +8,13 @@ from motionfmu.run.engines.engine_job import EngineResult
 from motionfmu.run.engines.scopes import ScopeSystem
 from motionfmu.scenarios.system import System
 
-# A run calls its progress so many times.
-SHARES = 100
+# A run calls its progress so many times at most, and a call drives so many steps at least.
+SHARES, STEPS_MIN = 100, 50
 
 
 def shares(system: System, due: Iterable[int], most: int) -> Iterator[tuple[int, int]]:
     """Parts of a run, each driven by one call: from and to which step; inputs are due between."""
-    part = min(max(1, (system.steps - system.begin) // SHARES), most)
+    part = min(max(STEPS_MIN, (system.steps - system.begin) // SHARES), most)
     cuts = {*range(system.begin, system.steps, part), *(k for k in due if k < system.steps)}
     return pairwise([*sorted(cuts), system.steps])
 

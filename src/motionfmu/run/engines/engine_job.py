@@ -1,11 +1,13 @@
 """The job that an engine gets, and the result that it gives."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
-from motionfmu.base.columns import Columns
+import numpy as np
+from numpy.typing import NDArray
+
 from motionfmu.scenarios.system import End, System
 
 Progress = Callable[[float], None]
@@ -20,6 +22,7 @@ class EngineJob:
     folder: Path  # holds the files of the signals; no other run uses it
     fmi: int  # 2 or 3
     name: str = "system"  # names the whole system in messages
+    memory: int = 0  # [byte] signals of a run that take no more need no files
 
 
 @dataclass(frozen=True)
@@ -27,10 +30,11 @@ class EngineResult:
     """What an engine gives of a run: signals, warnings, and why it ended."""
 
     engine: str  # name of the engine
-    signals: Columns  # one row for each sample
+    signals: Mapping[str, NDArray[Any]]  # one row for each sample
     warnings: list[str]  # of the FMUs
     steps: int  # number of steps that were made
     signal: int | None = None  # communication point at which the signal that ends it came
+    time: NDArray[np.float64] | None = None  # of the rows [s], if the engine recorded it
 
 
 class Engine(Protocol):

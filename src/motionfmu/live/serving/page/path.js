@@ -1,5 +1,5 @@
 // The path in 3D: what is planned, what is done, the tool and its machine, the error as colour.
-/* global add, armFaces, bounds, camera, cameraControls, colour, facesToDraw, floorSquares,
+/* global add, armFaces, bounds, camera, cameraControls, colour, depthBuffer, floorSquares,
    gantryFaces, machineColours, round125, stroke, triad */
 import { choice, part, put } from "./dom.js";
 import { fetched, on } from "./link.js";
@@ -12,6 +12,7 @@ const LOOKS = { whole: ["Whole", -0.95, 0.42], top: ["Top", -Math.PI / 2, 1.57],
 const AXES = ["#d0503a", "#3f9a3f", "#4a80d8"], ERRORS = ["#1d9a62", "#e0a020", "#d02838"];
 const view = { azimuth: -0.95, elevation: 0.42, target: [0, 0, 0], distance: 300 };
 const canvas = part("path"), pen = canvas.getContext("2d");
+const solids = depthBuffer();
 const [still, trail] = [document.createElement("canvas"), document.createElement("canvas")];
 
 let scene = null, plan = [], done = [], command = [], scale = 0, largest = 0, error = NaN;
@@ -184,7 +185,9 @@ function trailOn(look) {
 function machineOn(look) {
   const faces = scene.arm ? joints?.length && armFaces(scene.arm, joints, stage.radius / 1100, theme, tool) : gantryFaces(tool, stage, theme);
   if (!faces) return;
-  facesToDraw(pen, faces, view, look, scene.arm ? 0.85 : 0.3).sort((a, b) => b.depth - a.depth).forEach((item) => item.draw());
+  solids.size(canvas.clientWidth, canvas.clientHeight, devicePixelRatio || 1);
+  solids.faces(faces, view, look);
+  solids.paint(pen, scene.arm ? 0.85 : 0.3);
 }
 
 function toolOn(tip) {

@@ -1,0 +1,51 @@
+"""The moving picture of a program that was run dry: arm, tool, path, the bodies of its cell."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from motionfmu.analysis.dry_run import DryRun
+from motionfmu.report.view.scene import FRAMES, Scene, drawn_samples
+from motionfmu.run.decimate import at, reader
+from motionfmu.scenarios.arm_lengths import LENGTHS, Arm, axes_in_mm
+
+
+def dry_scene(run: DryRun) -> Scene | None:
+    """The moving picture; None of a program that was refused before it moved."""
+    s, count = run.samples, len(run.samples)
+    if count < 2:
+        return None
+    place = s["place"].astype(float)
+    frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
+    extent = float(np.linalg.norm(np.ptp(place, axis=0)))
+    kept = drawn_samples(count, reader(place), extent)
+    rapid = s["feed"][kept] <= 0.0
+    return Scene(
+        s["time"][frames],
+        place[frames],
+        _si(s["joint"][frames].astype(float), run.settings),
+        arm_in_mm(run.settings),
+        s["time"][kept],
+        at(reader(place), kept),
+        s["speed"][kept].astype(float),
+        rapid=None if rapid.all() else rapid,
+        cell=run.cell,
+    )
+
+
+def _si(joints: NDArray[np.float64], settings: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Joints in rad, of those that slide in m."""
+    slides = np.asarray(settings["joint_slides"]) == 1
+    return np.where(slides, 1e-3 * joints, np.radians(joints))
+
+
+def arm_in_mm(settings: Mapping[str, Any]) -> Arm:
+    """The arm of a virtual robot's settings, which has its tool in the program."""
+    if settings["arm_by"] == 1:
+        names = ("axis_origin", "axis_direction", "joint_slides")
+        return Arm((), axes=axes_in_mm(*(settings[n] for n in names), [settings["joints"]]))
+    lengths = tuple(1e3 * float(settings[n]) for n in LENGTHS)
+    offsets, signs = (np.asarray(settings[n], float) for n in ("joint_offset", "joint_sign"))
+    return Arm(lengths, tuple(np.radians(offsets).tolist()), tuple(signs.tolist()))
