@@ -242,13 +242,15 @@ static struct controller_inputs inputs_of(const struct fmu *f)
 
 /* Write the points as joint angles, which are unambiguous whatever the tool, and also in the wrist
  * singularity, where axes 4 and 6 are in line. */
-static const char *put_points(const void *controller, FILE *file)
+static const char *put_points(const void *fmu, FILE *file)
 {
-    const struct controller *s = controller;
+    const struct fmu *f = fmu;
+    const struct controller *s = &f->s.m.controller;
+    const struct controller_blob *b = f->blob;
 
     for (int n = 0; n < s->taught_count; n++) {
         char line[ROBOT_JOB_POINT_TEXT];
-        if (controller_taught(s, n, line) == 0) {
+        if (controller_taught(s, &b->config, n, line) == 0) {
             fprintf(file, "%s\n", line);
         }
     }
@@ -256,12 +258,12 @@ static const char *put_points(const void *controller, FILE *file)
 }
 
 /* Write teach_file. Returns NULL, or why it cannot be written. */
-static const char *write_points(const struct fmu *f, const struct controller *s)
+static const char *write_points(const struct fmu *f)
 {
     const struct controller_inputs in = inputs_of(f);
     const struct fmu_path path = fmu_path(f, f->s.v.teach_file, FMU_WRITTEN);
 
-    return output_write(path.text, in.of, CONTROLLER_INPUTS, put_points, s);
+    return output_write(path.text, in.of, CONTROLLER_INPUTS, put_points, f);
 }
 
 #endif

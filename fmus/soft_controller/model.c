@@ -271,7 +271,7 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 static int model_end(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
-    const char *why = v->teach_file[0] ? write_points(f, &f->s.m.controller) : NULL;
+    const char *why = v->teach_file[0] ? write_points(f) : NULL;
 
     return why ? cannot_write(f, why) : 0;
 }

@@ -1,6 +1,10 @@
 within MotionControl;
 model AxesArm
-  "Arm of six turning joints by their axes: motors, strain wave gears, rigid links, pen on paper"
+  "Arm of up to six joints by their axes: motors, strain wave gears, rigid links, pen on paper"
+  parameter Integer joints(min = 1, max = 6) = 6
+    "Number of joints; of the others axis, links and motors are there, but nothing moves";
+  parameter Integer joint_slides[6](each min = 0, each max = 1) = {0, 0, 0, 0, 0, 0}
+    "1 of a joint that slides along its axis: its numbers are in m for rad, mm for deg, N for N.m";
   parameter Real axis_origin[6,3](each unit = "m") = {{0, 0, 0.445}, {0.15, 0, 0}, {0, 0, 0.7},
     {0, 0, 0.115}, {0.795, 0, 0}, {0.085, 0, 0}}
     "Origin of a joint from that of the one before it, of the base for joint 1, at zero";
@@ -23,7 +27,12 @@ model AxesArm
     final origin = origin_error + axis_origin,
     final axis = {axis_direction[1,:]/reach[1], axis_direction[2,:]/reach[2],
       axis_direction[3,:]/reach[3], axis_direction[4,:]/reach[4], axis_direction[5,:]/reach[5],
-      axis_direction[6,:]/reach[6]});
+      axis_direction[6,:]/reach[6]},
+    final slides = {joint_slides[1], joint_slides[2], joint_slides[3], joint_slides[4],
+      joint_slides[5], joint_slides[6]},
+    final stands = {max(min(1 - joints, 1), 0), max(min(2 - joints, 1), 0),
+      max(min(3 - joints, 1), 0), max(min(4 - joints, 1), 0), max(min(5 - joints, 1), 0),
+      max(min(6 - joints, 1), 0)});
 protected
   final parameter Real reach[6](each unit = "1") = {
     sqrt(axis_direction[1,1]^2 + axis_direction[1,2]^2 + axis_direction[1,3]^2),
@@ -42,8 +51,8 @@ equation
   turned[1,3] = 0;
   turned[1,4] = 0;
   for i in 1:6 loop
-    c[i] = cos(link[i].angle/2);
-    s[i] = sin(link[i].angle/2);
+    c[i] = cos((1 - slides[i])*link[i].angle/2);
+    s[i] = sin((1 - slides[i])*link[i].angle/2);
     turned[i + 1,1] = turned[i,1]*c[i]
       - (turned[i,2]*axis[i,1] + turned[i,3]*axis[i,2] + turned[i,4]*axis[i,3])*s[i];
     turned[i + 1,2] = turned[i,2]*c[i]

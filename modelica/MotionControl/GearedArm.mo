@@ -96,8 +96,11 @@ partial model GearedArm
 protected
   final parameter Real offset[6](each unit = "rad") = joint_offset*pi/180 "Offsets of the joints";
   final parameter Real inner_start[6](each unit = "rad") =
-    {joint_sign[1]*start_joint[1], joint_sign[2]*start_joint[2], joint_sign[3]*start_joint[3],
-    joint_sign[4]*start_joint[4], joint_sign[5]*start_joint[5], joint_sign[6]*start_joint[6]}*pi/180
+    {joint_sign[1]*start_joint[1]*(1 - slides[1]), joint_sign[2]*start_joint[2]*(1 - slides[2]),
+    joint_sign[3]*start_joint[3]*(1 - slides[3]), joint_sign[4]*start_joint[4]*(1 - slides[4]),
+    joint_sign[5]*start_joint[5]*(1 - slides[5]), joint_sign[6]*start_joint[6]*(1 - slides[6])}
+    *pi/180 + {slides[1]*start_joint[1], slides[2]*start_joint[2], slides[3]*start_joint[3],
+    slides[4]*start_joint[4], slides[5]*start_joint[5], slides[6]*start_joint[6]}/1000
     - offset "Start as inner angles";
   final parameter Real motor_start[6](each unit = "rad") =
     {gear_ratio[1]*inner_start[1], gear_ratio[2]*inner_start[2], gear_ratio[3]*inner_start[3],
@@ -132,7 +135,10 @@ protected
     "Attitude of the tool on the flange: w, x, y, z";
   parameter Real origin[6,3](each unit = "m") "Joints in the links before";
   parameter Real axis[6,3](each unit = "1") "Axes of the joints";
-  HangingJoint hanging[6](axis = axis, each gravity = gravity, mass = link_mass,
+  parameter Real slides[6](each unit = "1") "1 of a joint that slides, in m for rad, N for N.m";
+  parameter Real stands[6](each unit = "1") "1 of a joint that is none";
+  HangingJoint hanging[6](axis = axis, slides = slides, stands = stands, each gravity = gravity,
+    mass = link_mass,
     center = link_center, angle = ideal_start, motor = motor_start,
     up_before = {{0, 0, 1}, hanging[1].up, hanging[2].up, hanging[3].up, hanging[4].up,
       hanging[5].up},
@@ -155,8 +161,8 @@ protected
     lost_motion = lost_motion, error_1 = transmission_error_1, error_2 = transmission_error_2,
     phase_1 = transmission_phase_1, phase_2 = transmission_phase_2, zero_error = zero_error)
     "Gears";
-  RevoluteLink link[6](
-    axis = axis,
+  ArmLink link[6](
+    axis = axis, slides = slides, stands = stands,
     origin = origin, mass = link_mass, center = link_center, inertia = link_inertia,
     product = link_product, viscous = link_viscous, start_angle = hanging.start) "Links";
   Pen pen(length = tool_length, paper = paper_height, stiffness = pen_stiffness,

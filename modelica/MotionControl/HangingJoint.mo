@@ -4,6 +4,8 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
   parameter Real gravity(unit = "m/s2") = 9.81 "Acceleration of free fall";
   parameter Real mass(unit = "kg") = 1 "Mass of the link";
   parameter Real center[3](each unit = "m") = {0, 0, 0} "Its centre in its frame";
+  parameter Real slides(unit = "1") = 0 "1 of a joint that slides, in m for rad and N for N.m";
+  parameter Real stands(unit = "1") = 0 "1 of a joint that is none: it has no gear";
   parameter Real angle(unit = "rad") = 0 "Angle of the joint behind an ideal gear";
   parameter Real motor(unit = "rad") = 0 "Angle of the motor";
   parameter Real up_before[3](each unit = "1") = {0, 0, 1} "Upwards in the axes before";
@@ -22,8 +24,8 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
   parameter Real phase_2(unit = "rad") = 0 "Of the gear";
   parameter Real sided(unit = "N.m") = 0.01
     "Torque that takes the link to a side of the lost motion";
-  final parameter Real c(unit = "1") = cos(angle) "Cosine of the angle";
-  final parameter Real s(unit = "1") = sin(angle) "Sine of the angle";
+  final parameter Real c(unit = "1") = cos((1 - slides)*angle) "Cosine of the angle";
+  final parameter Real s(unit = "1") = sin((1 - slides)*angle) "Sine of the angle";
   final parameter Real r[3,3](each unit = "1") = {
     {axis[1]^2 + (1 - axis[1]^2)*c, axis[1]*axis[2]*(1 - c) - axis[3]*s,
       axis[1]*axis[3]*(1 - c) + axis[2]*s},
@@ -37,7 +39,7 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
     r[1,3]*up_before[1] + r[2,3]*up_before[2] + r[3,3]*up_before[3]} "Upwards in own axes";
   final parameter Real weight(unit = "N") = gravity*mass + next_weight "With all that comes after";
   final parameter Real arm[3](each unit = "N.m") = gravity*mass*center + next_weight*next_origin
-    "Weights times their places";
+    + (slides*angle*weight)*axis "Weights times their places from the joint";
   final parameter Real moment[3](each unit = "N.m") = next_moment + {
     arm[2]*up[3] - arm[3]*up[2], arm[3]*up[1] - arm[1]*up[3], arm[1]*up[2] - arm[2]*up[1]}
     "What holds it, about the joint";
@@ -45,14 +47,15 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
     r[1,1]*moment[1] + r[1,2]*moment[2] + r[1,3]*moment[3],
     r[2,1]*moment[1] + r[2,2]*moment[2] + r[2,3]*moment[3],
     r[3,1]*moment[1] + r[3,2]*moment[2] + r[3,3]*moment[3]} "The same in the axes before";
-  final parameter Real torque(unit = "N.m") = axis[1]*moment[1] + axis[2]*moment[2]
-    + axis[3]*moment[3] "What the gear holds";
+  final parameter Real torque(unit = "N.m") = (1 - slides)*(axis[1]*moment[1] + axis[2]*moment[2]
+    + axis[3]*moment[3]) + slides*weight*(axis[1]*up[1] + axis[2]*up[2] + axis[3]*up[3])
+    "What the gear holds";
   final parameter Real size(unit = "N.m") = abs(torque) "Without its sign";
   final parameter Real windup(unit = "rad") = lost_motion/2*min(max(torque/sided, -1), 1)
     + sign(torque)*(min(size, knee_1)/stiffness_1 + max(min(size, knee_2) - knee_1, 0)/stiffness_2
     + max(size - knee_2, 0)/stiffness_3) "Of the gear";
-  final parameter Real start(unit = "rad") = angle + error_1*sin(motor + phase_1)
-    + error_2*sin(2*motor + phase_2) - windup "Angle of the joint";
+  final parameter Real start(unit = "rad") = angle + (1 - stands)*error_1*sin(motor + phase_1)
+    + (1 - stands)*error_2*sin(2*motor + phase_2) - (1 - stands)*windup "Angle of the joint";
   annotation(Documentation(info = "<html>
 <p>Torques are those of the angles behind ideal gears; that they change with the wind-up itself
 leaves out 2e-3 of it for the stiffness of such an arm.</p>

@@ -11,7 +11,9 @@ model SixAxisArm
   extends GearedArm(
     final origin = origin_error + {{0, 0, c1}, {a1, b, 0}, {0, 0, c2}, {a2, 0, 0}, {0, 0, c3},
       {0, 0, c4}},
-    final axis = {{0, 0, 1}, {0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0}, {0, 0, 1}});
+    final axis = {{0, 0, 1}, {0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0}, {0, 0, 1}},
+    final slides = {0, 0, 0, 0, 0, 0},
+    final stands = {0, 0, 0, 0, 0, 0});
 protected
   Real half[6](each unit = "rad") "Half of the joint angles; those of axes 2 and 3 together";
   Real arm[4](each unit = "1") "Orientation of the forearm: w, x, y, z";

@@ -151,7 +151,7 @@ static const struct field move_fields[] = {
 static const struct field refusal_fields[] = {
     ONE(robot_refusal, part, "part", ""),   ROW(robot_refusal, place, "place", "mm"),
     ONE(robot_refusal, which, "which", ""), ONE(robot_refusal, value, "value", ""),
-    ONE(robot_refusal, limit, "limit", ""),
+    ONE(robot_refusal, limit, "limit", ""), ONE(robot_refusal, slides, "slides", ""),
 };
 
 #define SAMPLE(m, unit)     ONE(robot_sample, m, #m, unit)
@@ -336,8 +336,9 @@ static void sample(struct robot_station *s, const struct robot_program *p, struc
     memset(x, 0, sizeof *x);
     x->time = (double)s->clock / FPGA_CLOCK_HZ;
     for (int i = 0; i < OPW_JOINTS; i++) {
-        x->joint[i] = r->joint[i] / DEGREE;
-        x->rate[i] = r->rate[i] / DEGREE;
+        const double unit = manipulator_unit(&s->config.robot.arm, i);
+        x->joint[i] = r->joint[i] / unit;
+        x->rate[i] = r->rate[i] / unit;
     }
     memcpy(x->place, r->pose.at, sizeof x->place);
     x->speed = r->speed;
@@ -374,7 +375,7 @@ int binding_robot_move(struct robot_station *s, struct robot_move *m, const doub
                        struct robot_refusal *why, char message[MESSAGE])
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
-        m->target.joint[i] = target[i] * DEGREE;
+        m->target.joint[i] = target[i] * manipulator_unit(&s->config.robot.arm, i);
     }
     m->target.pose = m->target.by_joints ? pose_none() : pose_of(target, target + 3);
     m->spin *= DEGREE;
@@ -423,7 +424,7 @@ void binding_robot_words(const struct robot_station *s, char message[MESSAGE])
 
 int binding_robot_taught(const struct robot_station *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT])
 {
-    return controller_taught(&s->controller, n, line);
+    return controller_taught(&s->controller, &s->config, n, line);
 }
 
 /* Position and rotation of a tool as a matrix, or of its inverse. */
@@ -450,10 +451,12 @@ static void behind(const struct opw_pose *p, const double at[3], const double tu
     }
 }
 
-static void radians(const double degrees[OPW_JOINTS], double joint[OPW_JOINTS])
+/* Joints as people give them become those of the core. */
+static void joints_of(const struct manipulator *m, const double given[OPW_JOINTS],
+                      double joint[OPW_JOINTS])
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
-        joint[i] = degrees[i] * DEGREE;
+        joint[i] = given[i] * manipulator_unit(m, i);
     }
 }
 
@@ -467,7 +470,7 @@ void binding_robot_forward(const struct manipulator *m, int64_t n, const double 
 
     tool_matrix(m, false, at, turn);
     for (int64_t k = 0; k < n; k++) {
-        radians(joint[k], q);
+        joints_of(m, joint[k], q);
         manipulator_flange(m, q, &flange);
         behind(&flange, at, (const double(*)[3])turn, &tip);
         memset(matrix[k], 0, sizeof matrix[k]);
@@ -502,11 +505,12 @@ void binding_robot_inverse(const struct manipulator *m, int64_t n, const double 
 
     tool_matrix(m, true, at, turn);
     for (int64_t k = 0; k < n; k++) {
-        radians(near[k], q);
+        joints_of(m, near[k], q);
         const uint32_t there = solve(m, at, (const double(*)[3])turn, matrix[k], q, joint[k]);
         for (int b = 0; b < OPW_BRANCHES; b++) {
             for (int i = 0; i < OPW_JOINTS; i++) {
-                joint[k][b][i] = there >> b & 1 ? joint[k][b][i] / DEGREE : (double)NAN;
+                joint[k][b][i] =
+                    there >> b & 1 ? joint[k][b][i] / manipulator_unit(m, i) : (double)NAN;
             }
         }
     }
@@ -526,11 +530,11 @@ void binding_robot_nearest(const struct manipulator *m, int64_t n, const double 
     }
     for (int64_t k = 0; k < n; k++) {
         double found[OPW_JOINTS];
-        radians(near[k], q);
+        joints_of(m, near[k], q);
         const uint32_t there = solve(m, at, (const double(*)[3])turn, matrix[k], q, all);
-        branch[k] = opw_nearest(there, (const double(*)[6])all, q, low, high, found);
+        branch[k] = manipulator_nearest(m, there, (const double(*)[6])all, q, low, high, found);
         for (int i = 0; i < OPW_JOINTS; i++) {
-            joint[k][i] = branch[k] >= 0 ? found[i] / DEGREE : (double)NAN;
+            joint[k][i] = branch[k] >= 0 ? found[i] / manipulator_unit(m, i) : (double)NAN;
         }
     }
 }
@@ -542,7 +546,7 @@ void binding_robot_factors(const struct manipulator *m, int64_t n, const double 
     double q[OPW_JOINTS];
 
     for (int64_t k = 0; k < n; k++) {
-        radians(joint[k], q);
+        joints_of(m, joint[k], q);
         manipulator_factors(m, q, factor[k]);
         factor[k][0] /= MM;
         branch[k] = manipulator_branch(m, q);

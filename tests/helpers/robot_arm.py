@@ -98,13 +98,14 @@ def axes_of(a: Arm) -> tuple[np.ndarray, np.ndarray]:
 
 def urdf(a: Arm) -> str:
     """The arm as a URDF, payload on the last link, frames as at inner 0."""
-    kinds = ("mass", "center", "inertia", "product")
-    rows = zip(*(a.parameter(n) for n in kinds), strict=True)
+    names = ("mass", "center", "inertia", "product")
+    rows = zip(*(a.parameter(n) for n in names), strict=True)
     bodies = [(f"l{k}", *row) for k, row in enumerate(rows, 1)]
     payload = ("load", *(a.parameter(f"payload_{n}") for n in ("mass", "center", "inertia")))
     links = "".join(_body(*body) for body in [*bodies, payload])
+    kind = kinds_of(a)
     joints = "".join(
-        f'<joint name="j{k + 1}" type="revolute"><parent link="l{k}"/><child link="l{k + 1}"/>'
+        f'<joint name="j{k + 1}" type="{kind[k]}"><parent link="l{k}"/><child link="l{k + 1}"/>'
         f'<origin xyz="{_numbers(o)}" rpy="0 0 0"/>'
         f'<axis xyz="{_numbers(axis)}"/>'
         '<limit lower="-9" upper="9" effort="1e6" velocity="1e3"/></joint>'
@@ -115,6 +116,15 @@ def urdf(a: Arm) -> str:
         '<origin xyz="0 0 0" rpy="0 0 0"/></joint>'
     )
     return f'<robot name="arm"><link name="l0"/>{links}{joints}{fixed}</robot>'
+
+
+def kinds_of(a: Arm) -> list[str]:
+    """Of each place whether its joint turns, slides or is none."""
+    if not isinstance(a, ByAxes):
+        return ["revolute"] * 6
+    slides, count = a.parameter("joint_slides"), int(a.parameter("joints"))
+    found = ["prismatic" if s else "revolute" for s in slides[:count]]
+    return [*found, *["fixed"] * (6 - count)]
 
 
 def _numbers(v: Any) -> str:
@@ -149,7 +159,7 @@ class Pinocchio:
 
     def gravity(self, q: np.ndarray) -> np.ndarray:
         """Torques that hold the arm."""
-        return self.inverse(q, np.zeros(6), np.zeros(6))
+        return self.inverse(q, np.zeros(len(q)), np.zeros(len(q)))
 
     def inertia(self, q: np.ndarray) -> np.ndarray:
         """Mass matrix."""

@@ -1,5 +1,7 @@
 """The arm by its axes against pinocchio, and against the arm by its lengths where both are one."""
 
+from typing import Any
+
 import numpy as np
 import pinocchio
 import pytest
@@ -9,12 +11,12 @@ RNG = np.random.default_rng(11)
 U = np.zeros(9)
 
 
-def random_arm(exact: bool = True) -> ByAxes:
+def random_arm(exact: bool = True, **more: Any) -> ByAxes:
     """Axes anywhere and of any length, whole tensors, a tool and a payload beside the flange."""
     second = RNG.uniform(0.01, 0.2, (6, 3))
     moments = second[:, [1, 2, 0]] + second[:, [2, 0, 1]]
     return ByAxes(
-        **(EXACT if exact else {}),
+        **((EXACT if exact else {}) | more),
         axis_origin=RNG.uniform(-0.5, 0.5, (6, 3)),
         axis_direction=RNG.normal(size=(6, 3)) * RNG.uniform(0.1, 9.0, (6, 1)),
         mass=RNG.uniform(0.5, 9.0, 6),
@@ -47,6 +49,58 @@ def test_dynamics_are_those_of_pinocchio() -> None:
     print(f"forward {forward:.1e}, inverse {inverse:.1e}")
     assert max(forward, inverse) < 1e-11
     assert np.median(sizes) > 10.0
+
+
+# Places that slide, and number of joints: a SCARA's, a gantry's with a wrist, some others.
+FEWER = [([2], 4), ([0, 1, 2], 6), ([1, 4], 5), ([0], 1)]
+
+
+@pytest.mark.parametrize(("slides", "count"), FEWER)
+def test_joints_that_slide_and_that_are_none(slides: list[int], count: int) -> None:
+    """Dynamics, tip, and the start under gravity of random arms against pinocchio."""
+    for _ in range(3):
+        starts = [*RNG.uniform(-60, 60, count), *[0.0] * (6 - count)]
+        kinds = [int(k in slides) for k in range(6)]
+        a = random_arm(joints=count, joint_slides=kinds, start_joint=starts)
+        oracle, here = Pinocchio(a), np.arange(count)
+        for _ in range(30):
+            q, v = np.zeros((2, 6))
+            q[:count], v[:count] = RNG.uniform(-3, 3, (2, count))
+            motor = (q + RNG.uniform(-3e-3, 3e-3, 6)) * a.parameter("gear_ratio")
+            x = a.state(link_angle=q, link_speed=v, rotor_angle=motor, rotor_speed=v * 100)
+            acceleration = a.rates(x, U)[a.places("link.speed")]
+            torque = a.outputs(x, U)["gear_torque"] - a.parameter("link_viscous") * v
+            exact = oracle.forward(q[here], v[here], torque[here])
+            assert acceleration[here] == pytest.approx(exact, abs=1e-10 * np.abs(exact).max())
+            assert np.abs(acceleration[count:]).max(initial=0.0) < 1e-7
+            pinocchio.forwardKinematics(oracle.model, oracle.data, q[here])
+            frame = oracle.model.getFrameId("l6", pinocchio.BODY)
+            pinocchio.updateFramePlacements(oracle.model, oracle.data)
+            A, B, C = np.radians(a.parameter("tool_turn"))
+            tool = pinocchio.SE3(pinocchio.rpy.rpyToMatrix(A, B, C), a.parameter("tool_place"))
+            along = np.array([0, 0, float(a.parameter("tool_length"))])
+            there = oracle.data.oMf[frame] * tool * pinocchio.SE3(np.eye(3), along)
+            y = a.outputs(x, U)
+            assert y["tool_position"] == pytest.approx(there.translation, abs=1e-12)
+            w, i, j, k = y["tool_quaternion"]
+            turn = pinocchio.Quaternion(w, i, j, k).toRotationMatrix()
+            assert turn == pytest.approx(there.rotation, abs=1e-12)
+        angles = a.start[a.places("link.angle")]
+        held = a.outputs(a.start, U)["gear_torque"][here]
+        wanted = oracle.gravity(angles[here])
+        assert held == pytest.approx(wanted, abs=5e-3 * max(1.0, np.abs(wanted).max()))
+        assert (angles[count:] == 0.0).all()
+
+
+def test_slides_start_at_millimetres() -> None:
+    """The start of a joint that slides is told in mm, its motor by rad/m."""
+    a = random_arm(joints=4, joint_slides=[0, 0, 1, 0, 0, 0], gravity=0.0, lost_motion=0.0,
+                   start_joint=[10, 20, -30, 40, 0, 0])  # fmt: skip
+    angles = a.start[a.places("link.angle")]
+    exact = [*np.radians([10, 20]), -0.03, np.radians(40), 0, 0]
+    assert angles == pytest.approx(exact, abs=1e-12)
+    motors = a.start[a.places("rotor.angle")]
+    assert motors == pytest.approx(exact * a.parameter("gear_ratio"), abs=1e-9)
 
 
 def test_the_tool_is_where_pinocchio_has_it() -> None:

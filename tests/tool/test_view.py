@@ -114,6 +114,18 @@ def test_the_script_draws_an_arm_by_its_axes(script: MiniRacer) -> None:
     assert of(script, f"armReach({js(arm)})")[1] == pytest.approx(162.5)
 
 
+def test_a_joint_that_slides_is_drawn_where_it_is(script: MiniRacer) -> None:
+    """A SCARA whose quill slides 0.1 m downwards behind two turns, and turns at its end."""
+    rows = [[[0, 0, 250], [0, 0, 1], False], [[325, 0, 60], [0, 0, 1], False],
+            [[275, 0, 100], [0, 0, -1], True], [[0, 0, -120], [0, 0, -1], False]]  # fmt: skip
+    arm = json.dumps({"axes": rows})
+    drawn = of(script, f"axesPose({arm}, [0.3, 0.5, 0.1, 2.0])")
+    wrist = 325 * np.array([np.cos(0.3), np.sin(0.3)]) + 275 * np.array([np.cos(0.8), np.sin(0.8)])
+    assert np.allclose(drawn[2]["at"], [*wrist, 310.0], atol=1e-9)
+    assert np.allclose(drawn[3]["at"], [*wrist, 190.0], atol=1e-9)
+    assert np.allclose(drawn[3]["axis"], [0, 0, -1])
+
+
 @given(st.lists(st.floats(-1e5, 1e5), max_size=60))
 def test_packed_numbers_are_off_by_half_a_step_at_most(values: list[float]) -> None:
     packed = quantised(np.array(values))

@@ -2,7 +2,7 @@
  * axes, without its inverse kinematics.
  *
  * The joints q(s) obey J(q) q' = v(s), v the tip's velocity and turning. With A the inverse of J in
- * the middle of the part, at all its places
+ * the middle of the part, of fewer than six joints a left inverse, at all its places
  *
  *     q'   = A (v + (J_m - J) q')                    q'' = A (v' - J' q' + (J_m - J) q'')
  *     q''' = A (v'' - 2 J' q'' - J'' q' + (J_m - J) q''')

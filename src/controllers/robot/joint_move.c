@@ -70,8 +70,11 @@ enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
         why->which = manipulator_outside(&arm, r->rear_joint, target);
         status = why->which < 0 ? MANIPULATOR_OK : MANIPULATOR_OUTSIDE;
     } else {
-        status = manipulator_solve(&arm, &t->pose, robot_branches(t), t->turned ? t->turn : NULL,
-                                   target, &why->which);
+        if (robot_tilted(&arm, &t->pose, why)) {
+            return ROBOT_TILTED;
+        }
+        status = manipulator_solve(&arm, &t->pose, robot_branches(&arm, t),
+                                   t->turned ? t->turn : NULL, target, &why->which);
     }
     why->part = 1.0;
     if (status == MANIPULATOR_FAR) {
@@ -84,6 +87,7 @@ enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
         memcpy(why->place, at.at, sizeof why->place);
         why->value = target[why->which];
         why->limit = why->value > j->high ? j->high : j->low;
+        why->slides = manipulator_slides(&arm, why->which);
         return ROBOT_OUTSIDE;
     }
     double from[OPW_JOINTS];

@@ -6,16 +6,22 @@
 
 #include "el_extremes.h"
 #include "elementary.h"
+#include "vector3.h"
 
 static const double MM = 1e-3; /* [m] */
 
-static const double TURN = 6.283185307179586;
+static const double TURN = 6.283185307179586, DEGREE = 0.017453292519943295;
 
 /* An elbow whose sine is below this may leave its side: the arm is stretched. */
 static const double STRETCHED = 1e-6;
 
 /* A joint may be beyond a limit by so much. [rad] */
 static const double ROUNDING = 1e-9;
+
+static const double UNIT[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+
+/* Axes that are no further than this from each other are in parallel. [rad] */
+static const double PARALLEL = 1e-9;
 
 /* Share of the largest pivot below which a pivot is 0: the place is singular. */
 static const double PIVOT = 1e-13;
@@ -46,6 +52,26 @@ void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOIN
     chain_forward(&m->axes.chain, q, &end);
     memcpy(flange->at, end.at, sizeof flange->at);
     memcpy(flange->turn, end.turn, sizeof flange->turn);
+}
+
+int manipulator_joints_of(const struct manipulator *m)
+{
+    return m->by_axes ? m->axes.chain.joints : OPW_JOINTS;
+}
+
+bool manipulator_slides(const struct manipulator *m, int joint)
+{
+    return m->by_axes && m->axes.chain.joint[joint].slides;
+}
+
+double manipulator_unit(const struct manipulator *m, int joint)
+{
+    return manipulator_slides(m, joint) ? MM : DEGREE;
+}
+
+int manipulator_flags(const struct manipulator *m)
+{
+    return m->by_axes ? (int)m->axes.flags : OPW_BACK | OPW_ELBOW | OPW_FLIP;
 }
 
 static struct pose flange_pose(const struct manipulator *m, const double joint[OPW_JOINTS])
@@ -141,22 +167,95 @@ uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose
     const uint32_t there = chain_inverse(&m->axes, &pose, q, wanted, joint);
     for (int n = 0; n < OPW_BRANCHES; n++) {
         memcpy(all[n], joint[n], sizeof all[n]);
+        for (int i = m->axes.chain.joints; i < OPW_JOINTS; i++) {
+            all[n][i] = 0.0;
+        }
     }
     return there;
+}
+
+int manipulator_nearest(const struct manipulator *m, uint32_t there,
+                        const double all[OPW_BRANCHES][OPW_JOINTS], const double near[OPW_JOINTS],
+                        const double low[OPW_JOINTS], const double high[OPW_JOINTS],
+                        double joint[OPW_JOINTS])
+{
+    double every[CHAIN_BRANCHES][CHAIN_JOINTS], q[CHAIN_JOINTS];
+    double from[CHAIN_JOINTS], least[CHAIN_JOINTS], most[CHAIN_JOINTS];
+
+    if (!m->by_axes || m->axes.chain.joints == OPW_JOINTS) {
+        bool turns = true;
+        for (int i = 0; i < OPW_JOINTS; i++) {
+            turns = turns && !manipulator_slides(m, i);
+        }
+        if (turns) {
+            return opw_nearest(there, all, near, low, high, joint);
+        }
+    }
+    whole(near, from);
+    whole(low, least);
+    whole(high, most);
+    for (int n = 0; n < CHAIN_BRANCHES; n++) {
+        whole(all[n], every[n]);
+    }
+    const int best =
+        chain_nearest(&m->axes, there, (const double(*)[CHAIN_JOINTS])every, from, least, most, q);
+    if (best >= 0) {
+        memcpy(joint, q, OPW_JOINTS * sizeof *joint);
+    }
+    return best;
+}
+
+/* Pose of the flange for one of the tip. */
+static void flange_of(const struct manipulator *m, const struct pose *tip, struct opw_pose *flange)
+{
+    const struct pose off = pose_inverse(&m->tool);
+    const struct pose p = pose_product(tip, &off);
+
+    for (int i = 0; i < 3; i++) {
+        flange->at[i] = p.at[i] * MM;
+    }
+    quaternion_matrix(p.turn, flange->turn);
+}
+
+double manipulator_tilt(const struct manipulator *m, const struct pose *pose)
+{
+    const struct chain *c = &m->axes.chain;
+    const double *axis = NULL;
+    struct opw_pose flange;
+    double at_zero[3], turned[3], side[3];
+    double most = 0.0;
+
+    if (!m->by_axes || c->joints == OPW_JOINTS) {
+        return 0.0;
+    }
+    for (int k = 0; k < c->joints; k++) {
+        if (c->joint[k].slides || chain_levelled(c, k) >= 0) {
+            continue;
+        }
+        vector3_cross(axis ? axis : c->joint[k].axis, c->joint[k].axis, side);
+        if (vector3_length(side) > PARALLEL) {
+            return 0.0;
+        }
+        axis = c->joint[k].axis;
+    }
+    flange_of(m, pose, &flange);
+    for (int i = 0; i < 3; i++) { /* what the flange keeps: the axis, or if none turns it, all */
+        const double *kept = axis ? axis : UNIT[i];
+        vector3_back(c->flange.turn, kept, at_zero);
+        vector3_by((const double(*)[3])flange.turn, at_zero, turned);
+        vector3_cross(kept, turned, side);
+        most = el_max(most, el_atan2(vector3_length(side), vector3_dot(kept, turned)));
+    }
+    return most;
 }
 
 static uint32_t branches(const struct manipulator *m, const struct pose *pose,
                          const double near[OPW_JOINTS], uint32_t wanted,
                          double all[OPW_BRANCHES][OPW_JOINTS])
 {
-    const struct pose off = pose_inverse(&m->tool);
-    const struct pose p = pose_product(pose, &off);
     struct opw_pose flange;
 
-    for (int i = 0; i < 3; i++) {
-        flange.at[i] = p.at[i] * MM;
-    }
-    quaternion_matrix(p.turn, flange.turn);
+    flange_of(m, pose, &flange);
     return manipulator_branches(m, &flange, near, wanted, all);
 }
 
@@ -166,7 +265,9 @@ bool manipulator_joints(const struct manipulator *m, const struct pose *pose,
     double all[OPW_BRANCHES][OPW_JOINTS], found[OPW_JOINTS];
     const uint32_t there = branches(m, pose, joint, same_elbow(m, joint), all);
 
-    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH, found) < 0) {
+    if (manipulator_nearest(m, there, (const double(*)[OPW_JOINTS])all, joint, ANY_LOW, ANY_HIGH,
+                            found)
+        < 0) {
         return false;
     }
     memcpy(joint, found, sizeof found);
@@ -182,7 +283,7 @@ enum manipulator_status manipulator_solve(const struct manipulator *m, const str
     uint32_t there = branches(m, pose, joint, wanted, all);
 
     for (int i = 0; i < OPW_JOINTS; i++) {
-        const bool told = turn && turn[i] != MANIPULATOR_ANY_TURN;
+        const bool told = turn && turn[i] != MANIPULATOR_ANY_TURN && !manipulator_slides(m, i);
         near[i] = told ? TURN * turn[i] : joint[i];
         low[i] = el_min(m->joint[i].low, joint[i]);
         high[i] = el_max(m->joint[i].high, joint[i]);
@@ -194,12 +295,15 @@ enum manipulator_status manipulator_solve(const struct manipulator *m, const str
         low[i] = told ? ANY_LOW[i] : low[i];
         high[i] = told ? ANY_HIGH[i] : high[i];
     }
-    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, near, low, high, found) >= 0) {
+    if (manipulator_nearest(m, there, (const double(*)[OPW_JOINTS])all, near, low, high, found)
+        >= 0) {
         memcpy(joint, found, sizeof found);
         return MANIPULATOR_OK;
     }
     there = branches(m, pose, joint, wanted, all);
-    if (opw_nearest(there, (const double(*)[OPW_JOINTS])all, near, ANY_LOW, ANY_HIGH, found) < 0) {
+    if (manipulator_nearest(m, there, (const double(*)[OPW_JOINTS])all, near, ANY_LOW, ANY_HIGH,
+                            found)
+        < 0) {
         return MANIPULATOR_FAR;
     }
     *which = manipulator_outside(m, joint, found);
@@ -259,15 +363,15 @@ static void jacobian_by_axes(const struct manipulator *m, const double joint[OPW
     struct chain_axes axes;
     struct chain_pose end;
     double q[CHAIN_JOINTS];
+    const double at[3] = { MM * tip->at[0], MM * tip->at[1], MM * tip->at[2] };
 
     whole(joint, q);
     chain_axes_at(&m->axes.chain, q, &axes, &end);
-    for (int i = 0; i < OPW_JOINTS; i++) {
+    memset(column, 0, OPW_JOINTS * sizeof *column);
+    for (int i = 0; i < m->axes.chain.joints; i++) {
+        chain_column(&m->axes.chain, &axes, i, at, column[i]);
         for (int k = 0; k < 3; k++) {
-            const int a = (k + 1) % 3, b = (k + 2) % 3;
-            column[i][k] = axes.axis[i][a] * (tip->at[b] - axes.origin[i][b] / MM)
-                           - axes.axis[i][b] * (tip->at[a] - axes.origin[i][a] / MM);
-            column[i][k + 3] = axes.axis[i][k];
+            column[i][k] /= MM;
         }
     }
 }
@@ -322,17 +426,18 @@ bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINT
                        const double motion[6], double rate[OPW_JOINTS])
 {
     double column[OPW_JOINTS][6], a[6][OPW_JOINTS + 1];
+    const int joints = manipulator_joints_of(m);
 
     manipulator_jacobian(m, joint, column);
     for (int i = 0; i < 6; i++) {
         /* [m] and [rad]: of one size */
         const double unit = i < 3 ? MM : 1.0;
-        for (int k = 0; k < OPW_JOINTS; k++) {
+        for (int k = 0; k < joints; k++) {
             a[i][k] = unit * column[k][i];
         }
-        a[i][OPW_JOINTS] = unit * motion[i];
+        a[i][joints] = unit * motion[i];
     }
-    for (int n = 0; n < OPW_JOINTS; n++) {
+    for (int n = 0; n < joints; n++) {
         int best = n;
         for (int i = n + 1; i < 6; i++) {
             best = fabs(a[i][n]) > fabs(a[best][n]) ? i : best;
@@ -340,21 +445,22 @@ bool manipulator_rates(const struct manipulator *m, const double joint[OPW_JOINT
         if (fabs(a[best][n]) < PIVOT) {
             return false;
         }
-        for (int k = n; k <= OPW_JOINTS; k++) {
+        for (int k = n; k <= joints; k++) {
             const double x = a[n][k];
             a[n][k] = a[best][k];
             a[best][k] = x;
         }
         for (int i = n + 1; i < 6; i++) {
             const double f = a[i][n] / a[n][n];
-            for (int k = n; k <= OPW_JOINTS; k++) {
+            for (int k = n; k <= joints; k++) {
                 a[i][k] -= f * a[n][k];
             }
         }
     }
-    for (int n = OPW_JOINTS - 1; n >= 0; n--) {
-        rate[n] = a[n][OPW_JOINTS];
-        for (int k = n + 1; k < OPW_JOINTS; k++) {
+    memset(rate, 0, OPW_JOINTS * sizeof *rate);
+    for (int n = joints - 1; n >= 0; n--) {
+        rate[n] = a[n][joints];
+        for (int k = n + 1; k < joints; k++) {
             rate[n] -= a[n][k] * rate[k];
         }
         rate[n] /= a[n][n];

@@ -10,6 +10,7 @@
 #include "opw.h"
 #include "pose.h"
 
+/* Joints are in rad, sliding ones in m, wherever rad is said here. */
 struct manipulator_joint {
     double low, high; /* [rad] */
     double speed;     /* [rad/s] highest */
@@ -21,8 +22,22 @@ struct manipulator {
     bool by_axes; /* the arm is not opw but axes */
     struct manipulator_joint joint[OPW_JOINTS];
     struct pose tool;       /* pose of its tip in the flange's frame */
-    struct chain_form axes; /* six turning joints; last, as it is large */
+    struct chain_form axes; /* up to six joints, the others stand at 0; last, as it is large */
 };
+
+/* Number of joints that are there; whether one of them slides. */
+int manipulator_joints_of(const struct manipulator *m);
+bool manipulator_slides(const struct manipulator *m, int joint);
+
+/* What people give a joint in: [rad] of a degree, [m] of a mm. */
+double manipulator_unit(const struct manipulator *m, int joint);
+
+/* Angle by which an arm of few joints misses the attitude of a pose of the tip, wherever that is:
+ * all that turns its flange are axes in parallel. 0 of other arms. [rad] */
+double manipulator_tilt(const struct manipulator *m, const struct pose *pose);
+
+/* Sum of the flags (manipulator_branch) that branches of the arm have. */
+int manipulator_flags(const struct manipulator *m);
 
 /* The arm with another tool; axes are copied if it is by them. */
 void manipulator_with(const struct manipulator *m, const struct pose *tool,
@@ -35,6 +50,13 @@ void manipulator_flange(const struct manipulator *m, const double joint[OPW_JOIN
 uint32_t manipulator_branches(const struct manipulator *m, const struct opw_pose *flange,
                               const double near[OPW_JOINTS], uint32_t wanted,
                               double all[OPW_BRANCHES][OPW_JOINTS]);
+
+/* The branch nearest to joints, within limits, as of opw_nearest; a joint that slides has no
+ * turns. */
+int manipulator_nearest(const struct manipulator *m, uint32_t there,
+                        const double all[OPW_BRANCHES][OPW_JOINTS], const double near[OPW_JOINTS],
+                        const double low[OPW_JOINTS], const double high[OPW_JOINTS],
+                        double joint[OPW_JOINTS]);
 
 /* Pose of the tool tip for joints [rad]. */
 struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW_JOINTS]);

@@ -79,12 +79,18 @@ bool robot_ready(const struct robot *r)
            && joint_flow_room(&r->flow);
 }
 
-uint32_t robot_branches(const struct robot_target *t)
+int robot_open_flags(const struct manipulator *arm, const struct robot_target *t)
 {
+    return t->open | ~manipulator_flags(arm);
+}
+
+uint32_t robot_branches(const struct manipulator *arm, const struct robot_target *t)
+{
+    const int open = robot_open_flags(arm, t);
     uint32_t set = 0;
 
     for (int n = 0; n < OPW_BRANCHES; n++) {
-        const bool good = t->branch == ROBOT_ANY_BRANCH || ((n ^ t->branch) & ~t->open) == 0;
+        const bool good = t->branch == ROBOT_ANY_BRANCH || ((n ^ t->branch) & ~open) == 0;
         set |= (uint32_t)good << n;
     }
     return set;
@@ -350,7 +356,8 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
     t->branch = manipulator_branch(&c->arm, r->joint);
     memcpy(t->joint, r->joint, sizeof t->joint);
     for (int i = 0; i < OPW_JOINTS; i++) {
-        t->turn[i] = (int)lround(r->joint[i] / TURN);
+        const bool slides = manipulator_slides(&c->arm, i);
+        t->turn[i] = slides ? ROBOT_ANY_TURN : (int)lround(r->joint[i] / TURN);
     }
 }
 

@@ -1,11 +1,12 @@
-/* robot - a six-axis arm that moves: lines, circles, moves of the joints, jogging.
+/* robot - an arm of up to six joints that moves: lines, circles, moves of the joints, jogging.
  *
  *     robot_move, robot_jog ──> tool_path ──> ring ──> trajectory ──> robot_cycle: joints
  *     refused before          segments       look-ahead         each cycle
  *     anything moves
  *
  * Poses are those of the tool's tip in the base frame of the robot; a user's frame is a
- * pose_product before. A call that is refused changes nothing.
+ * pose_product before. A call that is refused changes nothing. Joints are in rad, sliding ones in m
+ * wherever rad is said of joints here; those that the arm has not stand at 0.
  */
 #ifndef ROBOT_H
 #define ROBOT_H
@@ -94,7 +95,9 @@ enum robot_status {
     ROBOT_OFF_PLANE,    /* an arc's start is not in the plane of its centre across its normal */
     ROBOT_NO_UNIT,      /* an arc's normal is no unit vector */
     ROBOT_NO_SPLINE,    /* two poses in a row are the same */
-    ROBOT_NO_FLOW       /* a spline, where moves do not flow */
+    ROBOT_NO_FLOW,      /* a spline, where moves do not flow */
+    ROBOT_TILTED,       /* the arm's joints do not turn the tool to such an attitude */
+    ROBOT_NO_JOINT      /* the arm has no such joint */
 };
 
 /* Why a move is refused. */
@@ -102,8 +105,10 @@ struct robot_refusal {
     double part;     /* 0..1 of the path */
     double place[3]; /* [mm] of the tip there */
     int which;       /* joint, 0 .. 5; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
-    double value;    /* joint [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
-    double limit;    /* [rad] [mm]; of OTHER_TURN: what it should be within half a turn of */
+    bool slides;     /* the joint does, so value and limit of OUTSIDE are in m */
+    double value;    /* joint, tilt [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
+    double limit;    /* [rad] [mm]; of OTHER_TURN: what it should be within half a turn of; of
+                      * NO_JOINT: number of joints */
 };
 
 enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };

@@ -31,6 +31,11 @@ static enum robot_status jog_joints(struct robot *r, const struct robot_config *
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         most = el_max(most, fabs(direction[i]));
+        if (direction[i] != 0.0 && i >= manipulator_joints_of(&c->arm)) {
+            why->which = i;
+            why->limit = manipulator_joints_of(&c->arm);
+            return ROBOT_NO_JOINT;
+        }
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double d = direction[i] / most;
@@ -42,6 +47,7 @@ static enum robot_status jog_joints(struct robot *r, const struct robot_config *
             why->which = i;
             why->value = r->joint[i];
             why->limit = limit;
+            why->slides = manipulator_slides(&c->arm, i);
         }
     }
     if (!(room > 0.0)) {

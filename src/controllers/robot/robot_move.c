@@ -195,7 +195,7 @@ static bool turns_first(const struct robot *r, const struct manipulator *arm,
     return false;
 }
 
-/* CCN 16: a target says the end by joints, by a branch, by turns, or leaves it open. */
+/* CCN 17: a target says the end by joints, by a branch, by turns, or leaves it open. */
 enum robot_status robot_check_end(const struct manipulator *arm, const struct robot_target *t,
                                   const double end[OPW_JOINTS], struct robot_refusal *why)
 {
@@ -204,7 +204,10 @@ enum robot_status robot_check_end(const struct manipulator *arm, const struct ro
 
     manipulator_factors(arm, end, factor);
     for (int i = 0; i < 3 && branch != ROBOT_ANY_BRANCH; i++) {
-        const int flag = (i == 0 ? OPW_BACK : i == 1 ? OPW_ELBOW : OPW_FLIP) & ~t->open;
+        const int flag = (i == 0   ? OPW_BACK
+                          : i == 1 ? OPW_ELBOW
+                                   : OPW_FLIP)
+                         & ~robot_open_flags(arm, t);
         if (fabs(factor[i]) > DOUBTFUL && ((branch ^ manipulator_branch(arm, end)) & flag)) {
             why->which = flag;
             why->value = factor[i];
@@ -212,7 +215,7 @@ enum robot_status robot_check_end(const struct manipulator *arm, const struct ro
         }
     }
     for (int i = 0; i < OPW_JOINTS && (t->by_joints || t->turned); i++) {
-        if (!t->by_joints && t->turn[i] == ROBOT_ANY_TURN) {
+        if (manipulator_slides(arm, i) || (!t->by_joints && t->turn[i] == ROBOT_ANY_TURN)) {
             continue;
         }
         const double off = t->by_joints ? end[i] - t->joint[i] : end[i] - TURN * t->turn[i];
@@ -238,6 +241,7 @@ static enum robot_status told(const struct manipulator *arm, enum tool_path_stat
     case TOOL_PATH_OUTSIDE:
         why->value = fault->joint[fault->which];
         why->limit = why->value > j->high ? j->high : j->low;
+        why->slides = manipulator_slides(arm, fault->which);
         return ROBOT_OUTSIDE;
     default:
         why->which = manipulator_factor(arm, fault->joint, &why->value);
@@ -290,7 +294,40 @@ static struct tool_path_limits limits_of(const struct robot *r, const struct rob
     return l;
 }
 
-/* CCN 22: a move that turns first is two moves, which are accepted together or refused together; at
+bool robot_tilted(const struct manipulator *arm, const struct pose *pose, struct robot_refusal *why)
+{
+    const double tilt = manipulator_tilt(arm, pose);
+
+    if (tilt <= DOUBTFUL) {
+        return false;
+    }
+    why->value = tilt;
+    memcpy(why->place, pose->at, sizeof why->place);
+    return true;
+}
+
+/* Whether a path that turns the tool by a vector would tilt it as the arm cannot. A whole turn
+ * comes back to where it began, so of large ones the first radian is looked at. */
+static bool turns_over(const struct robot *r, const struct manipulator *arm,
+                       const struct pose *pose, const double by[3], struct robot_refusal *why)
+{
+    const double angle = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    struct pose p = *pose;
+    double q[4];
+
+    if (robot_tilted(arm, pose, why)) {
+        return true;
+    }
+    if (angle > 1.0) {
+        const double part[3] = { by[0] / angle, by[1] / angle, by[2] / angle };
+        quaternion_by_vector(part, q);
+        rear_turn(r, arm, p.turn);
+        quaternion_product(q, p.turn, p.turn);
+    }
+    return angle > 1.0 && robot_tilted(arm, &p, why);
+}
+
+/* CCN 23: a move that turns first is two moves, which are accepted together or refused together; at
  * its ends corners and stops are told apart. */
 static enum robot_status along(struct robot *r, const struct robot_config *c,
                                const struct robot_move *move, const struct pose *pose,
@@ -304,6 +341,9 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     const bool flows = robot_flows(r, c, move);
     struct pose rear;
 
+    if (turns_over(r, &arm, pose, by, why)) {
+        return ROBOT_TILTED;
+    }
     memcpy(began, r->rear_joint, sizeof began);
     memcpy(rear.at, r->rear, sizeof rear.at);
     rear_turn(r, &arm, rear.turn);
@@ -480,6 +520,21 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
     return ROBOT_OK;
 }
 
+/* Whether a move's target says nothing of joints that the arm has not. */
+static bool all_there(const struct manipulator *arm, const struct robot_target *t,
+                      struct robot_refusal *why)
+{
+    why->limit = manipulator_joints_of(arm);
+    for (int i = manipulator_joints_of(arm); i < OPW_JOINTS && t->by_joints; i++) {
+        if (t->joint[i] != 0.0) {
+            why->which = i;
+            return false;
+        }
+    }
+    why->limit = 0.0;
+    return true;
+}
+
 enum robot_status robot_move(struct robot *r, const struct robot_config *c,
                              const struct robot_move *move, struct robot_refusal *why)
 {
@@ -492,6 +547,9 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     }
     if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;
+    }
+    if (!all_there(&c->arm, &move->target, why)) {
+        return ROBOT_NO_JOINT;
     }
     if (robot_flows(r, c, move) ? trajectory_busy(&r->trajectory) || r->ring.count > 0
                                 : joint_flow_busy(&r->flow)) {

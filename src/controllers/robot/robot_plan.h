@@ -37,8 +37,16 @@ void robot_plan_joints(struct robot *r, const struct robot_config *c,
 enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
                                   const struct robot_move *move, struct robot_refusal *why);
 
+/* Flags that a target leaves open: those that it says, and those that the arm has not. */
+int robot_open_flags(const struct manipulator *arm, const struct robot_target *t);
+
 /* Branches of the inverse kinematics that a target allows, a bit each. */
-uint32_t robot_branches(const struct robot_target *t);
+uint32_t robot_branches(const struct manipulator *arm, const struct robot_target *t);
+
+/* Whether the arm has no joints that turn the tip to the attitude of a pose; *why says by how
+ * much. */
+bool robot_tilted(const struct manipulator *arm, const struct pose *pose,
+                  struct robot_refusal *why);
 
 /* Whether a move becomes part of the one curve of the joints. */
 bool robot_flows(const struct robot *r, const struct robot_config *c,

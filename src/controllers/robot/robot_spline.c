@@ -86,6 +86,7 @@ static enum robot_status judge(const struct robot *r, const struct manipulator *
         const struct manipulator_joint *j = &arm->joint[why->which];
         why->value = joint[why->which];
         why->limit = why->value > j->high ? j->high : j->low;
+        why->slides = manipulator_slides(arm, why->which);
         return ROBOT_OUTSIDE;
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
@@ -115,6 +116,9 @@ enum robot_status robot_to_spline(struct robot *r, const struct robot_config *c,
     }
     quaternion_normalise(target.turn);
     quaternion_normalise(next.turn);
+    if (robot_tilted(&arm, &target, why) || (move->goes_on && robot_tilted(&arm, &next, why))) {
+        return ROBOT_TILTED;
+    }
     for (int i = 0; i < OPW_JOINTS; i++) {
         start.r[i] = JOINT_CURVE_LEVER * r->rear_joint[i];
     }

@@ -2,8 +2,6 @@
 
 #include "controller_parts.h"
 
-static const double DEGREE = 0.017453292519943295;
-
 static bool taken(const struct controller *s)
 {
     return controller_running(s) || s->stopped || s->replaying >= 0;
@@ -42,7 +40,8 @@ enum robot_status controller_output(struct controller *s, struct order *order)
     return !taken(s) && controller_program_put(s, order) ? ROBOT_OK : ROBOT_BUSY;
 }
 
-int controller_taught(const struct controller *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT])
+int controller_taught(const struct controller *s, const struct controller_config *c, int32_t n,
+                      char line[ROBOT_JOB_POINT_TEXT])
 {
     struct robot_job_point p = { .kind = ROBOT_JOB_JOINTS,
                                  .shoulder = ROBOT_JOB_ANY,
@@ -54,7 +53,7 @@ int controller_taught(const struct controller *s, int32_t n, char line[ROBOT_JOB
                                  .user = ROBOT_JOB_ANY };
 
     for (int i = 0; i < OPW_JOINTS; i++) {
-        p.value[i] = s->taught[n].joint[i] / DEGREE;
+        p.value[i] = s->taught[n].joint[i] / manipulator_unit(&c->robot.arm, i);
     }
     return robot_job_point_write(n, &p, line);
 }

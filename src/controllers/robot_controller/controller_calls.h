@@ -25,6 +25,7 @@ enum robot_status controller_output(struct controller *s, struct order *order);
 
 /* Write a taught point, n = 0 .. s->taught_count - 1, as a line of a points file; as
  * robot_job_point_write. */
-int controller_taught(const struct controller *s, int32_t n, char line[ROBOT_JOB_POINT_TEXT]);
+int controller_taught(const struct controller *s, const struct controller_config *c, int32_t n,
+                      char line[ROBOT_JOB_POINT_TEXT]);
 
 #endif

@@ -19,7 +19,11 @@ enum robot_status controller_panel_jog(struct controller *s, const struct contro
     const double *d = panel->jog;
     const bool turns =
         panel->frame == ROBOT_IN_JOINTS || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0);
-    const double way = panel->jog_way * (turns ? DEGREE : 1.0);
+    double way = panel->jog_way * (turns ? DEGREE : 1.0);
+
+    for (int i = 0; i < OPW_JOINTS && panel->frame == ROBOT_IN_JOINTS; i++) {
+        way = d[i] != 0.0 ? panel->jog_way * manipulator_unit(&c->robot.arm, i) : way;
+    }
     const enum robot_status status =
         robot_jog(&s->robot, &c->robot, panel->frame, d, panel->jog_speed, way, why);
 

@@ -77,10 +77,11 @@ static void shift_target(const struct manipulator *arm, struct robot_target *t,
     if (t->by_joints) {
         t->by_joints = false;
         t->pose = manipulator_pose(arm, t->joint);
-        t->branch = opw_branch(&arm->opw, t->joint);
+        t->branch = manipulator_branch(arm, t->joint);
         t->turned = true;
         for (int i = 0; i < OPW_JOINTS; i++) {
-            t->turn[i] = (int)round(t->joint[i] / TURN);
+            const bool slides = manipulator_slides(arm, i);
+            t->turn[i] = slides ? ROBOT_ANY_TURN : (int)round(t->joint[i] / TURN);
         }
     }
     for (int i = 0; i < 3; i++) {
@@ -97,6 +98,9 @@ static void settle_wrist(const struct manipulator *arm, const struct robot *r, i
     double joint[OPW_JOINTS];
     int which;
 
+    if (!(manipulator_flags(arm) & OPW_FLIP)) {
+        return;
+    }
     memcpy(joint, r->joint, sizeof joint);
     t->branch &= ~OPW_FLIP;
     if (manipulator_solve(arm, &t->pose, 1u << t->branch, NULL, joint, &which) == MANIPULATOR_FAR) {

@@ -7,6 +7,8 @@
 
 static const double DEGREE = 0.017453292519943295;
 
+static const char NOT_THERE[] = "not 0, of a joint that the arm has not";
+
 /* A period may differ from whole clocks by so much. [clocks] */
 static const double ROUNDING = 1e-6;
 
@@ -51,19 +53,21 @@ static bool refuse(struct controller_wrong *w, const char *name, int32_t index, 
     return false;
 }
 
-/* The arm by its axes: origins and axes at zero, flange behind joint 6. */
+/* The arm by its axes: origins and axes at zero, flange behind the last joint. */
 static struct chain axes_of(const struct controller_settings *s)
 {
     const struct pose flange = pose_of(s->flange, s->flange + 3);
-    struct chain c = { .joints = OPW_JOINTS };
+    struct chain c = { .joints = s->joints };
 
-    for (int i = 0; i < OPW_JOINTS; i++) {
+    for (int i = 0; i < s->joints; i++) {
         const double *way = s->axis_origin + 3 * i, *axis = s->axis_direction + 3 * i;
         const double length = sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
         for (int k = 0; k < 3; k++) {
             c.joint[i].origin[k] = way[k];
             c.joint[i].axis[k] = axis[k] / length;
         }
+        c.joint[i].slides = s->joint_slides[i] == 1;
+        c.joint[i].level = s->joint_level[i];
     }
     for (int k = 0; k < 3; k++) {
         c.flange.at[k] = 1e-3 * flange.at[k];
@@ -75,7 +79,7 @@ static struct chain axes_of(const struct controller_settings *s)
 /* Whether an arm by its axes is one that the controller moves. */
 static bool axes_good(const struct controller_settings *s, struct controller_wrong *wrong)
 {
-    for (int i = 0; i < OPW_JOINTS; i++) {
+    for (int i = 0; i < s->joints; i++) {
         const double *axis = s->axis_direction + 3 * i;
         if (axis[0] == 0.0 && axis[1] == 0.0 && axis[2] == 0.0) {
             return refuse(wrong, "axis_direction", 3 * i, 0.0, "an axis without direction");
@@ -84,6 +88,20 @@ static bool axes_good(const struct controller_settings *s, struct controller_wro
             return refuse(wrong, "joint_sign", i, s->joint_sign[i],
                           "1 is wanted, as axis_direction has the sign");
         }
+        if (s->joint_level[i] > i) {
+            return refuse(wrong, "joint_level", i, s->joint_level[i], "more than joints before it");
+        }
+    }
+    for (int i = s->joints; i < OPW_JOINTS; i++) {
+        if (s->start_joint[i] != 0.0) {
+            return refuse(wrong, "start_joint", i, s->start_joint[i], NOT_THERE);
+        }
+    }
+    const struct chain axes = axes_of(s);
+    struct chain_form form;
+    chain_form_of(&axes, CHAIN_NONE, &form);
+    if (s->joints < OPW_JOINTS && form.kind == CHAIN_ITERATED) {
+        return refuse(wrong, "joints", 0, s->joints, "no SCARA, no palletizer, no gantry");
     }
     return s->singular != ROBOT_WRIST
            || refuse(wrong, "singular", 0, s->singular, "not of an arm by its axes");
@@ -113,6 +131,9 @@ bool controller_settings_good(const struct controller_settings *s, struct contro
     }
     if (s->arm_by == 1 && !axes_good(s, wrong)) {
         return false;
+    }
+    if (s->arm_by == 0 && s->joints != OPW_JOINTS) {
+        return refuse(wrong, "joints", 0, s->joints, "6 is wanted of an arm by its lengths");
     }
     return fpga_slot_most((enum fpga_format)s->pulse_format, s->slot_clocks) >= 1
            || refuse(wrong, "slot_clocks", 0, s->slot_clocks, "too short for a pulse");
@@ -148,11 +169,12 @@ static void set_robot(const struct controller_settings *s, struct robot_config *
         r->arm.by_axes = true;
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
+        const double unit = manipulator_unit(&r->arm, i);
         r->arm.opw.offset[i] = s->joint_offset[i] * DEGREE;
         r->arm.opw.sign[i] = s->joint_sign[i];
         r->arm.joint[i] =
-            (struct manipulator_joint){ s->joint_low[i] * DEGREE, s->joint_high[i] * DEGREE,
-                                        s->joint_speed[i] * DEGREE, s->joint_acc[i] * DEGREE };
+            (struct manipulator_joint){ s->joint_low[i] * unit, s->joint_high[i] * unit,
+                                        s->joint_speed[i] * unit, s->joint_acc[i] * unit };
         r->scale[i] = s->gear_ratio[i] * s->pulses_per_turn[i] / (360.0 * DEGREE);
     }
 }
@@ -209,10 +231,13 @@ void controller_configure(const struct controller_settings *s, struct controller
     c->seed = s->seed;
     for (int i = 0; i < OPW_JOINTS; i++) {
         c->servo |= (uint32_t)s->servo[i] << i;
-        c->zero[i] = s->start_joint[i] * DEGREE;
     }
     set_layers(s, &c->layers);
     set_robot(s, &c->robot);
     set_orders(s, &c->orders);
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        c->zero[i] = s->start_joint[i] * manipulator_unit(&c->robot.arm, i);
+        c->orders.slides[i] = manipulator_slides(&c->robot.arm, i);
+    }
     memcpy(c->orders.pulses, c->robot.scale, sizeof c->orders.pulses);
 }

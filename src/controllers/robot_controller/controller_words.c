@@ -5,7 +5,7 @@
 #include "elementary.h"
 #include "robot_job_decimal.h"
 
-static const double DEGREE = 0.017453292519943295;
+static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
 static const char *name_of(enum robot_status status)
 {
@@ -23,6 +23,8 @@ static const char *name_of(enum robot_status status)
     case ROBOT_NO_UNIT:      return "the normal of the arc is no unit vector";
     case ROBOT_NO_SPLINE:    return "two points of a spline in a row are the same";
     case ROBOT_NO_FLOW:      return "a spline needs moves that flow: soft.flow = true";
+    case ROBOT_TILTED:       return "the arm has no joint that turns the tool so";
+    case ROBOT_NO_JOINT:     return "no such joint";
     }
     return "";
 }
@@ -46,6 +48,7 @@ static void add_place(struct robot_job_text *t, const struct robot_refusal *r)
     robot_job_text_add(t, " mm");
 }
 
+/* CCN 18: a case for each refusal that has numbers, in the unit of its joint. */
 void controller_refusal_words(enum robot_status status, const struct robot_refusal *r,
                               char text[CONTROLLER_WORDS])
 {
@@ -57,9 +60,9 @@ void controller_refusal_words(enum robot_status status, const struct robot_refus
     case ROBOT_FAR: add_place(&t, r); break;
     case ROBOT_OUTSIDE:
         add(&t, ": joint ", r->which + 1);
-        add(&t, " to ", r->value / DEGREE);
-        add(&t, " deg, limit ", r->limit / DEGREE);
-        add(&t, " deg, at ", 100.0 * r->part);
+        add(&t, " to ", r->value / (r->slides ? MM : DEGREE));
+        add(&t, r->slides ? " mm, limit " : " deg, limit ", r->limit / (r->slides ? MM : DEGREE));
+        add(&t, r->slides ? " mm, at " : " deg, at ", 100.0 * r->part);
         robot_job_text_add(&t, " % of its path");
         break;
     case ROBOT_SINGULAR:
@@ -84,6 +87,14 @@ void controller_refusal_words(enum robot_status status, const struct robot_refus
         add(&t, ": ", r->value);
         add(&t, " mm off it, limit ", r->limit);
         robot_job_text_add(&t, " mm");
+        break;
+    case ROBOT_TILTED:
+        add(&t, ": ", r->value / DEGREE);
+        robot_job_text_add(&t, " deg from the tilt that its tool keeps");
+        break;
+    case ROBOT_NO_JOINT:
+        add(&t, ": joint ", r->which + 1);
+        add(&t, ", the arm has ", r->limit);
         break;
     case ROBOT_NO_UNIT: add(&t, ": its length is ", r->value); break;
     default:            break;

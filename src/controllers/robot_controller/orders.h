@@ -31,6 +31,7 @@ struct orders_config {
     bool block_delete, optional_stop, tool_stop;
     enum robot_singular singular;
     double pulses[OPW_JOINTS]; /* [pulses/rad] of the joints, signed as they are */
+    bool slides[OPW_JOINTS];   /* joints that are told in mm, not in degrees */
     int32_t lines;             /* most instructions of a job that one call carries out */
 };
 

@@ -1,7 +1,7 @@
 /* orders_job - the requests of a job as orders. */
 #include "orders_parts.h"
 
-static const double DEGREE = 0.017453292519943295;
+static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 /* Flags of the inverse kinematics for BACK, DOWN, FLIP of a configuration. */
 static const int FLAG[3] = { OPW_BACK, OPW_ELBOW, OPW_FLIP };
 
@@ -13,14 +13,15 @@ static struct pose frame_pose(const struct robot_job_frame *f)
 /* A point becomes a target. What its configuration leaves open is what is nearest, or on a path
  * what the path leads to. */
 static void target_of(struct robot_target *t, const struct robot_job_point *p,
-                      const struct robot_job_frame *user, const double pulses[OPW_JOINTS])
+                      const struct robot_job_frame *user, const struct orders_config *c)
 {
     static const int TURNED[3] = { 0, 3, 5 };
     const int32_t said[3] = { p->shoulder, p->elbow, p->wrist };
 
     t->by_joints = p->kind != ROBOT_JOB_POSE;
     for (int i = 0; i < OPW_JOINTS; i++) {
-        t->joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / pulses[i] : p->value[i] * DEGREE;
+        t->joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / c->pulses[i]
+                                                  : p->value[i] * (c->slides[i] ? MM : DEGREE);
         t->turn[i] = ROBOT_ANY_TURN;
     }
     const struct pose frame = frame_pose(user), there = pose_of(p->value, p->value + 3);
@@ -67,7 +68,7 @@ static void job_move(struct order *order, const struct robot_job_run *run,
     order->until_on = r->until_on;
     const struct robot_job_point *p = robot_job_place(run, t->job, t->points, r->point);
     if (r->increment == ROBOT_JOB_NOT_BY) {
-        target_of(&m->target, p, &t->points->user[r->user], c->pulses);
+        target_of(&m->target, p, &t->points->user[r->user], c);
         order->wrist = p->wrist >= ROBOT_JOB_WRIST_NEAR ? p->wrist : 0;
     } else {
         m->target.branch = ROBOT_ANY_BRANCH;
@@ -83,12 +84,12 @@ static void job_move(struct order *order, const struct robot_job_run *run,
     order->tool = frame_pose(&t->points->tool[r->tool]);
     if (m->kind == ROBOT_CIRCLE) {
         target_of(&order->via, robot_job_place(run, t->job, t->points, r->via),
-                  &t->points->user[r->user], c->pulses);
+                  &t->points->user[r->user], c);
     }
     m->goes_on = m->kind == ROBOT_SPLINE && r->next >= 0;
     if (m->goes_on) {
         target_of(&order->via, robot_job_place(run, t->job, t->points, r->next),
-                  &t->points->user[r->next_user], c->pulses);
+                  &t->points->user[r->next_user], c);
     }
 }
 

@@ -3,8 +3,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double DEGREE = 0.017453292519943295;
-
 struct robot_station_config robot_station_defaults(void)
 {
     return (struct robot_station_config){
@@ -118,8 +116,9 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double scale = s->config.robot.scale[i], at = controller->origin[i];
         joint[i] = (at + (double)r->pulses[i]) / scale;
-        r->joint[i] = joint[i] / DEGREE;
-        r->joint_command[i] = controller->joint[i] / DEGREE;
+        const double unit = manipulator_unit(&arm, i);
+        r->joint[i] = joint[i] / unit;
+        r->joint_command[i] = controller->joint[i] / unit;
         due += (double)llround(controller->joint[i] * scale) != at + (double)r->pulses[i];
     }
     arm.tool = controller->robot.tool;

@@ -70,8 +70,7 @@ void chain_forward(const struct chain *c, const double joint[CHAIN_JOINTS], stru
     chain_axes_at(c, joint, &s, pose);
 }
 
-/* The joint whose link a linkage keeps from being tilted by joint k; -1: none does. */
-static int levelled(const struct chain *c, int k)
+int chain_levelled(const struct chain *c, int k)
 {
     for (int i = k + 1; i < c->joints; i++) {
         if (i - c->joint[i].level <= k) {
@@ -81,23 +80,31 @@ static int levelled(const struct chain *c, int k)
     return -1;
 }
 
+void chain_column(const struct chain *c, const struct chain_axes *axes, int k, const double at[3],
+                  double column[6])
+{
+    const int pivot = chain_levelled(c, k);
+    double arm[3];
+
+    memset(column, 0, 6 * sizeof *column);
+    if (c->joint[k].slides) {
+        memcpy(column, axes->axis[k], sizeof arm);
+        return;
+    }
+    vector3_add(pivot < 0 ? at : axes->origin[pivot], -1.0, axes->origin[k], arm);
+    vector3_cross(axes->axis[k], arm, column);
+    if (pivot < 0) {
+        memcpy(column + 3, axes->axis[k], sizeof arm);
+    }
+}
+
 void chain_jacobian(const struct chain *c, const double joint[CHAIN_JOINTS],
                     struct chain_pose *pose, double column[CHAIN_JOINTS][6])
 {
-    static const double none[3] = { 0.0, 0.0, 0.0 };
     struct chain_axes s;
 
     chain_axes_at(c, joint, &s, pose);
     for (int k = 0; k < c->joints; k++) {
-        const int pivot = levelled(c, k);
-        double arm[3];
-        if (c->joint[k].slides) {
-            memcpy(column[k], s.axis[k], sizeof arm);
-            memcpy(column[k] + 3, none, sizeof none);
-            continue;
-        }
-        vector3_add(pivot < 0 ? pose->at : s.origin[pivot], -1.0, s.origin[k], arm);
-        vector3_cross(s.axis[k], arm, column[k]);
-        memcpy(column[k] + 3, pivot < 0 ? s.axis[k] : none, sizeof none);
+        chain_column(c, &s, k, pose->at, column[k]);
     }
 }

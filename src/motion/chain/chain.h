@@ -52,6 +52,14 @@ struct chain_axes {
 void chain_axes_at(const struct chain *c, const double joint[CHAIN_JOINTS], struct chain_axes *axes,
                    struct chain_pose *pose);
 
+/* Motion of a place [m] that the flange carries, for a unit rate of joint k: its velocity [m] or,
+ * of a sliding joint, [1], and its turning [1], base frame. */
+void chain_column(const struct chain *c, const struct chain_axes *axes, int k, const double at[3],
+                  double column[6]);
+
+/* The joint (0 ..) whose link a linkage keeps from being tilted by joint k; -1: none does. */
+int chain_levelled(const struct chain *c, int k);
+
 /* The same with the motion of the flange for a unit rate of each joint: its velocity [m] or, of a
  * sliding joint, [1], and its turning [1], base frame. */
 void chain_jacobian(const struct chain *c, const double joint[CHAIN_JOINTS],

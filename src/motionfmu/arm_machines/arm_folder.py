@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from motionfmu.arm_machines.arm_values import ArmValues, TakenValue, arm_values
-from motionfmu.arm_machines.machine_arm import BY_AXES, BY_LENGTHS, arm_machine, in_degrees
+from motionfmu.arm_machines.machine_arm import BY_AXES, BY_LENGTHS, arm_machine
 from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry, driven_geometry
-from motionfmu.arms.arm_description import ArmDescription
+from motionfmu.arms.arm_description import ArmDescription, ArmJoint
 from motionfmu.arms.arm_geometry import ROUNDING, NoOpwGeometry
 from motionfmu.base.errors import InputError
 from motionfmu.base.new_folder import new_folder
@@ -23,6 +23,7 @@ from motionfmu.virtual.robot import Kinematics
 LIKE = "robot6"  # the machine whose controller, card and drives an arm gets
 _OF_A_RUN = ("machine", "stop", "set")
 LINE = 0.15  # length of the example's line per reach of the arm
+COUNTS = ("one", "two", "three", "four", "five", "six")
 STEPS = 20  # at which the line is tried
 FURTHEST = 30.0  # [deg] that a joint turns between two of them
 
@@ -61,7 +62,9 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
     try:
         geometry = driven_geometry(arm)
     except NoOpwGeometry as error:
-        told = "it cannot be driven yet: the controller moves six joints that turn"
+        told = (
+            "it cannot be driven yet: the controller moves six joints that turn, SCARAs, gantries"
+        )
         raise InputError(f"{source}: {arm.name} is {error}; {told}") from None
     like = arm_machine(machine(LIKE))
     values = arm_values(arm, geometry, like)
@@ -70,9 +73,16 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
     if isinstance(geometry, AxesGeometry):
         plants = {BY_LENGTHS: BY_AXES}
         tables["component"] = {n: plants.get(f, f) for n, f in tables["component"].items()}
+        slides = geometry.sliding
+        tables["axis"] = [
+            {**row, "kind": "linear" if k in slides else row["kind"]}
+            for k, row in enumerate(tables["axis"][: len(arm.joints)])
+        ]
     kept = {k: v for k, v in like.tables["set"].items() if k not in _given(values)}
     kept = {k: v for k, v in kept.items() if k not in ("soft.tool", "arm.paper_height")}
-    about = f"{arm.name}, an arm of six joints, from {source}: its drives, card and controller."
+    about = (
+        f"{arm.name}, an arm of {joint_count(arm)}, from {source}: its drives, card, controller."
+    )
     with new_folder(folder) as part:
         lines = [f"# {about}", *_machine_lines(tables, kept, values, source)]
         (part / package_files.MACHINE).write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -143,12 +153,15 @@ def _readme(
     )
     joints = values.arm.joints
     yield "| joint | " + " | ".join(j.name for j in joints) + " |"
-    yield "|" + "---|" * 7
+    yield "|" + "---|" * (len(joints) + 1)
+    some = any(j.slides for j in joints)  # has units of its own
     rows = {
-        "range [°]": [f"{lo:.4g} .. {hi:.4g}" for lo, hi in _ranges(values)],
-        "speed [°/s]": _cells(in_degrees(np.array([j.speed for j in joints]))),
-        "acceleration [°/s²]": _cells(in_degrees(np.array([j.acceleration for j in joints]))),
-        "gear ratio": _cells([float(j.ratio or 0.0) for j in joints]),
+        f"range [°{', mm' * some}]": [f"{lo:.4g} .. {hi:.4g}" for lo, hi in _ranges(values)],
+        f"speed [°/s{', mm/s' * some}]": _cells([_told(j, j.speed) for j in joints]),
+        f"acceleration [°/s²{', mm/s²' * some}]": _cells(
+            [_told(j, float(j.acceleration or 0.0)) for j in joints]
+        ),
+        f"gear ratio{', rad/m' * some}": _cells([float(j.ratio or 0.0) for j in joints]),
         "mass [kg]": _cells([j.link.mass for j in joints]),
     }
     for what, cells in rows.items():
@@ -175,7 +188,25 @@ def taken_lines(taken: list[TakenValue]) -> list[str]:
 
 
 def _ranges(values: ArmValues) -> list[tuple[float, float]]:
-    return [(math.degrees(j.low), math.degrees(j.high)) for j in values.arm.joints]
+    return [(_told(j, j.low), _told(j, j.high)) for j in values.arm.joints]
+
+
+def _told(joint: ArmJoint, value: float) -> float:
+    return 1e3 * value if joint.slides else math.degrees(value)
+
+
+def joint_count(arm: ArmDescription) -> str:
+    """Number of an arm's joints, as words.
+
+    Parameters
+    ----------
+    arm : ArmDescription
+
+    Returns
+    -------
+    str
+    """
+    return f"{COUNTS[len(arm.joints) - 1]} joints"
 
 
 def _cells(values: list[float]) -> list[str]:
@@ -185,7 +216,7 @@ def _cells(values: list[float]) -> list[str]:
 def _example(values: ArmValues) -> tuple[str, str] | None:
     """A job of a joint move and a line from the start pose, and its points; None if none fits."""
     arm = Kinematics(**values.controller)
-    start = np.degrees(values.start)
+    start = np.array(values.start)
     here = arm.forward(start)
     size = 1e3 * LINE * values.reach
     for way in (*_ways(size), *_ways(size / 3.0)):

@@ -40,6 +40,11 @@ RATIOS = (30, 50, 80, 100, 120, 160)  # of strain wave gears
 MOTOR_SPEED = 4500.0 / 60.0 * 2.0 * math.pi  # [rad/s] at a joint's highest speed, at most
 ENDLESS = math.radians(3600.0)  # what the controller takes for a joint without ends
 SPARE = 3.0  # torque limit of a motor per what the motion asks for, as servo motors bear at peak
+LEADS = (5, 10, 16, 20, 25, 32, 40, 50, 63, 80)  # [mm] of ball screws
+# Of a ball screw at a slide: lost motion, errors once and twice per turn, where its zero is [m].
+SCREW = {"lost_motion": 1e-5, "transmission_error_1": 3e-6, "transmission_error_2": 1e-6}
+SCREW_ZERO = 1e-4
+SLIDE_SPEED = 1.0  # [m/s] of a slide whose file has none
 EXACT = 10  # digits of geometry in degrees
 STATES, SEED = 400, 1  # random states for largest torques and inertias
 # Inner angles at the start: upper arm upright, forearm level, hand down.
@@ -63,7 +68,7 @@ class ArmValues:
     arm: ArmDescription  # with what was taken
     groups: dict[str, dict[str, Any]]
     taken: list[TakenValue]
-    start: Array  # joint angles [rad]
+    start: list[float]  # joints [deg], that slide [mm], of all six places
     reach: float  # [m]
 
     @property
@@ -85,6 +90,8 @@ class _Values:
         self.geometry, self.like = geometry, like
         self.taken: list[TakenValue] = []
         self.size = geometry.reach / like.geometry.reach
+        self.slides = getattr(geometry, "sliding", [])
+        self.count = len(arm.joints)
         self.arm = self._moving(self._massive(arm))
 
     def all(self) -> ArmValues:
@@ -97,7 +104,19 @@ class _Values:
             "payload": self._payload(),
         }
         groups |= self._drive()
-        return ArmValues(self.arm, groups, self.taken, start, self.geometry.reach)
+        shown = groups["what controller and arm share"]["*.start_joint"]
+        return ArmValues(self.arm, groups, self.taken, shown, self.geometry.reach)
+
+    def _told(self, values: Sequence[float] | Array, digits: int = 6) -> list[float]:
+        """Joints as people give them: degrees, of those that slide mm."""
+        found = in_degrees(np.asarray(values, dtype=float), digits)
+        for k in self.slides:
+            found[k] = round(1e3 * float(values[k]), digits) + 0.0
+        return found
+
+    def _six(self, values: Sequence[Any], other: Any) -> list[Any]:
+        """Values of all places, of which an arm has the first ones."""
+        return [*values, *[other] * (SIX - self.count)]
 
     def _take(self, what: str, names: str, value: Any, why: str) -> None:
         self.taken.append(TakenValue(what, names, _shown(value), why))
@@ -137,23 +156,28 @@ class _Values:
         self._take(f"mass, centre, inertia of {names}", parameters, masses, why)
         return replace(arm, joints=tuple(joints))
 
+    # CCN 19: each kind of number that a joint lacks is taken and told by itself.
     def _moving(self, arm: ArmDescription) -> ArmDescription:
         """With speeds, ranges, accelerations and gears for joints that have none."""
         joints = [self._limited(k, j) for k, j in enumerate(arm.joints)]
         name = self.like.machine.name
         if bare := [k for k, j in enumerate(arm.joints) if math.isinf(j.speed)]:
-            speeds = in_degrees(np.array([j.speed for j in joints]))
+            speeds = self._told([j.speed for j in joints])
             what = f"speed of joints {_numbered(bare)}"
-            self._take(what, "soft.joint_speed", speeds, f"°/s; of {name}")
+            unit = "°/s, mm/s" if self.slides else "°/s"
+            self._take(what, "soft.joint_speed", speeds, f"{unit}; of {name}")
         if any(j.acceleration is None for j in arm.joints):
-            found = in_degrees(np.array([j.acceleration for j in joints]))
-            why = f"°/s²; full speed in the time of {name}, 0.25 to 0.35 s"
+            found = self._told([float(j.acceleration or 0.0) for j in joints])
+            unit = "°/s², mm/s²" if self.slides else "°/s²"
+            why = f"{unit}; full speed in the time of {name}, 0.25 to 0.35 s"
             self._take("acceleration", "soft.joint_acc", found, why)
         if endless := [k for k, j in enumerate(arm.joints) if math.isinf(j.low)]:
             what = f"range of joints {_numbered(endless)}, which have none"
             self._take(what, "soft.joint_low", math.degrees(ENDLESS), "° both ways")
         if any(j.ratio is None for j in arm.joints):
             why = "the highest of strain wave gears with 4500 rpm at full speed"
+            if self.slides:
+                why += "; of what slides rad/m of the shortest lead that allows it"
             names = "soft.gear_ratio, arm.gear_ratio"
             self._take("gear ratio", names, [j.ratio for j in joints], why)
         return replace(arm, joints=tuple(joints))
@@ -161,7 +185,11 @@ class _Values:
     def _limited(self, k: int, joint: ArmJoint) -> ArmJoint:
         known = self.like.arm.joints[k]
         speed = known.speed if math.isinf(joint.speed) else joint.speed
-        fits = [n for n in RATIOS if n * speed <= MOTOR_SPEED]
+        ratios: tuple[float, ...] = RATIOS
+        if joint.slides:
+            speed = min(speed, SLIDE_SPEED) if math.isinf(joint.speed) else speed
+            ratios = tuple(2.0 * math.pi / (1e-3 * lead) for lead in reversed(LEADS))
+        fits = [n for n in ratios if n * speed <= MOTOR_SPEED]
         ratio = fits[-1] if fits else max(1, int(MOTOR_SPEED / speed))
         time = known.speed / float(known.acceleration or 1.0)
         return replace(
@@ -187,8 +215,9 @@ class _Values:
         """The start pose as joint angles within their ranges."""
         if isinstance(self.geometry, AxesGeometry):
             start = bent_pose(self.geometry, self.arm)
-            self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
-                       "°; far from singular, the hand down if the ranges let it")  # fmt: skip
+            unit = "°, mm" if self.slides else "°"
+            why = f"{unit}; far from singular, the hand down if the ranges let it"
+            self._take("start pose", "soft.start_joint, arm.start_joint", self._told(start), why)
             return start
         signs, offsets = np.asarray(self.geometry.signs), np.asarray(self.geometry.offsets)
         wanted = signs * (START + offsets)
@@ -216,10 +245,14 @@ class _Values:
         tip = [*(round(1e3 * x, 9) + 0.0 for x in place), *angles]
         by: dict[str, Any]
         if isinstance(geometry, AxesGeometry):
-            by = {
-                "soft.arm_by": 1,
-                "*.axis_origin": geometry.origins.ravel().tolist(),
-                "*.axis_direction": geometry.axes.ravel().tolist(),
+            by, none = {"soft.arm_by": 1}, SIX - self.count
+            if self.count < SIX or self.slides:
+                by["*.joints"] = self.count
+                slides = [int(k in self.slides) for k in range(self.count)]
+                by["*.joint_slides"] = self._six(slides, 0)
+            by |= {
+                "*.axis_origin": geometry.origins.ravel().tolist() + [0.0, 0.0, 0.0] * none,
+                "*.axis_direction": geometry.axes.ravel().tolist() + [0.0, 0.0, 1.0] * none,
                 "soft.flange": tip,
                 "soft.joint_offset": [0.0] * SIX,
             }
@@ -230,8 +263,8 @@ class _Values:
             by["soft.tool"] = tip
         return {
             **by,
-            "*.gear_ratio": [j.ratio for j in self.arm.joints],
-            "*.start_joint": in_degrees(start),
+            "*.gear_ratio": self._six([j.ratio for j in self.arm.joints], 1.0),
+            "*.start_joint": self._six(self._told(start), 0.0),
             "arm.tool_place": place,
             "arm.tool_turn": angles,
             "arm.tool_length": 0.0,
@@ -240,10 +273,12 @@ class _Values:
     def _limits(self) -> dict[str, Any]:
         joints = self.arm.joints
         return {
-            "soft.joint_low": in_degrees(np.array([j.low for j in joints])),
-            "soft.joint_high": in_degrees(np.array([j.high for j in joints])),
-            "soft.joint_speed": in_degrees(np.array([j.speed for j in joints])),
-            "soft.joint_acc": in_degrees(np.array([j.acceleration for j in joints])),
+            "soft.joint_low": self._six(self._told([j.low for j in joints]), -1.0),
+            "soft.joint_high": self._six(self._told([j.high for j in joints]), 1.0),
+            "soft.joint_speed": self._six(self._told([j.speed for j in joints]), 1.0),
+            "soft.joint_acc": self._six(
+                self._told([float(j.acceleration or 0.0) for j in joints]), 1.0
+            ),
         }
 
     def _links(self) -> dict[str, Any]:
@@ -255,11 +290,12 @@ class _Values:
             centers += [_round(x) for x in link.center]
             moments += [_round(link.tensor[k, k]) for k in range(3)]
             products += [_round(link.tensor[i, j]) for i, j in ((0, 1), (1, 2), (2, 0))]
+        none = [0.0] * 3 * (SIX - self.count)
         return {
-            "arm.mass": masses,
-            "arm.center": centers,
-            "arm.inertia": [max(0.0, x) for x in moments],
-            "arm.product": products,
+            "arm.mass": self._six(masses, 0.0),
+            "arm.center": centers + none,
+            "arm.inertia": [max(0.0, x) for x in moments] + none,
+            "arm.product": products + none,
         }
 
     def _payload(self) -> dict[str, Any]:
@@ -279,8 +315,12 @@ class _Values:
         known = self._loaded(like.arm, like.geometry, self._payload_of(like))
         torque, inertia = _demands(loaded)
         torque_like, inertia_like = _demands(known)
-        t, m = torque / torque_like, inertia / inertia_like
+        none = np.zeros(SIX - self.count)  # of joints that are not there, all is as of the other's
+        torque = np.concatenate([torque, torque_like[self.count :]])
+        t, m = torque / torque_like, np.concatenate([inertia, none]) / inertia_like
+        m[self.count :] = 1.0
         ratio = np.array([j.ratio for j in self.arm.joints], dtype=float)
+        ratio = np.concatenate([ratio, like.of(PLANT, "gear_ratio")[self.count :]])
         geared = like.of(PLANT, "gear_ratio") / ratio
         motor, friction, stiff = m * geared**2, t * geared, np.maximum(t, m)
         slow = np.maximum(1.0, friction / motor)  # keeps friction no steeper than the other's
@@ -302,19 +342,24 @@ class _Values:
             "arm.gear_damping": scaled(PLANT, "gear_damping", stiff),
             "arm.link_viscous": scaled(PLANT, "link_viscous", t),
         }
-        moved = self.size * like.of(PLANT, "origin_error").ravel()
-        errors = {"arm.origin_error": [_round(x) for x in moved]}
+        moved = self.size * like.of(PLANT, "origin_error")
+        moved[self.count :] = 0.0
+        errors = {"arm.origin_error": [_round(x) for x in moved.ravel()]}
+        if self.slides or self.count < SIX:
+            errors |= self._screw_errors()
         if any(j.damping for j in self.arm.joints):
             usual = gears["arm.link_viscous"]
-            given = [j.damping or v for j, v in zip(self.arm.joints, usual, strict=True)]
-            gears["arm.link_viscous"] = given
+            given = [j.damping or v for j, v in zip(self.arm.joints, usual, strict=False)]
+            gears["arm.link_viscous"] = [*given, *usual[self.count :]]
         gains = {
             "drives.velocity_gain": scaled(DRIVES, "velocity_gain", motor),
-            "drives.torque_limit": self._torque_limits(torque, motors),
+            "drives.torque_limit": self._six(self._torque_limits(torque, motors), 1.0),
         }
-        speeds = np.array([j.speed for j in self.arm.joints]) * ratio * 60.0 / (2.0 * math.pi)
+        speeds = np.array([j.speed for j in self.arm.joints]) * ratio[: self.count]
+        speeds *= 60.0 / (2.0 * math.pi)
         if max(speeds) > 5000.0:
-            gains["drives.speed_limit"] = [float(round(max(5000.0, 1.1 * s))) for s in speeds]
+            wanted = [float(round(max(5000.0, 1.1 * s))) for s in speeds]
+            gains["drives.speed_limit"] = self._six(wanted, 5000.0)
         name = like.machine.name
         self._take("motors, their friction", "arm.motor_*", motors["arm.motor_inertia"],
                    f"kg·m²; of {name} by inertia and torque of this arm's own motion")  # fmt: skip
@@ -325,6 +370,21 @@ class _Values:
         self._take("gains of the drives", "drives.velocity_gain", gains["drives.velocity_gain"],
                    f"N·m·s/rad; of {name} by the motors' inertia, for margins")  # fmt: skip
         return {"motors": motors, "gears": gears, "errors": errors, "drives": gains}
+
+    def _screw_errors(self) -> dict[str, list[float]]:
+        """Errors of gears where some joints have ball screws, and some are not there."""
+        found = {}
+        for name, value in (SCREW | {"zero_error": SCREW_ZERO}).items():
+            values = self.like.of(PLANT, name).copy()
+            values[self.slides] = value
+            if name == "zero_error":
+                values[self.count :] = 0.0
+            found[f"arm.{name}"] = [_round(x) for x in values]
+        if self.slides:
+            shown = [1e6 * SCREW["lost_motion"]]
+            self._take("errors of the ball screws", ", ".join(found), shown,
+                       "µm of lost motion; usual ones")  # fmt: skip
+        return found
 
     def _torque_limits(self, torque: Array, motors: dict[str, list[float]]) -> list[float]:
         """Torque limits of the motors: of the description if they bear the motion."""
@@ -339,7 +399,8 @@ class _Values:
                 continue
             found.append(float(f"{SPARE * need:.4g}"))
             if joint.effort:
-                weak.append(f"{joint.name}: {joint.effort:g} of {need * ratio:.4g} N·m")
+                unit = "N" if joint.slides else "N·m"
+                weak.append(f"{joint.name}: {joint.effort:g} of {need * ratio:.4g} {unit}")
         if weak:
             why = f"N·m of the motors; the description's is too small: {', '.join(weak)}"
             what = "torque that bears payload and accelerations"
@@ -380,15 +441,19 @@ def _demands(arm: ArmDescription) -> tuple[Array, Array]:
     """Largest torque of each joint at its limits, and largest inertia that it feels."""
     random = np.random.default_rng(SEED)
     joints = arm.joints
-    q = random.uniform(-math.pi, math.pi, (STATES, SIX))
-    sign = random.choice([-1.0, 1.0], (2, STATES, SIX))
+    count = len(joints)
+    q = random.uniform(-math.pi, math.pi, (STATES, count))
+    for k, joint in enumerate(joints):
+        if joint.slides:  # its range for the turn
+            q[:, k] = joint.low + (q[:, k] / math.pi + 1.0) / 2.0 * (joint.high - joint.low)
+    sign = random.choice([-1.0, 1.0], (2, STATES, count))
     v = sign[0] * np.array([j.speed for j in joints])
     acceleration = sign[1] * np.array([j.acceleration for j in joints], dtype=float)
     torque = np.abs(arm.inverse_dynamics(q, v, acceleration)).max(axis=0)
     still = np.zeros_like(q)
     inertia = [
-        arm.inverse_dynamics(q, still, still + np.eye(SIX)[k], (0, 0, 0))[:, k].max()
-        for k in range(SIX)
+        arm.inverse_dynamics(q, still, still + np.eye(count)[k], (0, 0, 0))[:, k].max()
+        for k in range(count)
     ]
     found = np.array(inertia)
     if min(found) <= 0.0 or min(torque) <= 0.0:

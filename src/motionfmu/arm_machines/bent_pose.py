@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from motionfmu.arms.arm_axes import AxesGeometry
-from motionfmu.arms.arm_description import ArmDescription, Array
+from motionfmu.arms.arm_description import ArmDescription, ArmJoint, Array
 from motionfmu.base.errors import InputError
 
 EIGHTHS = math.pi / 4.0 * np.arange(-4, 5)  # [rad] tried at joints 2 to 5
@@ -20,7 +20,7 @@ def bent_pose(geometry: AxesGeometry, arm: ArmDescription) -> Array:
     Of poses whose Jacobian has half the largest least singular value, the hand down in them if any
     has it so, the one that keeps elbow and hand highest. An InputError says that all are singular.
     """
-    choices = [_choices(k, j.low, j.high) for k, j in enumerate(arm.joints)]
+    choices = [_choices(k, j, len(arm.joints) - 1) for k, j in enumerate(arm.joints)]
     q = np.array(list(product(*choices)))
     frames = geometry.frames(q)
     tip = frames[-1] @ geometry.flange
@@ -28,7 +28,8 @@ def bent_pose(geometry: AxesGeometry, arm: ArmDescription) -> Array:
     jacobian[:, :3] /= geometry.reach
     least = np.linalg.svd(jacobian, compute_uv=False)[:, -1]
     if least.max() < LEAST:
-        told = "its axes leave the hand fewer than six ways to move, wherever the joints are"
+        ways = "six" if len(arm.joints) == 6 else str(len(arm.joints))
+        told = f"its axes leave the hand fewer than {ways} ways to move, wherever the joints are"
         raise InputError(f"{arm.name}: {told}")
     free = least > max(LEAST, 0.5 * least.max())
     heights = np.min([*(f[:, 2, 3] for f in frames[2:]), tip[:, 2, 3]], axis=0)
@@ -39,10 +40,13 @@ def bent_pose(geometry: AxesGeometry, arm: ArmDescription) -> Array:
     return np.asarray(q[order[0]])
 
 
-def _choices(k: int, low: float, high: float) -> list[float]:
-    """Angles tried of a joint; joints 1 and 6 turn all of the arm and the hand alone."""
+def _choices(k: int, joint: ArmJoint, last: int) -> list[float]:
+    """Angles tried of a joint; the first turns all of the arm, the last the hand alone."""
+    low, high = joint.low, joint.high
+    if joint.slides:
+        return [(low + high) / 2.0]
     middle = min(max(0.0, low), high)
-    if k in (0, 5):
+    if k in (0, last):
         return [middle if low < middle < high else (low + high) / 2.0]
     margin = 0.05 * (high - low)
     within = [float(a) for a in EIGHTHS if low + margin <= a <= high - margin]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry
 from motionfmu.arms.arm_description import (
+    PRISMATIC,
     ArmDescription,
     ArmJoint,
     RigidLink,
@@ -115,9 +116,11 @@ def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
     frame = placed(values[f"{PLANT}.tool_place"], turn_of(*turn))
     tip = frame @ placed([0.0, 0.0, float(values[f"{PLANT}.tool_length"])])
     if f"{PLANT}.axis_origin" in values:
-        axes = values[f"{PLANT}.axis_direction"]
+        count = int(values[f"{PLANT}.joints"])
+        axes = values[f"{PLANT}.axis_direction"][:count]
         axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
-        return AxesGeometry(values[f"{PLANT}.axis_origin"], axes, tip)
+        slides = tuple(bool(s) for s in values[f"{PLANT}.joint_slides"][:count])
+        return AxesGeometry(values[f"{PLANT}.axis_origin"][:count], axes, tip, slides=slides)
     lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
     signs = tuple(int(s) for s in values[f"{PLANT}.joint_sign"])
     offsets = tuple(float(x) for x in values[f"{PLANT}.joint_offset"])
@@ -127,20 +130,22 @@ def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
 def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDescription:
     """Links as the plant has them, limits as the controller has them."""
     joints = []
+    sliding = geometry.sliding if isinstance(geometry, AxesGeometry) else []
     for k, (origin, axis) in enumerate(geometry.joint_frames):
         xx, yy, zz = values[f"{PLANT}.inertia"][k]
         xy, yz, zx = values[f"{PLANT}.product"][k]
         tensor = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
         ratio = float(values[f"{PLANT}.gear_ratio"][k])
+        unit = 1e-3 / math.radians(1.0) if k in sliding else 1.0  # mm where others have degrees
         joints.append(
             ArmJoint(
                 name=f"joint_{k + 1}",
-                kind="revolute",
+                kind=PRISMATIC if k in sliding else "revolute",
                 origin=origin,
                 axis=axis,
-                low=float(values[f"{CONTROLLER}.joint_low"][k]),
-                high=float(values[f"{CONTROLLER}.joint_high"][k]),
-                speed=float(values[f"{CONTROLLER}.joint_speed"][k]),
+                low=unit * float(values[f"{CONTROLLER}.joint_low"][k]),
+                high=unit * float(values[f"{CONTROLLER}.joint_high"][k]),
+                speed=unit * float(values[f"{CONTROLLER}.joint_speed"][k]),
                 link=RigidLink(
                     f"link_{k + 1}",
                     float(values[f"{PLANT}.mass"][k]),
@@ -148,7 +153,7 @@ def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDe
                     tensor,
                 ),
                 effort=ratio * float(values[f"{DRIVES}.torque_limit"][k]),
-                acceleration=float(values[f"{CONTROLLER}.joint_acc"][k]),
+                acceleration=unit * float(values[f"{CONTROLLER}.joint_acc"][k]),
                 ratio=ratio,
                 damping=float(values[f"{PLANT}.link_viscous"][k]),
             )

@@ -1,4 +1,4 @@
-"""An arm of six turning joints by the lines of its axes, whatever its kind."""
+"""An arm of up to six joints by the lines of its axes, whatever its kind."""
 
 from dataclasses import dataclass, replace
 
@@ -6,9 +6,12 @@ import numpy as np
 
 from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
 from motionfmu.arms.arm_geometry import (
+    ANGLE,
     SIX,
     NoOpwGeometry,
     OpwGeometry,
+    is_gantry,
+    is_scara,
     kind_of,
     opw_geometry,
     turns_six,
@@ -16,6 +19,7 @@ from motionfmu.arms.arm_geometry import (
 
 # Angles of joints 2, 3, 4 at which the reach is looked for; it is 1 % too short at most.
 STEPS = 24
+STATES, SEED = 200, 1  # random states at which a deviation is measured
 # [m] and [1]: below them lengths and directions are the arithmetic's.
 DIGITS = 12
 MOST_DEVIATION = 1e-3  # [m] of seven lengths from the description
@@ -27,30 +31,36 @@ class AxesGeometry:
 
     Attributes
     ----------
-    origins : (6, 3) ndarray
+    origins : (joints, 3) ndarray
         Origin of a joint from that of the one before it, of the base for joint 1 [m].
-    axes : (6, 3) ndarray
+    axes : (joints, 3) ndarray
         Unit vectors.
     flange : (4, 4) ndarray
-        The arm's tip from the origin of joint 6 [m].
+        The arm's tip from the origin of the last joint [m].
     why : str
         What keeps it from being an arm by seven lengths.
+    slides : tuple of bool
+        Of the joints; none given: all turn.
+    deviation : float
+        Of the tip from the description, whose angles are rounded [m].
     """
 
     origins: Array
     axes: Array
     flange: Array
     why: str = ""
+    slides: tuple[bool, ...] = ()
+    deviation: float = 0.0
 
     @property
-    def deviation(self) -> float:
-        """None: the axes are the chain."""
-        return 0.0
+    def sliding(self) -> list[int]:
+        """Places of the joints that slide."""
+        return [k for k, slides in enumerate(self.slides) if slides]
 
     @property
     def straight(self) -> Array:
         """Joint angles at which frames are parallel to the base [rad]."""
-        return np.zeros(SIX)
+        return np.zeros(len(self.axes))
 
     @property
     def base(self) -> Array:
@@ -67,8 +77,8 @@ class AxesGeometry:
 
         Parameters
         ----------
-        q : (..., 6) array_like
-            Joint angles [rad].
+        q : (..., joints) array_like
+            [rad], of sliding joints [m].
 
         Returns
         -------
@@ -79,7 +89,10 @@ class AxesGeometry:
         frame, found = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)), []
         for k, (origin, axis) in enumerate(zip(self.origins, self.axes, strict=True)):
             step = np.broadcast_to(placed(origin), frame.shape).copy()
-            step[..., :3, :3] = about(axis, q[..., k])
+            if k in self.sliding:
+                step[..., :3, 3] += axis * q[..., k, None]
+            else:
+                step[..., :3, :3] = about(axis, q[..., k])
             frame = frame @ step
             found.append(frame)
         return found
@@ -89,18 +102,20 @@ class AxesGeometry:
 
         Parameters
         ----------
-        q : (..., 6) array_like
-            Joint angles [rad].
+        q : (..., joints) array_like
+            [rad], of sliding joints [m].
 
         Returns
         -------
-        (..., 6, 6) ndarray
+        (..., 6, joints) ndarray
             Rows of the velocity first [m/rad], [1].
         """
         frames = self.frames(q)
         tip = (frames[-1] @ self.flange)[..., :3, 3]
         turns = [f[..., :3, :3] @ a for f, a in zip(frames, self.axes, strict=True)]
         ways = [np.cross(t, tip - f[..., :3, 3]) for t, f in zip(turns, frames, strict=True)]
+        for k in self.sliding:
+            ways[k], turns[k] = turns[k], np.zeros_like(turns[k])
         return np.concatenate([np.stack(ways, -1), np.stack(turns, -1)], -2)
 
     @property
@@ -110,6 +125,8 @@ class AxesGeometry:
         The wrist is the point of axis 5 that is nearest to axis 6.
         """
         turns = np.linspace(-np.pi, np.pi, STEPS, endpoint=False)
+        if len(self.axes) < SIX or self.sliding:
+            return self._few_reach(turns)
         q = np.zeros((STEPS**3, SIX))
         q[:, 1:4] = np.stack(np.meshgrid(turns, turns, turns), -1).reshape(-1, 3)
         u, v, way = self.axes[4], self.axes[5], self.origins[5]
@@ -121,12 +138,24 @@ class AxesGeometry:
         wrist = (self.frames(q)[4] @ np.array([*(along * u), 1.0]))[:, :3]
         return float(np.linalg.norm(np.cross(wrist - self.origins[0], self.axes[0]), axis=1).max())
 
+    def _few_reach(self, turns: Array) -> float:
+        """Largest distance of the last joint from axis 1, or of one of slides from the first [m].
+
+        Slides stand at 0, for they have no ends here.
+        """
+        tried = [[0.0] if k in self.sliding or k == 0 else turns for k in range(len(self.axes) - 1)]
+        q = np.stack(np.meshgrid(*tried, [0.0]), -1).reshape(-1, len(self.axes))
+        last = self.frames(q)[-1][:, :3, 3]
+        if 0 in self.sliding:
+            return float(np.linalg.norm(last, axis=1).max())
+        return float(np.linalg.norm(np.cross(last - self.origins[0], self.axes[0]), axis=1).max())
+
 
 ArmGeometry = OpwGeometry | AxesGeometry
 
 
 def axes_geometry(arm: ArmDescription) -> AxesGeometry:
-    """Take the axes of an arm of six turning joints.
+    """Take the axes of an arm of up to six free joints.
 
     Parameters
     ----------
@@ -136,11 +165,12 @@ def axes_geometry(arm: ArmDescription) -> AxesGeometry:
     -------
     AxesGeometry
     """
-    frames = arm.frames(np.zeros(SIX))
+    frames = arm.frames(np.zeros(len(arm.joints)))
     places = np.array([np.zeros(3), *(f[:3, 3] for f in frames)])
     axes = np.array([f[:3, :3] @ j.axis for f, j in zip(frames, arm.joints, strict=True)])
     tip = np.linalg.inv(placed(places[-1])) @ frames[-1] @ arm.tip_frame
-    return AxesGeometry(_tidy(np.diff(places, axis=0)), _tidy(axes), tip)
+    slides = tuple(j.slides for j in arm.joints)
+    return AxesGeometry(_tidy(np.diff(places, axis=0)), _tidy(axes), tip, slides=slides)
 
 
 def driven_geometry(arm: ArmDescription) -> ArmGeometry:
@@ -158,18 +188,51 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
     Raises
     ------
     NoOpwGeometry
-        It has other joints than six that turn; the text names its kind and what is missing.
+        It is none of six turning joints, no SCARA and no gantry; the text names its kind and what
+        is missing.
     """
     try:
         geometry = opw_geometry(arm)
     except NoOpwGeometry as error:
-        if not turns_six(arm):
+        if not turns_six(arm) and not is_scara(arm) and not is_gantry(arm):
             raise NoOpwGeometry(f"{kind_of(arm)}; {_missing(arm)}") from None
-        return replace(axes_geometry(arm), why=str(error))
+        found = replace(axes_geometry(arm), why=str(error))
+        return _in_parallel(found) if is_scara(arm) else found
     if geometry.deviation <= MOST_DEVIATION:
         return geometry
     why = f"its seven lengths are off by {1e3 * geometry.deviation:.3g} mm at the tip"
     return replace(axes_geometry(arm), why=why)
+
+
+def _in_parallel(geometry: AxesGeometry) -> AxesGeometry:
+    """The same with all axes exactly parallel to the first: else no tool would keep its tilt.
+
+    A tool whose z is along them but for the digits of the file is so, too.
+    """
+    first = geometry.axes[0]
+    axes = np.array([first if first @ axis > 0.0 else -first for axis in geometry.axes])
+    found = replace(geometry, axes=axes, flange=_upright(geometry.flange, first))
+    random = np.random.default_rng(SEED).uniform(-np.pi, np.pi, (STATES, len(axes)))
+    random[:, geometry.sliding] = 0.0
+    apart = (found.frames(random)[-1] - geometry.frames(random)[-1]) @ geometry.flange[:, 3]
+    return replace(found, deviation=float(np.linalg.norm(apart[:, :3], axis=1).max()))
+
+
+def _upright(frame: Array, axis: Array) -> Array:
+    """A frame turned as little as may be so that its z is along an axis, if it is so nearly."""
+    z = frame[:3, 2]
+    along = axis if axis @ z > 0.0 else -axis
+    across = np.cross(z, along)
+    sine = float(np.linalg.norm(across))
+    if not 0.0 < sine < ANGLE:
+        return frame
+    turned = frame.copy()
+    turned[:3, :3] = about(across / sine, np.arcsin(sine)) @ frame[:3, :3]
+    turned[:3, 2] = along
+    turned[:3, 0] -= along * (along @ turned[:3, 0])
+    turned[:3, 0] /= np.linalg.norm(turned[:3, 0])
+    turned[:3, 1] = np.cross(along, turned[:3, 0])
+    return np.asarray(turned)
 
 
 def _missing(arm: ArmDescription) -> str:
@@ -178,7 +241,7 @@ def _missing(arm: ArmDescription) -> str:
     count = len(arm.driven)
     if count > SIX:
         told.append(f"which of its {count} joints is held still, for a pose leaves {count - SIX}")
-        told[-1] += " of them open (a URDF in which it is fixed has six)"
+        told[-1] += " of them open (--hold)"
     if count < SIX:
         told.append(f"poses of {count} coordinates: a job asks for six, the arm has {count}")
     if names := [j.name for j in arm.joints if j.slides]:

@@ -142,7 +142,7 @@ def _lines(arm: ArmDescription) -> _JointAxes:
     )
 
 
-# CCN 22: one question for each kind of arm, in the order in which they exclude each other.
+# CCN 19: one question for each kind of arm, in the order in which they exclude each other.
 def kind_of(arm: ArmDescription) -> str:
     """Say what kind of arm a chain of joints is.
 
@@ -166,9 +166,8 @@ def kind_of(arm: ArmDescription) -> str:
         return "a gantry" + (" with a wrist" if len(slides) > 3 else "")
     if slides[:1] == "P" and slides[1:] == "R" * SIX:
         return "an arm of six joints on a linear track"
-    if len(slides) == 4 and slides.count("P") == 1:
-        if all(lines.parallel(1, k) for k in (2, 3, 4)):
-            return "a SCARA"
+    if is_scara(arm):
+        return SCARA
     if slides == "RRRR" and lines.upright(1, 2) and lines.parallel(2, 3):
         return "a palletizer"
     if slides == "R" * SIX and lines.parallel(2, 3):
@@ -176,6 +175,24 @@ def kind_of(arm: ArmDescription) -> str:
             return "an arm with three parallel axes"
         return "an arm of six joints"
     return f"a chain of {len(slides)} joints ({slides})"
+
+
+SCARA = "a SCARA"
+
+
+def is_scara(arm: ArmDescription) -> bool:
+    """Whether three turning joints and a sliding one are all in parallel."""
+    lines = [j.slides for j in arm.joints]
+    if len(lines) != 4 or sum(lines) != 1 or any(j.follows for j in arm.joints):
+        return False
+    axes = _lines(arm)
+    return all(axes.parallel(1, k) for k in (2, 3, 4))
+
+
+def is_gantry(arm: ArmDescription) -> bool:
+    """Whether three joints slide, and up to three behind them turn, each by itself."""
+    kinds = "".join("P" if j.slides else "R" for j in arm.joints)
+    return kinds in ("PPP", "PPPR", "PPPRR", "PPPRRR") and not any(j.follows for j in arm.joints)
 
 
 def turns_six(arm: ArmDescription) -> bool:

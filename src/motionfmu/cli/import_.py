@@ -13,7 +13,7 @@ ARMS = (".urdf", ".xml", ".xacro", ".toml")
 
 
 @app.command("import")
-def import_(
+def import_(  # noqa: PLR0913  (each is an option of the command)
     path: Annotated[
         Path,
         typer.Argument(
@@ -35,6 +35,14 @@ def import_(
         str | None,
         typer.Option(metavar="LINK", help="Of a URDF: the link at the end of the arm."),
     ] = None,
+    hold: Annotated[
+        str | None,
+        typer.Option(
+            metavar="JOINT[=ANGLE]",
+            help="Of an arm: a joint that is held still, at an angle [°] or a place [mm]; of seven "
+            "joints that is the third, at 0, if none is given.",
+        ),
+    ] = None,
 ) -> None:
     """Make a scenario of an SSP, or a machine of an arm: a folder that runs.
 
@@ -46,10 +54,12 @@ def import_(
     if path.suffix.lower() in ARMS:
         if stop is not None or step is not None:
             raise InputError("--stop and --step are for an SSP")
-        _arm(path, target or Path(path.stem), tip)
+        _arm(path, target or Path(path.stem), tip, hold)
         return
     if tip is not None:
         raise InputError("--tip is for a URDF")
+    if hold is not None:
+        raise InputError("--hold is for an arm")
     from motionfmu.ssp.ssp_import import take
 
     taken = take(path, target or Path(path.stem), stop, step)
@@ -58,10 +68,10 @@ def import_(
     warnings(taken.warnings)
 
 
-def _arm(path: Path, folder: Path, tip: str | None) -> None:
+def _arm(path: Path, folder: Path, tip: str | None, hold: str | None) -> None:
     """Make a machine of an arm, and print what was taken for granted."""
-    from motionfmu.arm_machines import make_machine, taken_lines
-    from motionfmu.arms import table_arm, urdf_arm
+    from motionfmu.arm_machines import joint_count, make_machine, taken_lines
+    from motionfmu.arms import held, table_arm, urdf_arm
 
     if path.suffix.lower() == ".toml":
         if tip is not None:
@@ -69,9 +79,10 @@ def _arm(path: Path, folder: Path, tip: str | None) -> None:
         arm = table_arm(path)
     else:
         arm = urdf_arm(path, tip)
+    arm = held(arm, hold)
     made = make_machine(arm, folder, path.name)
     size = f"reach {made.geometry.reach:.3g} m, {made.values.arm.mass:.4g} kg"
-    print(f"{folder / 'machine.toml'}: {arm.name} to {arm.tip}, six joints, {size}")
+    print(f"{folder / 'machine.toml'}: {arm.name} to {arm.tip}, {joint_count(arm)}, {size}")
     print(f"not in {path.name}, and taken; what is known better goes into machine.toml:")
     for line in taken_lines(made.values.taken):
         print(f"  {line}")

@@ -10,6 +10,7 @@ from motionfmu.scenarios.system import Resolver
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
 BY, ORIGIN, DIRECTION = "arm_by", "axis_origin", "axis_direction"
+COUNT, SLIDES = "joints", "joint_slides"
 
 Three = tuple[float, ...]
 
@@ -23,8 +24,9 @@ class Arm:
     offsets: tuple[float, ...] = (0.0,) * 6  # th = sign q - offset [rad]
     signs: tuple[float, ...] = (1.0,) * 6
     pen: float = 0.0  # length of the tool along z of the flange [mm]
-    # Instead of lengths, with all joints 0: origin of each from the one before [mm], its axis
-    axes: tuple[tuple[Three, Three], ...] = ()
+    # Instead of lengths, with all joints 0: origin of each from the one before [mm], its axis,
+    # whether it slides
+    axes: tuple[tuple[Three, Three, bool], ...] = ()
 
 
 def arm_of(
@@ -38,9 +40,8 @@ def arm_of(
     component = joints.partition(".")[0]
     ports = resolver.ports[component]
     if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
-        return Arm(
-            (), axes=axes_in_mm(*(parameter(f"{component}.{n}") for n in (ORIGIN, DIRECTION)))
-        )
+        names = (ORIGIN, DIRECTION, SLIDES, COUNT)
+        return Arm((), axes=axes_in_mm(*(parameter(f"{component}.{n}") for n in names)))
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -56,12 +57,17 @@ def arm_of(
 
 
 def axes_in_mm(
-    origin: Sequence[float], direction: Sequence[float]
-) -> tuple[tuple[Three, Three], ...]:
-    """Origins [m], one behind the other, and directions of six axes: in mm, of length 1."""
+    origin: Sequence[float],
+    direction: Sequence[float],
+    slides: Sequence[float] = (0,) * 6,
+    count: Sequence[float] = (6,),
+) -> tuple[tuple[Three, Three, bool], ...]:
+    """Origins [m], one behind the other, directions, whether they slide: in mm, of length 1."""
 
     def rows(numbers: Sequence[float], factor: float) -> list[Three]:
-        return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in range(0, 18, 3)]
+        ends = range(0, 3 * int(count[0]), 3)
+        return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in ends]
 
     units = [tuple(x / math.hypot(*d) for x in d) for d in rows(direction, 1.0)]
-    return tuple(zip(rows(origin, 1e3), units, strict=True))
+    slide = [bool(s) for s in slides[: len(units)]]
+    return tuple(zip(rows(origin, 1e3), units, slide, strict=True))

@@ -17,6 +17,8 @@ from motionfmu.scenarios.values import values_in
 
 BOUNDS = ("limit", "low", "high", "continuous")
 # [°] for a row that counts in this
+# Of a joint that slides among others that turn: mm for °, in m.
+_OF_DEGREES = {"deg": 1e-3, "deg/s": 1e-3, "deg/s2": 1e-3}
 _DEGREES = {"m": 1e3, "mm": 1.0, "um": 1e-3, "rad": math.degrees(1.0)}
 _SECOND = units.parse("s").exponents
 _PER_TIME = re.compile(r"(.*)/s(\d*)")
@@ -172,6 +174,8 @@ def _of_axis(
         if isinstance(value, str):
             other = resolver.end(value, f"limits.{figure}", key)
             factor = _factor(resolver, figure, key, other)
+            if axis.kind == "linear" and other.port.unit in _OF_DEGREES:
+                factor = _OF_DEGREES[other.port.unit]
             found[key] = float(_value(other, row, given)) * factor
         else:
             found[key] = value[place] if isinstance(value, tuple) else value
@@ -188,8 +192,13 @@ def _of_axis(
 
 
 def _shown_as(axis: MachineAxis, unit: str) -> tuple[str, float]:
-    """Unit in which a figure of an axis is shown, and its size in that; 1 mm is 1° of a turn."""
+    """Unit in which a figure of an axis is shown, and its size in that.
+
+    1 mm is 1° of a turn; among joints that turn, one that slides has m for rad.
+    """
     base, slash, time = unit.partition("/")
+    if axis.kind == "linear" and base == "rad":
+        return f"mm{slash}{time}", 1e3
     if axis.kind != "rotary" or base not in _DEGREES:
         return unit, 1.0
     return f"deg{slash}{time}", _DEGREES[base]

@@ -30,6 +30,8 @@ class ArmParts:
         Inner angle = sign * joint - offset [deg].
     radii : (8,) ndarray
         Of base, links and tool [mm].
+    slides : (6,) ndarray of bool
+        Joints that slide along their axes.
     """
 
     origins: Array
@@ -38,6 +40,7 @@ class ArmParts:
     signs: Array
     offsets: Array
     radii: Array
+    slides: NDArray[np.bool_]
 
     @classmethod
     def of(
@@ -61,6 +64,7 @@ class ArmParts:
             axes = np.reshape(settings["axis_direction"], (6, 3)).astype(float)
             flange = origins[5] + np.asarray(settings["flange"], float)[:3]
             signs, offsets = np.ones(6), np.zeros(6)
+            slides = np.asarray(settings["joint_slides"]) == 1
         else:
             a1, a2, b, c1, c2, c3, c4 = (
                 1e3 * float(settings[n]) for n in ("a1", "a2", "b", "c1", "c2", "c3", "c4")
@@ -73,11 +77,12 @@ class ArmParts:
             flange = wrist + np.array([0.0, 0.0, c4])
             signs = np.asarray(settings["joint_sign"], float)
             offsets = np.asarray(settings["joint_offset"], float)
+            slides = np.zeros(6, bool)
         axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
         length = float(np.linalg.norm(np.diff([*origins, flange], axis=0), axis=1).sum())
         given = radii or {}
         sizes = [given.get(n, s * length) for n, s in zip(NAMES, _SHARES, strict=True)]
-        return cls(origins, axes, flange, signs, offsets, np.array(sizes))
+        return cls(origins, axes, flange, signs, offsets, np.array(sizes), slides)
 
     def points(self, joints: Array, tip: Array) -> Array:
         """Ends of the parts, (n, 9, 3) [mm].
@@ -85,7 +90,7 @@ class ArmParts:
         Parameters
         ----------
         joints : (n, 6) ndarray
-            [deg]
+            [deg], of joints that slide [mm].
         tip : (n, 3) ndarray
             Of the tool, in the base [mm].
 
@@ -100,8 +105,11 @@ class ArmParts:
         found = [np.zeros((len(joints), 3))]
         ways = np.diff([*self.origins, self.flange], axis=0)
         for k in range(6):
+            if self.slides[k]:
+                place = place + joints[:, k, None] * (turn @ self.axes[k])
+            else:
+                turn = turn @ _about(self.axes[k], angles[:, k])
             found.append(place)
-            turn = turn @ _about(self.axes[k], angles[:, k])
             place = place + turn @ ways[k]
         return np.stack([*found, place, tip], axis=1)
 

@@ -321,7 +321,9 @@ def dry_run(
         seen = robot.read()
         fault = f"line {seen.error_line}: {seen.words}" if seen.error else ""
     number = re.match(r"line (\d+): ", fault)
-    low, high, top = (np.asarray(settings[f"joint_{n}"], float) for n in ("low", "high", "speed"))
+    low, high, top = (np.array(settings[f"joint_{n}"], float) for n in ("low", "high", "speed"))
+    count = int(settings["joints"])
+    low[count:], high[count:] = -360.0, 360.0  # places without a joint stand far from any end
     line = int(number[1]) if number else 0
     cell = cell or Cell()
     near = approaches(samples, ArmParts.of(settings, cell.radii), cell) if len(samples) else []

@@ -43,13 +43,14 @@ function rotAbout(u, q) {
   return across.map((row, i) => row.map((x, j) => (i === j ? c : 0) + s * x + (1 - c) * u[i] * u[j]));
 }
 
-// Place and axis of each joint of an arm told by its axes: each turns all that lies behind it.
+// Place and axis of each joint of an arm told by its axes: each turns all that lies behind it, or slides with it.
 function axesPose(arm, q) {
   let at = [0, 0, 0], frame = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-  return arm.axes.map(([origin, direction], i) => {
+  return arm.axes.map(([origin, direction, slides], i) => {
     at = add(at, times(frame, origin));
     const axis = times(frame, direction);
-    frame = product(frame, rotAbout(direction, q[i]));
+    if (slides) at = add(at, axis, 1000 * q[i]);
+    else frame = product(frame, rotAbout(direction, q[i]));
     return { at, axis };
   });
 }

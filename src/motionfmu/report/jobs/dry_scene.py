@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motionfmu.analysis.dry_run import DryRun
 from motionfmu.report.view.scene import FRAMES, Scene, drawn_samples
@@ -24,7 +25,7 @@ def dry_scene(run: DryRun) -> Scene | None:
     return Scene(
         s["time"][frames],
         place[frames],
-        np.radians(s["joint"][frames].astype(float)),
+        _si(s["joint"][frames].astype(float), run.settings),
         arm_in_mm(run.settings),
         s["time"][kept],
         at(reader(place), kept),
@@ -34,11 +35,18 @@ def dry_scene(run: DryRun) -> Scene | None:
     )
 
 
+def _si(joints: NDArray[np.float64], settings: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Joints in rad, of those that slide in m."""
+    slides = np.asarray(settings["joint_slides"]) == 1
+    return np.where(slides, 1e-3 * joints, np.radians(joints))
+
+
 def arm_in_mm(settings: Mapping[str, Any]) -> Arm:
     """The arm of a virtual robot's settings, which has its tool in the program."""
     if settings["arm_by"] == 1:
-        axes = axes_in_mm(settings["axis_origin"], settings["axis_direction"])
-        return Arm((), axes=axes)
+        origin, direction = settings["axis_origin"], settings["axis_direction"]
+        slides, count = settings["joint_slides"], [settings["joints"]]
+        return Arm((), axes=axes_in_mm(origin, direction, slides, count))
     lengths = tuple(1e3 * float(settings[n]) for n in LENGTHS)
     offsets, signs = (np.asarray(settings[n], float) for n in ("joint_offset", "joint_sign"))
     return Arm(lengths, tuple(np.radians(offsets).tolist()), tuple(signs.tolist()))

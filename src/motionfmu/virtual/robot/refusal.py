@@ -26,8 +26,10 @@ STATUS = (
     "NO_UNIT",
     "NO_SPLINE",
     "NO_FLOW",
+    "TILTED",
+    "NO_JOINT",
 )
-_IN_RADIANS = "OUTSIDE"
+_IN_RADIANS = ("OUTSIDE", "TILTED")
 _LENGTH = 420
 # Of places [mm], angles [deg], directions.
 MOST = 1e6
@@ -40,7 +42,7 @@ class RobotError(InputError):
     ----------
     status : str
         Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
-        OFF_PLANE, NO_UNIT, NO_SPLINE, NO_FLOW of a move;
+        OFF_PLANE, NO_UNIT, NO_SPLINE, NO_FLOW, TILTED, NO_JOINT of a move;
         COLLISION; VALUE of an argument; PROGRAM of a text.
     value, limit : float
         What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
@@ -74,7 +76,8 @@ def refused(call: str, code: int, why: Struct, words: Any) -> RobotError:
     status = STATUS[code]
     error = RobotError(f"{call}: {words.value.decode()}", status)
     if status not in ("BUSY", "PARAMETER"):
-        scale = math.degrees(1.0) if status == _IN_RADIANS else 1.0
+        scale = math.degrees(1.0) if status in _IN_RADIANS else 1.0
+        scale = 1e3 if why["slides"] else scale
         error.value, error.limit = why["value"] * scale, why["limit"] * scale
         error.which, error.part = why["which"], why["part"]
     return error

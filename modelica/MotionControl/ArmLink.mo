@@ -1,5 +1,5 @@
 within MotionControl;
-model RevoluteLink "Rigid link that turns on the one before it"
+model ArmLink "Rigid link that turns on the one before it, slides along it, or is fixed to it"
   parameter Real axis[3](each unit = "1") = {0, 0, 1} "Axis of the joint, alike in both frames";
   parameter Real origin[3](each unit = "m") = {0, 0, 0} "Joint in the frame before";
   parameter Real mass(unit = "kg", min = 0) = 1 "Mass";
@@ -10,6 +10,9 @@ model RevoluteLink "Rigid link that turns on the one before it"
     "Elements xy, yz, zx of the tensor of inertia about the centre";
   parameter Real viscous(unit = "N.m.s/rad", min = 0) = 0 "Friction torque per speed";
   parameter Real start_angle(unit = "rad") = 0 "Angle at the start";
+  parameter Real slides(unit = "1") = 0 "1 of a joint that slides along its axis, in m for rad";
+  parameter Real stands(unit = "1") = 0 "1 of a joint that is none: nothing moves it";
+  parameter Real held(unit = "kg.m2") = 1e12 "Inertia that keeps a joint that is none where it is";
   Frame a "Of the link before";
   Frame b "Own frame: its origin is on the joint";
   RotationalFlange drive "What turns the joint";
@@ -25,6 +28,7 @@ protected
   Real c(unit = "1") "Cosine of the angle";
   Real s(unit = "1") "Sine of the angle";
   Real r[3,3](each unit = "1") "From own axes to those before";
+  Real lever[3](each unit = "m") "Own origin in the frame before";
   Real swept[3](each unit = "m/s") "Velocity of the joint by the rate before";
   Real joint_a[3](each unit = "m/s2") "Acceleration of the joint, in axes before";
   Real carried[3](each unit = "rad/s") "Rate before, in own axes";
@@ -37,8 +41,8 @@ protected
 equation
   der(angle) = speed;
   drive.phi = angle;
-  c = cos(angle);
-  s = sin(angle);
+  c = cos((1 - slides)*angle);
+  s = sin((1 - slides)*angle);
   r[1,1] = axis[1]^2 + (1 - axis[1]^2)*c;
   r[1,2] = axis[1]*axis[2]*(1 - c) - axis[3]*s;
   r[1,3] = axis[1]*axis[3]*(1 - c) + axis[2]*s;
@@ -48,24 +52,30 @@ equation
   r[3,1] = axis[1]*axis[3]*(1 - c) - axis[2]*s;
   r[3,2] = axis[2]*axis[3]*(1 - c) + axis[1]*s;
   r[3,3] = axis[3]^2 + (1 - axis[3]^2)*c;
-  swept[1] = rate[2]*origin[3] - rate[3]*origin[2];
-  swept[2] = rate[3]*origin[1] - rate[1]*origin[3];
-  swept[3] = rate[1]*origin[2] - rate[2]*origin[1];
-  joint_a[1] = a.a[1] + a.z[2]*origin[3] - a.z[3]*origin[2] + rate[2]*swept[3] - rate[3]*swept[2];
-  joint_a[2] = a.a[2] + a.z[3]*origin[1] - a.z[1]*origin[3] + rate[3]*swept[1] - rate[1]*swept[3];
-  joint_a[3] = a.a[3] + a.z[1]*origin[2] - a.z[2]*origin[1] + rate[1]*swept[2] - rate[2]*swept[1];
+  lever[1] = origin[1] + slides*axis[1]*angle;
+  lever[2] = origin[2] + slides*axis[2]*angle;
+  lever[3] = origin[3] + slides*axis[3]*angle;
+  swept[1] = rate[2]*lever[3] - rate[3]*lever[2];
+  swept[2] = rate[3]*lever[1] - rate[1]*lever[3];
+  swept[3] = rate[1]*lever[2] - rate[2]*lever[1];
+  joint_a[1] = a.a[1] + a.z[2]*lever[3] - a.z[3]*lever[2] + rate[2]*swept[3] - rate[3]*swept[2]
+    + slides*(axis[1]*der(speed) + 2*(rate[2]*axis[3] - rate[3]*axis[2])*speed);
+  joint_a[2] = a.a[2] + a.z[3]*lever[1] - a.z[1]*lever[3] + rate[3]*swept[1] - rate[1]*swept[3]
+    + slides*(axis[2]*der(speed) + 2*(rate[3]*axis[1] - rate[1]*axis[3])*speed);
+  joint_a[3] = a.a[3] + a.z[1]*lever[2] - a.z[2]*lever[1] + rate[1]*swept[2] - rate[2]*swept[1]
+    + slides*(axis[3]*der(speed) + 2*(rate[1]*axis[2] - rate[2]*axis[1])*speed);
   carried[1] = r[1,1]*rate[1] + r[2,1]*rate[2] + r[3,1]*rate[3];
   carried[2] = r[1,2]*rate[1] + r[2,2]*rate[2] + r[3,2]*rate[3];
   carried[3] = r[1,3]*rate[1] + r[2,3]*rate[2] + r[3,3]*rate[3];
-  own_rate[1] = carried[1] + axis[1]*speed;
-  own_rate[2] = carried[2] + axis[2]*speed;
-  own_rate[3] = carried[3] + axis[3]*speed;
-  b.z[1] = r[1,1]*a.z[1] + r[2,1]*a.z[2] + r[3,1]*a.z[3] + axis[1]*der(speed)
-    + (carried[2]*axis[3] - carried[3]*axis[2])*speed;
-  b.z[2] = r[1,2]*a.z[1] + r[2,2]*a.z[2] + r[3,2]*a.z[3] + axis[2]*der(speed)
-    + (carried[3]*axis[1] - carried[1]*axis[3])*speed;
-  b.z[3] = r[1,3]*a.z[1] + r[2,3]*a.z[2] + r[3,3]*a.z[3] + axis[3]*der(speed)
-    + (carried[1]*axis[2] - carried[2]*axis[1])*speed;
+  own_rate[1] = carried[1] + (1 - slides)*axis[1]*speed;
+  own_rate[2] = carried[2] + (1 - slides)*axis[2]*speed;
+  own_rate[3] = carried[3] + (1 - slides)*axis[3]*speed;
+  b.z[1] = r[1,1]*a.z[1] + r[2,1]*a.z[2] + r[3,1]*a.z[3] + (1 - slides)*(axis[1]*der(speed)
+    + (carried[2]*axis[3] - carried[3]*axis[2])*speed);
+  b.z[2] = r[1,2]*a.z[1] + r[2,2]*a.z[2] + r[3,2]*a.z[3] + (1 - slides)*(axis[2]*der(speed)
+    + (carried[3]*axis[1] - carried[1]*axis[3])*speed);
+  b.z[3] = r[1,3]*a.z[1] + r[2,3]*a.z[2] + r[3,3]*a.z[3] + (1 - slides)*(axis[3]*der(speed)
+    + (carried[1]*axis[2] - carried[2]*axis[1])*speed);
   b.a[1] = r[1,1]*joint_a[1] + r[2,1]*joint_a[2] + r[3,1]*joint_a[3];
   b.a[2] = r[1,2]*joint_a[1] + r[2,2]*joint_a[2] + r[3,2]*joint_a[3];
   b.a[3] = r[1,3]*joint_a[1] + r[2,3]*joint_a[2] + r[3,3]*joint_a[3];
@@ -97,15 +107,17 @@ equation
   a.f[2] = r[2,1]*push[1] + r[2,2]*push[2] + r[2,3]*push[3];
   a.f[3] = r[3,1]*push[1] + r[3,2]*push[2] + r[3,3]*push[3];
   a.t[1] = r[1,1]*twist[1] + r[1,2]*twist[2] + r[1,3]*twist[3]
-    + origin[2]*a.f[3] - origin[3]*a.f[2];
+    + lever[2]*a.f[3] - lever[3]*a.f[2];
   a.t[2] = r[2,1]*twist[1] + r[2,2]*twist[2] + r[2,3]*twist[3]
-    + origin[3]*a.f[1] - origin[1]*a.f[3];
+    + lever[3]*a.f[1] - lever[1]*a.f[3];
   a.t[3] = r[3,1]*twist[1] + r[3,2]*twist[2] + r[3,3]*twist[3]
-    + origin[1]*a.f[2] - origin[2]*a.f[1];
-  axis[1]*twist[1] + axis[2]*twist[2] + axis[3]*twist[3] = drive.tau - viscous*speed;
-  own_place[1] = place[1] + turn[1,1]*origin[1] + turn[1,2]*origin[2] + turn[1,3]*origin[3];
-  own_place[2] = place[2] + turn[2,1]*origin[1] + turn[2,2]*origin[2] + turn[2,3]*origin[3];
-  own_place[3] = place[3] + turn[3,1]*origin[1] + turn[3,2]*origin[2] + turn[3,3]*origin[3];
+    + lever[1]*a.f[2] - lever[2]*a.f[1];
+  (1 - slides)*(axis[1]*twist[1] + axis[2]*twist[2] + axis[3]*twist[3])
+    + slides*(axis[1]*push[1] + axis[2]*push[2] + axis[3]*push[3]) = drive.tau - viscous*speed
+    - stands*held*der(speed);
+  own_place[1] = place[1] + turn[1,1]*lever[1] + turn[1,2]*lever[2] + turn[1,3]*lever[3];
+  own_place[2] = place[2] + turn[2,1]*lever[1] + turn[2,2]*lever[2] + turn[2,3]*lever[3];
+  own_place[3] = place[3] + turn[3,1]*lever[1] + turn[3,2]*lever[2] + turn[3,3]*lever[3];
   own_turn[1,1] = turn[1,1]*r[1,1] + turn[1,2]*r[2,1] + turn[1,3]*r[3,1];
   own_turn[1,2] = turn[1,1]*r[1,2] + turn[1,2]*r[2,2] + turn[1,3]*r[3,2];
   own_turn[1,3] = turn[1,1]*r[1,3] + turn[1,2]*r[2,3] + turn[1,3]*r[3,3];
@@ -117,7 +129,8 @@ equation
   own_turn[3,3] = turn[3,1]*r[1,3] + turn[3,2]*r[2,3] + turn[3,3]*r[3,3];
   annotation(Documentation(info = "<html>
 <p>Newton and Euler, each in the axes of the link: rates and accelerations go out along the arm,
-forces and torques come back. The frames before and after are parallel at angle 0. Rates, place and
+forces and torques come back. The frames before and after are parallel at angle 0. Of a joint that
+slides, angle is the way, torque the force of its drive. Rates, place and
 turn are signals and no part of the connector, which has as many flows as accelerations.</p>
 </html>"));
-end RevoluteLink;
+end ArmLink;
