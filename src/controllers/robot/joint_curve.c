@@ -116,7 +116,8 @@ static bool step_on(const struct fit *f, double part, const double before[OPW_JO
 }
 
 /* Set the derivatives of a node from five places around it, or to one side at an end of the path,
- * where a spline has its parabola on both. The stencils are those of fourth and (bend, one side) third order. */
+ * where a spline has its parabola on both. The stencils are those of fourth order, that of a bend
+ * to one side of third. */
 static bool derive(const struct fit *f, double size, struct joint_curve_node *n)
 {
     static const double middle[2][5] = {

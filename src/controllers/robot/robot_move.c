@@ -60,7 +60,7 @@ static bool all_from_0(const double *x, int n)
     return good;
 }
 
-/* CCN 21: a row of limits that all must hold. */
+/* CCN 22: a row of limits that all must hold. */
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;

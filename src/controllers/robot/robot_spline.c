@@ -40,7 +40,8 @@ static bool inside(const struct manipulator *arm, const struct segment *p)
     return good;
 }
 
-/* The part of the way where a joint is beyond its range, further than where it started; -1: none. */
+/* The part of the way where a joint is beyond its range, further than where it started; -1:
+ * none. */
 static double beyond(const struct manipulator *arm, const struct joint_curve_spline *s,
                      const double start[OPW_JOINTS], double joint[OPW_JOINTS])
 {

@@ -1,8 +1,8 @@
 /* tool_spline - the tool's way from one pose to the next through a row of them.
  *
- *     before ── from ══ to ── next     The parabola through before, from, to becomes the one through
- *                                      from, to, next: as much of either as a quintic says that
- *                                      rises from 0 to 1 with ends of no slope and no bend.
+ *     before ── from ══ to ── next    The parabola through before, from, to becomes the one through
+ *                                     from, to, next: as much of either as a quintic says that
+ *                                     rises from 0 to 1 with ends of no slope and no bend.
  *
  * So at each pose the way has the slope and the bend of one parabola, on both sides. The parameter
  * is the distance from pose to pose. An attitude is a rotation vector from the middle one of its

@@ -130,8 +130,8 @@ static enum robot_job_fault shares(struct robot_job_run *run, const struct robot
     return good ? ROBOT_JOB_OK : ROBOT_JOB_BAD_RANGE;
 }
 
-/* The point of the next line, to which a spline goes on, unless that has another tool. What is wrong
- * with it shows where it is done. */
+/* The point of the next line, to which a spline goes on, unless that has another tool. What is
+ * wrong with it shows where it is done. */
 static void go_on(struct robot_job_run *run, const struct robot_job_program *p,
                   const struct robot_job_points *points, const struct robot_job_instruction *next,
                   struct robot_job_request *r)
@@ -148,7 +148,8 @@ static void go_on(struct robot_job_run *run, const struct robot_job_program *p,
     run->fault = before;
 }
 
-/* Request a move to a point, and number it. */
+/* Request a move to a point, and number it.
+ * CCN 17: what its line leaves open is as the job has it by then. */
 static enum robot_job_fault move(struct robot_job_run *run, const struct robot_job_program *p,
                                  const struct robot_job_points *points,
                                  const struct robot_job_inputs *in,

@@ -174,9 +174,7 @@ def _of_axis(
         if isinstance(value, str):
             other = resolver.end(value, f"limits.{figure}", key)
             factor = _factor(resolver, figure, key, other)
-            if axis.kind == "linear" and other.port.unit in _OF_DEGREES:
-                factor = _OF_DEGREES[other.port.unit]
-            found[key] = float(_value(other, row, given)) * factor
+            found[key] = float(_value(other, row, given)) * _of_a_slide(axis, other, factor)
         else:
             found[key] = value[place] if isinstance(value, tuple) else value
     if "limit" in found and source.over is not None:
@@ -189,6 +187,12 @@ def _of_axis(
         times = source.overload
         found["overload"] = times[place] if isinstance(times, tuple) else times
     return AxisLimit(axis, figure, end, element, source.derivative, unit, **found)
+
+
+def _of_a_slide(axis: MachineAxis, other: End, factor: float) -> float:
+    """The factor of a limit in degrees, which a joint that slides has in mm."""
+    slides = axis.kind == "linear" and other.port.unit in _OF_DEGREES
+    return _OF_DEGREES[other.port.unit or ""] if slides else factor
 
 
 def _shown_as(axis: MachineAxis, unit: str) -> tuple[str, float]:
