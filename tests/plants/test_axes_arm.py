@@ -7,8 +7,15 @@ import pinocchio
 import pytest
 from robot_arm import EXACT, Arm, ByAxes, Pinocchio
 
-RNG = np.random.default_rng(11)
+SEED = 11
+RNG = np.random.default_rng(SEED)
 U = np.zeros(9)
+
+
+@pytest.fixture(autouse=True)
+def same_draws() -> None:
+    """Each test draws the same, whatever ran before it."""
+    RNG.bit_generator.state = np.random.default_rng(SEED).bit_generator.state
 
 
 def random_arm(exact: bool = True, **more: Any) -> ByAxes:
@@ -27,6 +34,11 @@ def random_arm(exact: bool = True, **more: Any) -> ByAxes:
         tool_place=[0.02, 0.01, -0.03],
         tool_turn=[20.0, -40.0, 70.0],
     )
+
+
+def ideal(a: ByAxes) -> np.ndarray:
+    """Angles at the start behind gears that do not give way."""
+    return np.array(a.start[a.places("rotor.angle")] / a.parameter("gear_ratio"))
 
 
 def test_dynamics_are_those_of_pinocchio() -> None:
@@ -71,7 +83,9 @@ def test_joints_that_slide_and_that_are_none(slides: list[int], count: int) -> N
             acceleration = a.rates(x, U)[a.places("link.speed")]
             torque = a.outputs(x, U)["gear_torque"] - a.parameter("link_viscous") * v
             exact = oracle.forward(q[here], v[here], torque[here])
-            assert acceleration[here] == pytest.approx(exact, abs=1e-10 * np.abs(exact).max())
+            # Where weight and torque cancel, what is left is no measure of what was subtracted.
+            size = max(np.abs(exact).max(), 9.81)
+            assert acceleration[here] == pytest.approx(exact, abs=1e-10 * size)
             assert np.abs(acceleration[count:]).max(initial=0.0) < 1e-7
             pinocchio.forwardKinematics(oracle.model, oracle.data, q[here])
             frame = oracle.model.getFrameId("l6", pinocchio.BODY)
@@ -87,8 +101,8 @@ def test_joints_that_slide_and_that_are_none(slides: list[int], count: int) -> N
             assert turn == pytest.approx(there.rotation, abs=1e-12)
         angles = a.start[a.places("link.angle")]
         held = a.outputs(a.start, U)["gear_torque"][here]
-        wanted = oracle.gravity(angles[here])
-        assert held == pytest.approx(wanted, abs=5e-3 * max(1.0, np.abs(wanted).max()))
+        wanted = oracle.gravity(ideal(a)[here])
+        assert held == pytest.approx(wanted, abs=1e-3 * max(1.0, np.abs(wanted).max()))
         assert (angles[count:] == 0.0).all()
 
 
@@ -122,12 +136,12 @@ def test_the_tool_is_where_pinocchio_has_it() -> None:
 
 
 def test_at_the_start_gears_hold_what_gravity_asks() -> None:
-    """Links hang in their gears, whichever way their axes point: to 0.5 % of the largest torque."""
+    """Links hang in their gears as behind ideal ones, whichever way their axes point: to 0.1 %."""
     for _ in range(10):
         a = random_arm(exact=False)
         torque = a.outputs(a.start, U)["gear_torque"]
-        wanted = Pinocchio(a).gravity(a.start[a.places("link.angle")])
-        assert torque == pytest.approx(wanted, abs=5e-3 * np.abs(wanted).max())
+        wanted = Pinocchio(a).gravity(ideal(a))
+        assert torque == pytest.approx(wanted, abs=1e-3 * np.abs(wanted).max())
         assert np.abs(wanted).max() > 10.0
 
 
