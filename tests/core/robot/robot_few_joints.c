@@ -5,7 +5,7 @@
 #include "bounds.h"
 #include "robot_rig.h"
 
-enum { FOUR = 4, MOVES = 48, PARTS = 60, PLACES = 24 };
+enum { FOUR = 4, MOVES = 36, PARTS = 45, PLACES = 24 };
 
 /* What a cycle may exceed a limit by. */
 static const double SHARE = 1e-6, RANGE = 1e-9;
