@@ -109,7 +109,8 @@ def test_figures_of_axes_by_brute_force(name):
         x = np.asarray(result[f.limit.signal.name], float)
         x = x[:, f.limit.element] if x.ndim > 1 else x
         for _ in range(f.limit.derivative):
-            x = (x[1:] - x[:-1]) / (result.time[1] - result.time[0])
+            x = x[1:] - x[:-1]
+        x = x / (result.time[1] - result.time[0]) ** f.limit.derivative
         x = x * (180.0 / np.pi if f.limit.unit.startswith("deg") else 1.0)
         assert (f.low, f.high) == (x.min(), x.max())
         assert abs(f.largest) == np.abs(x).max()

@@ -16,9 +16,10 @@ from motionfmu.scenarios.system import End, Resolver, Setting
 from motionfmu.scenarios.values import values_in
 
 BOUNDS = ("limit", "low", "high", "continuous")
-# [°] for a row that counts in this
 # Of a joint that slides among others that turn: mm for °, in m.
 _OF_DEGREES = {"deg": 1e-3, "deg/s": 1e-3, "deg/s2": 1e-3}
+_SLIDES = "joint_slides"  # parameter of who has such joints
+# [°] for a row that counts in this
 _DEGREES = {"m": 1e3, "mm": 1.0, "um": 1e-3, "rad": math.degrees(1.0)}
 _SECOND = units.parse("s").exponents
 _PER_TIME = re.compile(r"(.*)/s(\d*)")
@@ -181,7 +182,8 @@ def _of_axis(
         time = float(_value(resolver.end(source.over, "", ""), row, given))
         limit = found.pop("limit")
         found |= {"limit": limit / time} if time else {}
-    unit, scale = _shown_as(axis, _figure_unit(resolver, figure))
+    among_turning = _SLIDES in resolver.ports[end.component]
+    unit, scale = _shown_as(axis, _figure_unit(resolver, figure), among_turning)
     found = {key: value * scale for key, value in found.items()} | {"scale": scale}
     if acts and source.overload is not None:
         times = source.overload
@@ -195,13 +197,13 @@ def _of_a_slide(axis: MachineAxis, other: End, factor: float) -> float:
     return _OF_DEGREES[other.port.unit or ""] if slides else factor
 
 
-def _shown_as(axis: MachineAxis, unit: str) -> tuple[str, float]:
+def _shown_as(axis: MachineAxis, unit: str, among_turning: bool) -> tuple[str, float]:
     """Unit in which a figure of an axis is shown, and its size in that.
 
     1 mm is 1° of a turn; among joints that turn, one that slides has m for rad.
     """
     base, slash, time = unit.partition("/")
-    if axis.kind == "linear" and base == "rad":
+    if among_turning and axis.kind == "linear" and base == "rad":
         return f"mm{slash}{time}", 1e3
     if axis.kind != "rotary" or base not in _DEGREES:
         return unit, 1.0

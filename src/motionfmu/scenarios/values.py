@@ -117,7 +117,14 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
     for pairs in stronger:
         _add(resolver, pairs, found, faults, lambda error: unplaced(document, error))
     faults.tell()
-    return list(found.values())
+    return [_placed(document, s) for s in found.values()]
+
+
+def _placed(document: Document, setting: Setting) -> Setting:
+    """The setting with the paths of files, which are looked for anew at each run."""
+    if setting.end.port.type != "String":
+        return setting
+    return Setting(setting.end, _file_beside(document, setting.values))
 
 
 def _add(
@@ -138,7 +145,10 @@ def _add(
 
 
 def setting(resolver: Resolver, name: str, value: Any, found: Mapping[str, Setting]) -> Setting:
-    """The setting of a variable, or of one element, whose others keep what `found` has for them."""
+    """The setting of a variable, or of one element, whose others keep what `found` has for them.
+
+    A file is still by its name.
+    """
     document = resolver.document
     whole, element = resolver.split(name)
     end = resolver.end(whole, "set", name)
@@ -153,7 +163,7 @@ def setting(resolver: Resolver, name: str, value: Any, found: Mapping[str, Setti
                 raise ValueError(f"{name} = {shown(value)}: one value wanted")
             before = found[whole].values if whole in found else start_values(end.port)
             value = [*before[:element], value, *before[element + 1 :]]
-        return Setting(end, _file_beside(document, values_of(end, value)))
+        return Setting(end, values_of(end, value))
     except ValueError as error:
         raise document.error(str(error), "set", name) from None
 
