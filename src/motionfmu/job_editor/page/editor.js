@@ -10,6 +10,7 @@ history.replaceState(null, "", location.pathname);
 
 const PAUSE = 500; // [ms] without a key, after which it is judged
 const COLUMNS = ["X", "Y", "Z", "A", "B", "C"];
+const JOINTS = ["J1", "J2", "J3", "J4", "J5", "J6"];
 let saved = { job: "", points: "" }, judged = { faults: [], steps: [] }, step = -1, timer = 0, hasPoints = false;
 
 async function ask(path, body = {}) {
@@ -106,7 +107,10 @@ function drawView() {
   const before = part("view")?.machineView?.view;
   const look = part("view")?.querySelector('[data-view="look"]').value;
   part("stage").replaceChildren();
-  if (!judged.view) return;
+  if (!judged.view) {
+    part("stage").textContent = judged.faults.length ? "The arm is shown when the program runs dry: mend what is red first." : "Nothing moves yet.";
+    return;
+  }
   page.dark = judged.dark;
   part("stage").append(part("view-template").content.cloneNode(true));
   part("fastest").textContent = judged.view.fastest.toPrecision(3);
@@ -145,8 +149,9 @@ function drawPoints() {
     const row = document.createElement("tr"), head = document.createElement("td"), rest = document.createElement("td");
     row.dataset.name = head.textContent = name;
     row.dataset.place = place;
-    row.append(head, ...COLUMNS.map((column) => cell(place, column, words[column])));
-    rest.textContent = Object.entries(words).filter(([w]) => !COLUMNS.includes(w)).map((pair) => pair.join("=")).join(" ");
+    const columns = JOINTS[0] in words ? JOINTS : COLUMNS;
+    row.append(head, ...columns.map((column) => cell(place, column, words[column])));
+    rest.textContent = Object.entries(words).filter(([w]) => !columns.includes(w)).map((pair) => pair.join("=")).join(" ");
     row.append(rest);
     return row;
   }));
@@ -166,6 +171,7 @@ function cell(place, column, value) {
     pointsText.value = withWord(pointsText.value, place, column, input.value);
     later();
   });
+  if (JOINTS.includes(column)) field.append(column, " ");
   field.append(input);
   return field;
 }
@@ -216,8 +222,8 @@ if (ok) {
   [text.value, pointsText.value] = [found.job, found.points];
   document.title = part("name").textContent = found.file;
   hasPoints = Boolean(found.points_file);
-  part("points-file").textContent = found.points_file ?? "";
-  part("table").hidden = !hasPoints;
+  part("points-file").textContent = found.points_file ?? `none: a file ${found.file.replace(/\.[^.]*$/, "")}.points beside the program would have them, with its tools`;
+  part("table").classList.toggle("none", !hasPoints);
   drawPoints();
   await judge();
 } else {
