@@ -372,7 +372,7 @@ static inline void recorder_begin(struct recorder *r, int64_t row)
     r->full = 0;
 }
 
-/* The same for rows in memory. */
+/* Set the number of the next row where rows are in memory; those jumped over are 0. */
 static inline int recorder_jump(struct recorder *r, int64_t row)
 {
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count && row > r->row;

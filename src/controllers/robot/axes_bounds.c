@@ -32,8 +32,8 @@ struct stand {
     struct course axis[N];   /* of the joints */
     struct course origin[N]; /* [mm] of the joints */
     double arm[N][3];        /* [mm] from the joints to the tip */
-    double link[N];          /* [mm] length from the joint before, */
-    double slid[N];          /* [mm] and of what that one has slid */
+    double link[N];          /* [mm] length from the joint before */
+    double slid[N];          /* [mm] way that the joint before has slid; 0 if it turns */
     double rate[TERMS][N];   /* q', q'', q''' */
     double first[N][N];      /* A J' */
     double second[N][N];     /* A J'' */
@@ -277,7 +277,7 @@ static bool stand_of(const struct manipulator *m, const double joint[N],
     return true;
 }
 
-/* Bounds, all over the part, of the first to third derivative of something. */
+/* Bounds, all over the part, of a quantity's first, second and third derivative. */
 struct thrice {
     double of[3];
 };

@@ -86,7 +86,8 @@ static bool solve(const struct fit *f, double part, enum tool_spline_part which,
     return arm_moves_kinematics().joints(f->g, at, q);
 }
 
-/* Joints [mm] at a part of the path, of a spline of `which`; r[] holds those of a place nearby. */
+/* Joints [mm] at a part of the path, of a spline by its piece `which`; r[] holds the joints of a
+ * place nearby. */
 static bool place(const struct fit *f, double part, enum tool_spline_part which,
                   double r[OPW_JOINTS])
 {

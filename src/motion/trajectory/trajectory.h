@@ -66,7 +66,7 @@ struct trajectory {
 /* At rest at the origin, pulses 0. */
 void trajectory_start(struct trajectory *p);
 
-/* Copy what the motion under way uses, a tenth of it all: to go back to it later. */
+/* Copy what the motion under way uses, to go back to it later. */
 void trajectory_copy(struct trajectory *to, const struct trajectory *from);
 
 /* At rest with the tool at a place that the mechanism can reach; false, and nothing done, if it

@@ -92,11 +92,6 @@ def values_in(given: Mapping[str, Values], component: str, port: Port) -> Values
     return values if len(values) == port.count else values * port.count
 
 
-def _file_beside(document: Document, values: Values) -> Values:
-    """Values in which a string that names a file beside the scenario is replaced by its path."""
-    return tuple(str(document.beside(x) or x) if isinstance(x, str) else x for x in values)
-
-
 def later(set: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
     """Both together: what is new counts, and a whole array also over elements set before."""
     kept = {n: v for n, v in set.items() if n.partition("[")[0] not in new}
@@ -121,10 +116,10 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
 
 
 def _placed(document: Document, setting: Setting) -> Setting:
-    """The setting with the paths of files, which are looked for anew at each run."""
+    """The setting with the path of a file beside the scenario, looked for anew at each run."""
     if setting.end.port.type != "String":
         return setting
-    return Setting(setting.end, _file_beside(document, setting.values))
+    return Setting(setting.end, tuple(str(document.beside(str(x)) or x) for x in setting.values))
 
 
 def _add(

@@ -69,7 +69,8 @@ class Fused:
     def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
         library = self._library
-        held = bool(self._job.recorded) and self._job.memory >= self._bytes(system)
+        recorded = self._job.recorded
+        held = bool(recorded) and recording.size(system, recorded) <= self._job.memory
         rows: list[NDArray[Any]] = []
         self._errors.clear()
         self._warnings.clear()
@@ -88,16 +89,13 @@ class Fused:
         finally:
             library.release()
         progress(1.0)
-        names = [end.name for end in self._job.recorded]
+        names = [end.name for end in recorded]
         if held:
             time, *found = (column[: system.rows(steps)] for column in rows)
             signals = dict(zip(names, found, strict=True))
             return EngineResult("fused", signals, [*self._warnings], steps, signal, time)
         files = Columns.taken(self._signals, names) if names else Columns({})
         return EngineResult("fused", files, [*self._warnings], steps, signal, files.time)
-
-    def _bytes(self, system: System) -> int:
-        return recording.size(system, self._job.recorded)
 
     def _record(self, system: System) -> list[NDArray[Any]]:
         """Let the program record into arrays: times, then each signal."""
