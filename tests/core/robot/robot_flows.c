@@ -130,16 +130,19 @@ static double off_way(const double at[3], const double (*w)[3])
     return sqrt(least);
 }
 
-/* Largest share of the zones; the ways' own chords are off by SAG. */
+/* Largest share of the zones; the ways' own chords are off by SAG. Ways are looked at from the one
+ * before's on, until one is nearer than the largest share so far. */
 static double most_off(const struct robot_config *c)
 {
     static const double SAG = 5e-3;
     double most = 0.0;
+    int m = 0;
 
     for (int n = 0; n < cycles && ways > 0; n += STRIDE) {
         double at[3], off = INFINITY;
         tip(c, q[n], at);
-        for (int m = 0; m < ways; m++) {
+        for (int k = 0; k < ways && off > most; k++) {
+            m = k > 0 ? (m + 1) % ways : m;
             const double zone = fmax(zone_of[m], zone_of[m + 1]);
             off = fmin(off, off_way(at, (const double(*)[3])way[m]) / (zone + SAG));
         }
