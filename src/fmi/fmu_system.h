@@ -64,6 +64,20 @@ struct system_column {
         memcpy(&(to), &(from), sizeof(to)); \
     } while (0)
 
+/* Step a part of several runs, those that have not failed: at once if it can, else one by one. */
+#define SYSTEM_TOGETHER(part, member) \
+    if ((part).together) { \
+        void *at[FMU_PART_RUNS]; \
+        for (int r = 0; r < runs; r++) { \
+            at[r] = &m[r]->member; \
+        } \
+        (part).together(at, runs, t0, t1, failed); \
+    } else { \
+        for (int r = 0; r < runs; r++) { \
+            failed[r] = failed[r] || (part).step(&m[r]->member, t0, t1) != 0; \
+        } \
+    }
+
 /* Check of the values on all wires together, which is evaluated once. Most values need only be
  * finite: x * 0 is 0 for a finite x and NaN for any other. */
 struct system_check {

@@ -36,8 +36,10 @@
 
 enum {
     PLANT_STATE_SIZE = PLANT_STATES * PLANT_LANES,
-    PLANT_INPUT_SIZE = (PLANT_INPUTS > 0 ? PLANT_INPUTS : 1) * PLANT_LANES,
-    PLANT_CONSTANT_SIZE = (PLANT_CONSTANTS > 0 ? PLANT_CONSTANTS : 1) * PLANT_LANES,
+    PLANT_INPUT_ROWS = PLANT_INPUTS > 0 ? PLANT_INPUTS : 1,
+    PLANT_CONSTANT_ROWS = PLANT_CONSTANTS > 0 ? PLANT_CONSTANTS : 1,
+    PLANT_INPUT_SIZE = PLANT_INPUT_ROWS * PLANT_LANES,
+    PLANT_CONSTANT_SIZE = PLANT_CONSTANT_ROWS * PLANT_LANES,
     PLANT_OUTPUT_SIZE = PLANT_OUTPUTS * PLANT_LANES,
     PLANT_PARAMETER_SIZE = PLANT_PARAMETERS > 0 ? PLANT_PARAMETERS : 1,
     PLANT_SUB_STEPS_MAX = 1000 /* 1000 is 25 ns at 25 us: beyond it a parameter is wrong */
@@ -78,33 +80,34 @@ static const double plant_h_lambda = 2.0; /* largest (h/n) |lambda| */
 typedef void plant_rates(int lanes, const double *restrict x, const double *restrict u,
                          const double *restrict c, double *restrict dx);
 
-/* One Runge-Kutta step of h [s]. */
-static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant_block *b, double h)
+/* One Runge-Kutta step of h [s] of the states x. */
+static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, double *restrict x,
+                                       const double *restrict u, const double *restrict c, double h)
 {
+    enum { SIZE = PLANT_STATES * PLANT_WIDEST };
     const int n = PLANT_STATES * lanes;
-    double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
-    double at[PLANT_STATE_SIZE];
-    rhs(lanes, b->x, b->u, b->c, k1);
+    double k1[SIZE], k2[SIZE], k3[SIZE], k4[SIZE], at[SIZE];
+    rhs(lanes, x, u, c, k1);
     for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + 0.5 * h * k1[i];
+        at[i] = x[i] + 0.5 * h * k1[i];
     }
-    rhs(lanes, at, b->u, b->c, k2);
+    rhs(lanes, at, u, c, k2);
     for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + 0.5 * h * k2[i];
+        at[i] = x[i] + 0.5 * h * k2[i];
     }
-    rhs(lanes, at, b->u, b->c, k3);
+    rhs(lanes, at, u, c, k3);
     for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + h * k3[i];
+        at[i] = x[i] + h * k3[i];
     }
-    rhs(lanes, at, b->u, b->c, k4);
+    rhs(lanes, at, u, c, k4);
     for (int i = 0; i < n; i++) {
-        b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+        x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
     }
 }
 
 static void plant_step_plain(struct plant_block *b, double h)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs, b, h))
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs, b->x, b->u, b->c, h))
     switch (b->lanes) {
         PLANT_WIDTHS(STEP)
     }
@@ -115,7 +118,7 @@ static void plant_step_plain(struct plant_block *b, double h)
  * stores. */
 EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b->x, b->u, b->c, h))
     switch (b->lanes) {
         PLANT_WIDTHS(STEP)
     }
@@ -212,20 +215,24 @@ static int plant_advance(struct fmu *f, int64_t now)
     return 0;
 }
 
+static void plant_read_block(const struct fmu *f, struct plant_block *b)
+{
+    for (int lane = 0; lane < b->lanes; lane++) {
+        plant_inputs(&f->s.v, b->instance[lane], b->lanes, &b->u[lane]);
+    }
+}
+
 static void plant_read(struct fmu *f)
 {
     for (int n = 0; n < f->s.m.blocks; n++) {
-        struct plant_block *b = &f->s.m.block[n];
-        for (int lane = 0; lane < b->lanes; lane++) {
-            plant_inputs(&f->s.v, b->instance[lane], b->lanes, &b->u[lane]);
-        }
+        plant_read_block(f, &f->s.m.block[n]);
     }
 }
 
 /* Whether all values are finite: 0 times a finite number is 0, times infinity or NaN it is NaN. */
 static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 {
-    double rest[PLANT_LANES] = { 0.0 }, sum = 0.0;
+    double rest[PLANT_WIDEST] = { 0.0 }, sum = 0.0;
     for (int k = 0; k < rows; k++) {
         for (int lane = 0; lane < lanes; lane++) {
             rest[lane] += 0.0 * a[k * lanes + lane];
@@ -269,18 +276,32 @@ static int plant_refuse(struct fmu *f, const struct plant_block *b, const double
                     names[i / b->lanes], isnan(a[i]) ? NAN : a[i], 1e-9 * (double)now);
 }
 
-/* Set the outputs from the state at the grid instant `now` [ns]; fails if a value is not finite. */
+/* Set the outputs of a block from y, whose quantities are `step` apart. */
+static void plant_show_block(struct fmu *f, const struct plant_block *b, const double *y, int step)
+{
+    for (int lane = 0; lane < b->used; lane++) {
+        plant_show(&f->s.v, b->instance[lane], step, &y[lane]);
+    }
+}
+
+/* Set the outputs of a block from its state at the grid instant `now` [ns]; fails if a value is not
+ * finite. */
+static int plant_publish_block(struct fmu *f, const struct plant_block *b, int64_t now)
+{
+    double y[PLANT_OUTPUT_SIZE];
+    (plant_wide(b) ? plant_outputs_avx2 : plant_outputs)(b->lanes, b->x, b->u, b->c, y);
+    if (!plant_finite(b, y)) {
+        return plant_refuse(f, b, y, now);
+    }
+    plant_show_block(f, b, y, b->lanes);
+    return 0;
+}
+
 static int plant_publish(struct fmu *f, int64_t now)
 {
     for (int n = 0; n < f->s.m.blocks; n++) {
-        const struct plant_block *b = &f->s.m.block[n];
-        double y[PLANT_OUTPUT_SIZE];
-        (plant_wide(b) ? plant_outputs_avx2 : plant_outputs)(b->lanes, b->x, b->u, b->c, y);
-        if (!plant_finite(b, y)) {
-            return plant_refuse(f, b, y, now);
-        }
-        for (int lane = 0; lane < b->used; lane++) {
-            plant_show(&f->s.v, b->instance[lane], b->lanes, &y[lane]);
+        if (plant_publish_block(f, &f->s.m.block[n], now) != 0) {
+            return -1;
         }
     }
     return 0;
@@ -466,16 +487,22 @@ static int plant_tune(struct fmu *f)
     return 0;
 }
 
-static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+/* Take tunable parameters that have changed, and compare the first communication step. */
+static int plant_ready(struct fmu *f, int64_t t0, int64_t t1)
 {
     if (PLANT_TUNABLES > 0 && plant_tuned(&f->s.v, &f->s.m.tuned) && plant_tune(f) != 0) {
         return -1;
     }
-    const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
     if (!f->s.m.watched) {
         f->s.m.watched = true;
         plant_watch(f, 1e-9 * (double)(t1 - t0));
     }
+    return 0;
+}
+
+static int plant_run(struct fmu *f, int64_t t0, int64_t t1)
+{
+    const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
     for (int64_t now = first; now <= t1; now += h) {
         if (now > t0 && plant_advance(f, now) != 0) {
             return -1;
@@ -486,3 +513,12 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
     }
     return last > t0 ? plant_publish(f, last) : 0;
 }
+
+static int model_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    return plant_ready(f, t0, t1) != 0 ? -1 : plant_run(f, t0, t1);
+}
+
+#if defined(FMU_PART) && defined(PLANT_TOGETHER) && defined(EL_WIDE)
+#include "plant_together.h"
+#endif

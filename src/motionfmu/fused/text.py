@@ -113,6 +113,16 @@ def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
     return _function(head, [f"return {joined} ? -1 : 0;"], [])
 
 
+def _together(system: System, parts: Mapping[str, FmuPart]) -> str:
+    lines = [
+        f"SYSTEM_TOGETHER(motionfmu_part_{parts[fmu].identifier}, of_{component})"
+        for component, fmu in system.components.items()
+    ]
+    several = "struct model *const *m, int runs, int64_t t0, int64_t t1, bool *failed"
+    text = _function(f"void system_together({several})", lines, [])
+    return f"\n#ifdef SYSTEM_QUICKLY\n{text}#endif\n"
+
+
 def _shows(system: System, used: Roles) -> Iterable[str]:
     taken = [f"SYSTEM_COPY({_in_part(e)}, {_here(e)});" for e in used.taken]
     yield _function("void system_take(struct model *m, const struct vars *v)", taken, ["m", "v"])
@@ -181,6 +191,7 @@ def model(
         _carry(system),
         _until(system),
         _step(system, parts),
+        _together(system, parts),
         *_shows(system, used),
         '\n#include "fmi_system.inc"\n',
     ]

@@ -54,12 +54,24 @@ class Execution:
 
     def run(self, engine: Callable[[System], EngineResult], options: Options) -> Result:
         """Run it in an engine; an FMU's error message says where the refused value stands."""
-        planned = self.folder / PLANNED
-        planned.unlink(missing_ok=True)
+        self.clear()
         try:
             ran = engine(self.system)
         except InputError as error:
-            raise self.scenario.located(error, self.system, options.set) from None
+            raise self.located(error, options) from None
+        return self.result(ran, options)
+
+    def clear(self) -> None:
+        """Remove what an earlier run has written."""
+        (self.folder / PLANNED).unlink(missing_ok=True)
+
+    def located(self, error: InputError, options: Options) -> InputError:
+        """The error of an engine, with the place of a value that an FMU refused."""
+        return self.scenario.located(error, self.system, options.set)
+
+    def result(self, ran: EngineResult, options: Options) -> Result:
+        """The result of what an engine gave."""
+        planned = self.folder / PLANNED
         stopped, signal = self._stopped(ran)
         never: tuple[str, ...] = ()
         if (until := self.system.until) is not None and signal is None:

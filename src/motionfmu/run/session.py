@@ -1,6 +1,6 @@
 """One scenario that is made ready once and run many times."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +9,7 @@ from motionfmu.base import columns
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import engines
 from motionfmu.run.controller_plan import bounded
-from motionfmu.run.engines.engine_job import Engine, EngineResult
+from motionfmu.run.engines.engine_job import Engine, EngineResult, SideBySide
 from motionfmu.run.execution import HELD_IN_SESSION, Execution, own_settings
 from motionfmu.run.result import Result
 from motionfmu.run.run_plan import Options, RunPlan
@@ -82,9 +82,9 @@ class Session:
             self._options.engine, self._execution.job(self._options.fmi, HELD_IN_SESSION)
         )
 
-    def _values(self, given: Mapping[str, Any]) -> list[Setting]:
+    def _values(self, given: Mapping[str, Any], own: Mapping[str, Any]) -> list[Setting]:
         """All settings of a run; a value for one element leaves the others as they are."""
-        return settings(self.scenario.resolver, self._unset, self._given, given)
+        return settings(self.scenario.resolver, self._unset, {**self._given, **own}, given)
 
     def run(self, given: Mapping[str, Any]) -> Result:
         """Run once.
@@ -99,20 +99,82 @@ class Session:
         InputError
             A value is wrong, or an FMU refused something; one message.
         """
-        if unknown := [n for n in given if self.scenario.resolver.split(n)[0] not in self._varied]:
-            hint = suggestion(unknown[0], self._varied)
-            raise InputError(f"{unknown[0]} is not varied by this session{hint}")
-        execution = replace(
-            self._execution,
-            system=replace(self._execution.system, settings=tuple(self._values(given))),
-        )
-        options = replace(self._options, set=given)
-        self.scenario.check_scopes(execution.system, options)
+        execution = self._execution_of(given, self._folder)
 
         def engine(system: System) -> EngineResult:
             return replace(self._engine.run(system, self._options.progress), warnings=[])
 
-        result = execution.run(engine, replace(self._options, set={**self._options.set, **given}))
+        return self._told(execution.run(engine, self._all(given)))
+
+    @property
+    def lanes(self) -> int:
+        """How many runs `run_together` takes at once; 1 if the engine runs one by one."""
+        engine = self._engine
+        return engine.lanes(self._execution.system) if isinstance(engine, SideBySide) else 1
+
+    def run_together(self, given: Sequence[Mapping[str, Any]]) -> list[Result | InputError]:
+        """Run several times, side by side where that is quicker.
+
+        Parameters
+        ----------
+        given : sequence of mapping
+            For each run what `run` takes; `lanes` of them at once.
+
+        Returns
+        -------
+        list
+            For each a result, with the bits of `run`, or the error that `run` would raise.
+        """
+        found: list[Result | InputError] = []
+        lanes = self.lanes
+        for first in range(0, len(given), lanes):
+            some = given[first : first + lanes]
+            found += self._side_by_side(some) if len(some) > 1 else [self._alone(*some)]
+        return found
+
+    def _alone(self, given: Mapping[str, Any]) -> Result | InputError:
+        try:
+            return self.run(given)
+        except InputError as error:
+            return error
+
+    def _side_by_side(self, given: Sequence[Mapping[str, Any]]) -> list[Result | InputError]:
+        found: list[Result | InputError | None] = [None] * len(given)
+        planned: list[tuple[int, Execution]] = []
+        for i, values in enumerate(given):
+            folder = self._folder / str(i)  # of the path that each plans
+            folder.mkdir(exist_ok=True)
+            try:
+                planned.append((i, self._execution_of(values, folder)))
+            except InputError as error:
+                found[i] = error
+        for _, execution in planned:
+            execution.clear()
+        assert isinstance(self._engine, SideBySide), "else there is one lane"
+        several = self._engine.run_together([execution.system for _, execution in planned])
+        for (i, execution), ran in zip(planned, several, strict=True):
+            options = self._all(given[i])
+            if isinstance(ran, InputError):
+                found[i] = execution.located(ran, options)
+            else:
+                found[i] = self._told(execution.result(replace(ran, warnings=[]), options))
+        return [one for one in found if one is not None]
+
+    def _execution_of(self, given: Mapping[str, Any], folder: Path) -> Execution:
+        """The execution of a run with its files in a folder."""
+        if unknown := [n for n in given if self.scenario.resolver.split(n)[0] not in self._varied]:
+            hint = suggestion(unknown[0], self._varied)
+            raise InputError(f"{unknown[0]} is not varied by this session{hint}")
+        values = self._values(given, own_settings(self.scenario, folder))
+        system = replace(self._execution.system, settings=tuple(values))
+        self.scenario.check_scopes(system, replace(self._options, set=given))
+        return replace(self._execution, system=system, folder=folder)
+
+    def _all(self, given: Mapping[str, Any]) -> Options:
+        return replace(self._options, set={**self._options.set, **given})
+
+    def _told(self, result: Result) -> Result:
+        """The result, with what it has in common with others."""
         result.known = self._known
         return result
 

@@ -1,13 +1,14 @@
 """The job that an engine gets, and the result that it gives."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.errors import InputError
 from motionfmu.scenarios.system import End, System
 
 Progress = Callable[[float], None]
@@ -45,3 +46,14 @@ class Engine(Protocol):
 
     def close(self) -> None:
         """Free instances, libraries and files."""
+
+
+@runtime_checkable
+class SideBySide(Protocol):
+    """An engine that runs several systems side by side, each with the bits it has alone."""
+
+    def lanes(self, system: System) -> int:
+        """How many at once."""
+
+    def run_together(self, systems: Sequence[System]) -> list[EngineResult | InputError]:
+        """Run systems that differ in values only; an error of one leaves the others whole."""

@@ -1,13 +1,14 @@
 """The fused engine: a system is one compiled program with a recorder, loaded once.
 
 A run is an instance of the program: its values are set by one call for each type, then it makes few
-long steps, and driven inputs are set between them.
+long steps, and driven inputs are set between them. Several runs go side by side: one call steps all.
 """
 
 import ctypes
 import functools
 import json
 import re
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from motionfmu import fused
 from motionfmu.base.columns import Columns
+from motionfmu.base.errors import InputError
 from motionfmu.fmu.describe import STRICT
 from motionfmu.fused.resource_files import carrying, placed
 from motionfmu.run.engines import fmu_messages
@@ -24,11 +26,13 @@ from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
 from motionfmu.run.engines.fmu_library import FmuRefusal, Library, ValuePlace
 from motionfmu.scenarios import recording
-from motionfmu.scenarios.system import System
+from motionfmu.scenarios.system import Stimulus, System
 
 NAME = "system"
 # A call makes so many steps at most; Ctrl-C ends the run between two calls.
 STEPS_MAX = 20_000
+# So many runs go side by side at most (FMU_PART_RUNS); [byte] their signals take no more.
+LANES, LANES_HELD = 8, 1 << 28
 KINDS = {"Float64": np.float64, "Int32": np.int32, "Boolean": np.bool_}
 STEP, FOLDER, EVERY = "system.step", "recorder.folder", "recorder.every"
 SETTLE, SIGNAL = "until.settle", "until.step"
@@ -53,53 +57,33 @@ def _about(folder: Path) -> _About:
     return _About(about["library"], about["token"], variables)
 
 
-class Fused:
-    """A program, and an instance of it for each run."""
+class _Instance:
+    """An instance of a program: one run from its start to its end."""
 
-    def __init__(self, job: EngineJob) -> None:
-        self._job, self._signals = job, job.folder / "signals"
-        self._carrying = carrying(job.system)
-        self._folder = fused.program(job.system, job.recorded, job.fmi).folder
-        about = _about(self._folder)
-        self._token, self._variables = about.token, about.variables
-        self._library = Library(self._folder / about.library, job.fmi)
+    def __init__(self, program: "Fused", library: Library, system: System) -> None:
+        self._program, self._library, self._system = program, library, system
+        self._job = program.job
+        self._rows: list[NDArray[Any]] = []
         self._errors: list[str] = []
         self._warnings: list[str] = []
+        self.held = bool(self._job.recorded) and program.size(system) <= self._job.memory
+        self.steps, self._signal = system.steps, None
 
-    def run(self, system: System, progress: Progress) -> EngineResult:
-        """Run from the start."""
-        library = self._library
-        recorded = self._job.recorded
-        held = bool(recorded) and recording.size(system, recorded) <= self._job.memory
-        rows: list[NDArray[Any]] = []
-        self._errors.clear()
-        self._warnings.clear()
-        try:
-            library.instantiate(NAME, self._token, self._folder / "resources", self._tell)
-            library.warn()
-            self._set(system, held)
-            library.enter(system.begin_time)
-            library.leave()
-            if held:
-                rows = self._record(system)
-            steps, signal = self._advance(system, progress)
-            library.terminate()
-        except FmuRefusal as refused:
-            raise fmu_messages.failure(NAME, str(refused), self._errors) from None
-        finally:
-            library.release()
-        progress(1.0)
-        names = [end.name for end in recorded]
-        if held:
-            time, *found = (column[: system.rows(steps)] for column in rows)
-            signals = dict(zip(names, found, strict=True))
-            return EngineResult("fused", signals, [*self._warnings], steps, signal, time)
-        files = Columns.taken(self._signals, names) if names else Columns({})
-        return EngineResult("fused", files, [*self._warnings], steps, signal, files.time)
+    def begin(self) -> None:
+        """Make the instance, with its values, up to its first step."""
+        library, about = self._library, self._program.about
+        resources = self._program.folder / "resources"
+        library.instantiate(NAME, about.token, resources, self._tell)
+        library.warn()
+        self._set()
+        library.enter(self._system.begin_time)
+        library.leave()
+        if self.held:
+            self._rows = self._record()
 
-    def _record(self, system: System) -> list[NDArray[Any]]:
+    def _record(self) -> list[NDArray[Any]]:
         """Let the program record into arrays: times, then each signal."""
-        rows = system.rows(system.steps)
+        rows = self._system.rows(self._system.steps)
         shapes = [
             ((), np.float64),
             *((e.port.shape, KINDS[e.port.type]) for e in self._job.recorded),
@@ -111,33 +95,50 @@ class Fused:
             raise MemoryError
         return columns
 
-    def _set(self, system: System, held: bool) -> None:
-        settings = placed(system, self._carrying).settings
+    def _set(self) -> None:
+        system, recorded = self._system, self._job.recorded
+        settings = placed(system, self._program.carrying).settings
         given: dict[str, tuple[Any, ...]] = {
             s.end.name: s.values for s in settings if s.end.port.name != STRICT
         }
         given[STEP] = (system.step_ns * 1e-9,)
-        given[FOLDER] = (str(self._signals) if self._job.recorded and not held else "",)
+        given[FOLDER] = (str(self._program.signals) if recorded and not self.held else "",)
         given[EVERY] = (system.every,)
         if system.until is not None:
             given[SETTLE] = (system.until.settle,)
-        self._library.set((self._variables[name], values) for name, values in given.items())
+        variables = self._program.about.variables
+        self._library.set((variables[name], values) for name, values in given.items())
 
-    def _advance(self, system: System, progress: Progress) -> tuple[int, int | None]:
-        """Number of steps made, and the communication point at which the signal came."""
-        due, step, steps = system.due(), system.step_ns * 1e-9, system.steps
-        signal = None
-        for k, following in shares(system, due, STEPS_MAX):
-            self._library.set((self._variables[s.end.name], s.values) for s in due.get(k, ()))
-            self._library.step(k * system.step_ns * 1e-9, (following - k) * step)
-            progress(system.share(following))
-            if system.until is not None and signal is None:
-                (at,) = self._library.get(self._variables[SIGNAL])
-                if at >= 0:
-                    signal, steps = at, min(steps, at + 1 + system.until.settle)
-            if following >= steps:
-                break
-        return steps, signal
+    def give(self, stimuli: Iterable[Stimulus]) -> None:
+        """Set what is due at a communication point."""
+        variables = self._program.about.variables
+        self._library.set((variables[s.end.name], s.values) for s in stimuli)
+
+    def step(self, first: int, following: int) -> None:
+        """Make steps from one communication point to another."""
+        step_ns = self._system.step_ns
+        self._library.step(first * step_ns * 1e-9, (following - first) * (step_ns * 1e-9))
+
+    def ended(self, following: int) -> bool:
+        """Whether the run ends with the steps up to a communication point."""
+        until = self._system.until
+        if until is not None and self._signal is None:
+            (at,) = self._library.get(self._program.about.variables[SIGNAL])
+            if at >= 0:
+                self._signal, self.steps = at, min(self.steps, at + 1 + until.settle)
+        return following >= self.steps
+
+    def result(self) -> EngineResult:
+        """End the run."""
+        self._library.terminate()
+        names = [end.name for end in self._job.recorded]
+        told, steps, signal = [*self._warnings], self.steps, self._signal
+        if self.held:
+            time, *found = (column[: self._system.rows(steps)] for column in self._rows)
+            signals = dict(zip(names, found, strict=True))
+            return EngineResult("fused", signals, told, steps, signal, time)
+        files = Columns.taken(self._program.signals, names) if names else Columns({})
+        return EngineResult("fused", files, told, steps, signal, files.time)
 
     def _tell(self, status: int, text: str) -> None:
         told = text.strip().removeprefix(f"{NAME}: ")
@@ -146,9 +147,121 @@ class Fused:
             told = f"{NAME}: {told}"
         fmu_messages.keep(status, told, self._errors, self._warnings)
 
+    def failure(self, refused: FmuRefusal) -> InputError:
+        """The error of a call that was refused."""
+        return fmu_messages.failure(NAME, str(refused), self._errors)
+
+    def release(self) -> None:
+        """Free the instance."""
+        self._library.release()
+
+    @property
+    def handle(self) -> ctypes.c_void_p:
+        """The instance's address."""
+        return self._library.instance
+
+
+class Fused:
+    """A program, and an instance of it for each run."""
+
+    def __init__(self, job: EngineJob) -> None:
+        self.job, self.signals = job, job.folder / "signals"
+        self.carrying = carrying(job.system)
+        self.folder = fused.program(job.system, job.recorded, job.fmi).folder
+        self.about = _about(self.folder)
+        # A library for each of the runs that go side by side.
+        self._libraries = [Library(self.folder / self.about.library, job.fmi)]
+
+    def size(self, system: System) -> int:
+        """Size of what a run records [byte]."""
+        return recording.size(system, self.job.recorded)
+
+    def run(self, system: System, progress: Progress) -> EngineResult:
+        """Run from the start."""
+        one = _Instance(self, self._libraries[0], system)
+        due = system.due()
+        try:
+            one.begin()
+            for k, following in shares(system, due, STEPS_MAX):
+                one.give(due.get(k, ()))
+                one.step(k, following)
+                progress(system.share(following))
+                if one.ended(following):
+                    break
+            ran = one.result()
+        except FmuRefusal as refused:
+            raise one.failure(refused) from None
+        finally:
+            one.release()
+        progress(1.0)
+        return ran
+
+    def lanes(self, system: System) -> int:
+        """How many runs may go side by side: their signals are held in memory."""
+        size = self.size(system)
+        if size > self.job.memory or system.begin > 0:
+            return 1
+        return max(1, min(LANES, LANES_HELD // max(size, 1)))
+
+    def run_together(self, systems: Sequence[System]) -> list[EngineResult | InputError]:
+        """Run systems that differ in values side by side; each has the bits it has alone.
+
+        There may be as many as `lanes` says. Who fails gives an error, the others go on.
+        """
+        while len(self._libraries) < len(systems):
+            self._libraries.append(Library(self.folder / self.about.library, self.job.fmi))
+        runs = [_Instance(self, *of) for of in zip(self._libraries, systems, strict=False)]
+        found: list[EngineResult | InputError | None] = [None] * len(runs)
+
+        def attempt(i: int, act: Callable[[], Any]) -> Any:
+            if found[i] is None:
+                try:
+                    return act()
+                except FmuRefusal as refused:
+                    found[i] = runs[i].failure(refused)
+            return None
+
+        try:
+            for i, one in enumerate(runs):
+                attempt(i, one.begin)
+            self._side_by_side(systems, runs, found, attempt)
+            for i, one in enumerate(runs):
+                ran = attempt(i, one.result)
+                found[i] = found[i] or ran
+        finally:
+            for one in runs:
+                one.release()
+        return [ran for ran in found if ran is not None]
+
+    def _side_by_side(
+        self,
+        systems: Sequence[System],
+        runs: Sequence[_Instance],
+        found: list[EngineResult | InputError | None],
+        attempt: Callable[[int, Callable[[], Any]], Any],
+    ) -> None:
+        """Make the steps of all runs that have begun; `attempt` notes who fails in `found`."""
+        due = [system.due() for system in systems]
+        step = self._libraries[0].own("motionfmu_together")
+        for k, following in shares(systems[0], {t for one in due for t in one}, STEPS_MAX):
+            for i, one in enumerate(runs):
+                attempt(i, functools.partial(one.give, due[i].get(k, ())))
+            left = [i for i, ran in enumerate(found) if ran is None]
+            if not left:
+                return
+            several = (ctypes.c_void_p * len(left))(*(runs[i].handle.value for i in left))
+            failed = (ctypes.c_bool * len(left))()
+            step(several, len(left), ctypes.c_int64(following - k), failed)
+            for i in (i for i, bad in zip(left, failed, strict=True) if bad):
+                found[i] = runs[i].failure(FmuRefusal("doStep"))
+            going = [i for i in left if found[i] is None]
+            if all([attempt(i, functools.partial(runs[i].ended, following)) for i in going]):
+                return
+
     def close(self) -> None:
         """Free the program; its files stay on the disk."""
-        self._library.close()
+        for library in self._libraries:
+            library.close()
 
 
 def opened(job: EngineJob) -> Fused:
