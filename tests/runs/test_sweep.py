@@ -260,11 +260,11 @@ def test_a_run_that_ends_its_process_is_a_row_and_is_tried_again(
     site.mkdir()
     (site / "sitecustomize.py").write_text(
         "import os, motionfmu.run.session as s\n"
-        "run = s.Session.run\n"
-        "def deadly(self, given):\n"
+        "made = s.Session._execution_of\n"
+        "def deadly(self, given, folder):\n"
         "    if given.get('mcc.p_gain') == 300: os.kill(os.getpid(), 11)\n"
-        "    return run(self, given)\n"
-        "s.Session.run = deadly\n"
+        "    return made(self, given, folder)\n"
+        "s.Session._execution_of = deadly\n"
     )
     chosen = study(CIRCLE, {**SHORT, "axis": {GAIN: {"from": 100, "to": 600, "n": 6}}})
     monkeypatch.setenv("PYTHONPATH", str(site))

@@ -1,4 +1,4 @@
-"""The workers on this machine: one process each, which gets one point after the other."""
+"""The workers on this machine: one process each, which gets one group of points after the other."""
 
 import contextlib
 import os
@@ -19,7 +19,7 @@ from motionfmu.study.worker import CRASH, Row
 
 Task = tuple[int, Point]
 
-# Points that a worker has: one runs, the others wait, so that the worker never has to wait.
+# Groups of points that a worker has: one runs, the others wait, so that it never has to wait.
 AHEAD = 4
 PATIENCE = 10  # [s] for a worker to remove its files when it is told to end
 # Variables that give each worker one thread, for there are as many workers as cores.
@@ -40,12 +40,12 @@ def cores() -> int:
 
 @dataclass
 class _Process:
-    """A worker's process, this end of its pipe, and its points, of which the first one runs."""
+    """A worker's process, this end of its pipe, and its groups, of which the first one runs."""
 
     process: "subprocess.Popen[bytes]"
     pipe: Connection
-    tasks: deque[Task] = field(default_factory=deque)
-    ready: bool = False
+    groups: deque[list[Task]] = field(default_factory=deque)
+    lanes: int = 0  # so many points run side by side; 0: it is not ready yet
 
 
 def _start(job: WorkerJob, temporary: str) -> _Process:
@@ -65,47 +65,56 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     # A run that ends its process gives a row that says so. A worker that cannot begin is an
     # InputError.
     pending = deque(tasks)
+    alone: deque[Task] = deque()  # of a group that has ended its process: whose fault is it?
     running: list[_Process] = []
     with tempfile.TemporaryDirectory(prefix="motionfmu-", ignore_cleanup_errors=True) as temporary:
         try:
-            while pending or any(p.tasks for p in running):
-                while len(running) < min(workers, len(pending) + len(running)):
+            while pending or alone or any(p.groups for p in running):
+                left = len(pending) + len(alone)
+                while len(running) < min(workers, left + len(running)):
                     running.append(_start(job, temporary))
-                _deal(running, pending)
+                _deal(running, pending, alone)
                 for pipe in wait([p.pipe for p in running]):
                     one = next(p for p in running if p.pipe is pipe)
                     told = _receive(one)
                     if isinstance(told, InputError):
                         raise told
-                    if isinstance(told, Row):
-                        one.tasks.popleft()
-                        yield told
+                    if isinstance(told, list):
+                        one.groups.popleft()
+                        yield from told
                     elif told is None:
                         running.remove(one)
                         lost = _crashed(one, job)
-                        pending.extendleft(reversed(one.tasks))
-                        if lost:
-                            yield lost
+                        alone.extend(lost if len(lost) > 1 else ())
+                        for group in reversed(one.groups):
+                            pending.extendleft(reversed(group))
+                        if len(lost) == 1:
+                            yield _row_of(lost[0], one, job)
                     else:
-                        one.ready = True
+                        one.lanes = told
         finally:
             for one in running:
                 _end(one)
 
 
-def _deal(running: list[_Process], pending: deque[Task]) -> None:
-    """Hand out points; the last points only to workers that have none."""
+def _deal(running: list[_Process], pending: deque[Task], alone: deque[Task]) -> None:
+    """Hand out groups of points; the last points only to workers that have none."""
     for one in running:
-        ahead = AHEAD if len(pending) > AHEAD * len(running) else 1
-        while one.ready and pending and len(one.tasks) < ahead:
-            one.tasks.append(pending.popleft())
+        ahead = AHEAD if len(pending) > AHEAD * one.lanes * len(running) else 1
+        while one.lanes and (pending or alone) and len(one.groups) < ahead:
+            if alone:
+                group = [alone.popleft()]
+            else:
+                share = -(-len(pending) // len(running))
+                group = [pending.popleft() for _ in range(min(one.lanes, share))]
+            one.groups.append(group)
             with contextlib.suppress(BrokenPipeError, ConnectionResetError):
-                one.pipe.send(one.tasks[-1])  # its end is seen when we receive
+                one.pipe.send(group)  # its end is seen when we receive
 
 
 def _end(one: _Process) -> None:
     one.pipe.close()
-    if one.tasks or not one.ready:
+    if one.groups or not one.lanes:
         one.process.terminate()
     try:
         one.process.wait(PATIENCE)
@@ -122,14 +131,21 @@ def _receive(one: _Process) -> Any:
         return None
 
 
-def _crashed(one: _Process, job: WorkerJob) -> Row | None:
-    """The row of the run that ended its process; the worker's other points are not lost."""
+def _crashed(one: _Process, job: WorkerJob) -> list[Task]:
+    """The points of the group that ended its process; the worker's other points are not lost."""
     one.pipe.close()
+    one.process.wait()
+    if not one.lanes:
+        raise InputError(f"{job.scenario}: a worker ended with {_how(one)} before its first run")
+    return one.groups.popleft() if one.groups else []
+
+
+def _how(one: _Process) -> str:
     code = one.process.wait()
-    how = f"signal {-code}" if code < 0 else f"status {code}"
-    if not one.ready:
-        raise InputError(f"{job.scenario}: a worker ended with {how} before its first run")
-    if not one.tasks:
-        return None
-    run, _ = one.tasks.popleft()
-    return Row(run, CRASH, f"the run ended its process ({how})", None, (None,) * len(job.columns))
+    return f"signal {-code}" if code < 0 else f"status {code}"
+
+
+def _row_of(task: Task, one: _Process, job: WorkerJob) -> Row:
+    """The row of the run that ended its process."""
+    told = f"the run ended its process ({_how(one)})"
+    return Row(task[0], CRASH, told, None, (None,) * len(job.columns))

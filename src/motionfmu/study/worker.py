@@ -14,6 +14,7 @@ from typing import Any
 
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run import load, machine
+from motionfmu.run.result import Result
 from motionfmu.run.session import Session
 from motionfmu.scenarios.body import CHECK
 from motionfmu.study.study_axes import Point
@@ -54,12 +55,37 @@ class Worker:
         options: dict[str, Any] = {"set": job.set, "stop": job.stop, "step": job.step}
         self._session = Session(scenario, job.axes, recorded, **options)
 
-    def row(self, run: int, point: Point) -> Row:
-        """Run one point, which has a value per axis."""
+    @property
+    def lanes(self) -> int:
+        """How many points run side by side."""
+        return self._session.lanes
+
+    def rows(self, tasks: Sequence[tuple[int, Point]]) -> list[Row]:
+        """Run some points, which have a number and a value per axis, side by side if they can."""
+        given = [dict(zip(self.job.axes, point, strict=True)) for _, point in tasks]
+        found: list[Row] = []
+        for first in range(0, len(given), self.lanes):
+            runs, some = tasks[first : first + self.lanes], given[first : first + self.lanes]
+            ran = self._ran(some)
+            while ran:  # signals of a run that has its row are let go
+                found.append(self._row(runs[len(runs) - len(ran)][0], ran.pop(0)))
+        return found
+
+    def _ran(self, given: Sequence[dict[str, Any]]) -> list[Result | Exception]:
         try:
-            result = self._session.run(dict(zip(self.job.axes, point, strict=True)))
-        except Exception as error:  # the study goes on
-            return Row(run, ERROR, _told(error), None, (None,) * len(self._columns))
+            return [*self._session.run_together(given)]
+        except Exception:  # the study goes on: one by one it shows whose it is
+            return [self._alone(values) for values in given]
+
+    def _alone(self, values: dict[str, Any]) -> Result | Exception:
+        try:
+            return self._session.run(values)
+        except Exception as error:
+            return error
+
+    def _row(self, run: int, result: Result | Exception) -> Row:
+        if isinstance(result, Exception):
+            return Row(run, ERROR, _told(result), None, (None,) * len(self._columns))
         values: list[float | None] = []
         missing: dict[str, None] = {}
         wrong = ""
@@ -99,14 +125,14 @@ def chunk(job: WorkerJob, points: Sequence[tuple[int, Point]]) -> list[Row]:
             _kept.worker = None
             worker.close()
         worker = _kept.worker = Worker(job)
-    return [worker.row(run, point) for run, point in points]
+    return worker.rows(points)
 
 
 def main(pipe: int) -> None:
     """Serve the process that started this one until it is gone.
 
-    The pipe, a file descriptor, brings the job and then points. It takes "ready" or an error back,
-    then rows.
+    The pipe, a file descriptor, brings the job and then lists of points. It takes back how many run
+    side by side, or an error, then lists of rows.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
     with Connection(pipe) as connection:
@@ -116,9 +142,9 @@ def main(pipe: int) -> None:
             connection.send(error)
             return
         try:
-            connection.send("ready")
+            connection.send(worker.lanes)
             while True:
-                connection.send(worker.row(*connection.recv()))
+                connection.send(worker.rows(connection.recv()))
         except (EOFError, BrokenPipeError, ConnectionResetError):
             pass  # the study has ended, or its process
         finally:
