@@ -10,6 +10,7 @@ import time
 import zipfile
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -275,6 +276,38 @@ def test_a_run_that_ends_its_process_is_a_row_and_is_tried_again(
     again = conduct(chosen, tmp_path / "s", Ways(workers=1))
     assert again.resumed == 5 and [r.status for r in again.rows] == ["ok"] * 6
     assert again.rows[1] == rows[1]
+
+
+@pytest.mark.long
+def test_ten_thousand_rows_are_what_single_runs_give_in_flat_memory(tmp_path: Path) -> None:
+    """500 rows of them, drawn evenly; what workers hold after 1,000 runs is enough for 10,000."""
+    count, held = 10_000, {}
+    axis = {TAU: {"from": 1e-3, "to": 0.05, "n": 2500}, GAIN: [100, 200, 300, 400]}
+    chosen = study(CIRCLE, {**SHORT, "stop": 0.01, "axis": axis})
+
+    def progress(done: int, errors: int) -> None:
+        if done in (1000, count - 100):
+            held[done] = max(resident(child) for child in children())
+
+    rows = conduct(chosen, tmp_path / "s", Ways(workers=2, progress=progress)).rows
+    assert [row.run for row in rows] == list(range(count))
+    assert held[count - 100] < 1.05 * held[1000]
+    with closing(worker.Worker(chosen.job)) as alone:
+        found = [alone.rows([(run, chosen.points[run])])[0] for run in range(7, count, 20)]
+    assert found == rows[7::20] and len(found) == 500
+    assert len({row.values for row in found}) > 400, "rows that do not differ show no mixing"
+
+
+def children() -> list[int]:
+    """Processes that this one has started and not ended."""
+    tasks = Path(f"/proc/{os.getpid()}/task").iterdir()
+    return [int(x) for task in tasks for x in (task / "children").read_text().split()]
+
+
+def resident(process: int) -> int:
+    """Memory of a process [kB]."""
+    lines = Path(f"/proc/{process}/status").read_text().splitlines()
+    return int(next(line.split()[1] for line in lines if line.startswith("VmRSS")))
 
 
 # ---- resuming

@@ -27,8 +27,8 @@ from motionfmu.fmu.modelica.ode import Ode
 # BallScrewAxis for all, 2026-11): 1 lane 16 ns, 2 lanes 16 ns, 4 lanes 19 ns (AVX2: 17), 6 lanes
 # 26 ns (AVX2: 23).
 WIDTHS = (1, 2, 4, 6)
-# Lanes of several runs that are stepped at once. Measured (a step of Runge and Kutta of the two axes
-# of a run, 2026-11): alone 80 ns, 4 runs in 8 lanes 22 ns, 8 in 16 lanes 17 ns.
+# Lanes of several runs that are stepped at once. Measured (a step of Runge and Kutta of a run's two
+# axes, 2026-11): alone 80 ns, 4 runs in 8 lanes 22 ns, 8 in 16 lanes 17 ns.
 TOGETHER = (8, 16)
 # Branches are bits of an unsigned int; plant_model.c tries every combination of up to 8 of them.
 MAX_BRANCHES = 31

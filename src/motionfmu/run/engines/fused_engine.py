@@ -1,7 +1,7 @@
 """The fused engine: a system is one compiled program with a recorder, loaded once.
 
 A run is an instance of the program: its values are set by one call for each type, then it makes few
-long steps, and driven inputs are set between them. Several runs go side by side: one call steps all.
+long steps, and driven inputs are set between them. Of several runs one call steps all.
 """
 
 import ctypes
@@ -254,8 +254,9 @@ class Fused:
             step(several, len(left), ctypes.c_int64(following - k), failed)
             for i in (i for i, bad in zip(left, failed, strict=True) if bad):
                 found[i] = runs[i].failure(FmuRefusal("doStep"))
-            going = [i for i in left if found[i] is None]
-            if all([attempt(i, functools.partial(runs[i].ended, following)) for i in going]):
+            # each is asked, for it notes when its signal came
+            ended = [attempt(i, functools.partial(runs[i].ended, following)) for i in left]
+            if all(done or found[i] is not None for i, done in zip(left, ended, strict=True)):
                 return
 
     def close(self) -> None:
