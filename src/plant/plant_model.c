@@ -75,28 +75,26 @@ static const double plant_h_lambda = 2.0; /* largest (h/n) |lambda| */
 #define PLANT_CASE(n, call) \
     case n: call; break;
 
-typedef void plant_rates(int lanes, const double *restrict x, const double *restrict u,
-                         const double *restrict c, double *restrict dx);
-
 /* One Runge-Kutta step of h [s]. */
-static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant_block *b, double h)
+static PLANT_INLINE void plant_step_of(int lanes, plant_function *rhs, struct plant_block *b,
+                                       double h)
 {
     const int n = PLANT_STATES * lanes;
     double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
     double at[PLANT_STATE_SIZE];
-    rhs(lanes, b->x, b->u, b->c, k1);
+    rhs(b->x, b->u, b->c, k1);
     for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + 0.5 * h * k1[i];
     }
-    rhs(lanes, at, b->u, b->c, k2);
+    rhs(at, b->u, b->c, k2);
     for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + 0.5 * h * k2[i];
     }
-    rhs(lanes, at, b->u, b->c, k3);
+    rhs(at, b->u, b->c, k3);
     for (int i = 0; i < n; i++) {
         at[i] = b->x[i] + h * k3[i];
     }
-    rhs(lanes, at, b->u, b->c, k4);
+    rhs(at, b->u, b->c, k4);
     for (int i = 0; i < n; i++) {
         b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
     }
@@ -104,7 +102,7 @@ static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant
 
 static void plant_step_plain(struct plant_block *b, double h)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs, b, h))
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_##n, b, h))
     switch (b->lanes) {
         PLANT_WIDTHS(STEP)
     }
@@ -115,7 +113,7 @@ static void plant_step_plain(struct plant_block *b, double h)
  * stores. */
 EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
+#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_##n##_avx2, b, h))
     switch (b->lanes) {
         PLANT_WIDTHS(STEP)
     }
@@ -151,7 +149,7 @@ static double plant_trial(const struct plant_block *b, double h, double *y)
             }
             y[i] = b->x[i] + h * sum;
         }
-        plant_rhs(1, y, b->u, b->c, k[s]);
+        plant_rhs_1(y, b->u, b->c, k[s]);
     }
     double worst = 0.0;
     for (int i = 0; i < PLANT_STATE_SIZE; i++) {
@@ -237,17 +235,25 @@ static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
     return sum == 0.0;
 }
 
-/* Whether all states and outputs of a block are finite. */
-static bool plant_finite(const struct plant_block *b, const double *y)
+/* Compute the outputs y of a block. Returns whether all its states and outputs are finite. */
+static PLANT_INLINE bool plant_outputs_of(int lanes, plant_function *outputs,
+                                          const struct plant_block *b, double *y)
 {
+    outputs(b->x, b->u, b->c, y);
+    return plant_finite_of(lanes, b->x, PLANT_STATES) && plant_finite_of(lanes, y, PLANT_OUTPUTS);
+}
+
+static bool plant_outputs(const struct plant_block *b, double *y)
+{
+    const bool wide = plant_wide(b);
     bool good = false;
-#define FINITE(n) \
-    PLANT_CASE(n, good = plant_finite_of(n, b->x, PLANT_STATES) \
-                         && plant_finite_of(n, y, PLANT_OUTPUTS))
+#define OUTPUTS(n) \
+    PLANT_CASE(n, good = plant_outputs_of(n, wide ? plant_outputs_##n##_avx2 : plant_outputs_##n, \
+                                          b, y))
     switch (b->lanes) {
-        PLANT_WIDTHS(FINITE)
+        PLANT_WIDTHS(OUTPUTS)
     }
-#undef FINITE
+#undef OUTPUTS
     return good;
 }
 
@@ -275,8 +281,7 @@ static int plant_publish(struct fmu *f, int64_t now)
     for (int n = 0; n < f->s.m.blocks; n++) {
         const struct plant_block *b = &f->s.m.block[n];
         double y[PLANT_OUTPUT_SIZE];
-        (plant_wide(b) ? plant_outputs_avx2 : plant_outputs)(b->lanes, b->x, b->u, b->c, y);
-        if (!plant_finite(b, y)) {
+        if (!plant_outputs(b, y)) {
             return plant_refuse(f, b, y, now);
         }
         for (int lane = 0; lane < b->used; lane++) {
@@ -468,9 +473,11 @@ static int plant_tune(struct fmu *f)
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
-    if (PLANT_TUNABLES > 0 && plant_tuned(&f->s.v, &f->s.m.tuned) && plant_tune(f) != 0) {
+    if (PLANT_TUNABLES > 0 && f->tuned && plant_tuned(&f->s.v, &f->s.m.tuned)
+        && plant_tune(f) != 0) {
         return -1;
     }
+    f->tuned = false;
     const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
     if (!f->s.m.watched) {
         f->s.m.watched = true;
