@@ -75,60 +75,57 @@ static const double plant_h_lambda = 2.0; /* largest (h/n) |lambda| */
 #define PLANT_CASE(n, call) \
     case n: call; break;
 
-/* One Runge-Kutta step of h [s]. */
-static PLANT_INLINE void plant_step_of(int lanes, plant_function *rhs, struct plant_block *b,
-                                       double h)
+/* So many Runge-Kutta steps of h [s]. */
+static PLANT_INLINE void plant_steps_of(int lanes, plant_function *rhs, struct plant_block *b,
+                                        double h, int64_t steps)
 {
     const int n = PLANT_STATES * lanes;
     double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
     double at[PLANT_STATE_SIZE];
-    rhs(b->x, b->u, b->c, k1);
-    for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + 0.5 * h * k1[i];
-    }
-    rhs(at, b->u, b->c, k2);
-    for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + 0.5 * h * k2[i];
-    }
-    rhs(at, b->u, b->c, k3);
-    for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + h * k3[i];
-    }
-    rhs(at, b->u, b->c, k4);
-    for (int i = 0; i < n; i++) {
-        b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    for (int64_t k = 0; k < steps; k++) {
+        rhs(b->x, b->u, b->c, k1);
+        for (int i = 0; i < n; i++) {
+            at[i] = b->x[i] + 0.5 * h * k1[i];
+        }
+        rhs(at, b->u, b->c, k2);
+        for (int i = 0; i < n; i++) {
+            at[i] = b->x[i] + 0.5 * h * k2[i];
+        }
+        rhs(at, b->u, b->c, k3);
+        for (int i = 0; i < n; i++) {
+            at[i] = b->x[i] + h * k3[i];
+        }
+        rhs(at, b->u, b->c, k4);
+        for (int i = 0; i < n; i++) {
+            b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+        }
     }
 }
 
-static void plant_step_plain(struct plant_block *b, double h)
+static void plant_steps_plain(struct plant_block *b, double h, int64_t steps)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_##n, b, h))
+#define STEPS(n) PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n, b, h, steps))
     switch (b->lanes) {
-        PLANT_WIDTHS(STEP)
+        PLANT_WIDTHS(STEPS)
     }
-#undef STEP
+#undef STEPS
 }
 
 /* The sums between the rates use wide vectors, too: a wide load would wait for two narrow
  * stores. */
-EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
+EL_AVX2 static void plant_steps_avx2(struct plant_block *b, double h, int64_t steps)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_##n##_avx2, b, h))
+#define STEPS(n) PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n##_avx2, b, h, steps))
     switch (b->lanes) {
-        PLANT_WIDTHS(STEP)
+        PLANT_WIDTHS(STEPS)
     }
-#undef STEP
+#undef STEPS
 }
 
 /* Whether wide vectors pay: not for a block of one or two lanes, unless the plant has only one. */
 static bool plant_wide(const struct plant_block *b)
 {
     return (b->lanes > 2 || PLANT_LANES == 1) && plant_has_avx2();
-}
-
-static void plant_step(struct plant_block *b, double h)
-{
-    (plant_wide(b) ? plant_step_avx2 : plant_step_plain)(b, h);
 }
 
 /* One step of h [s] by Bogacki and Shampine (1989) to y. Returns its error relative to the allowed
@@ -191,20 +188,26 @@ static int plant_controlled(struct plant_block *b, double h)
     return 0;
 }
 
-/* One micro step of all axes, which ends at `now` [ns]. */
-static int plant_advance(struct fmu *f, int64_t now)
+/* So many micro steps of all axes, the first of which begins at `now` [ns]. */
+static int plant_advance(struct fmu *f, int64_t now, int64_t steps)
 {
-    const double h = 1e-9 * (double)f->s.m.step_ns;
-    for (int n = 0; n < f->s.m.blocks; n++) {
+    const int64_t step = f->s.m.step_ns;
+    const double h = 1e-9 * (double)step;
+    for (int n = 0; n < f->s.m.blocks && !PLANT_CONTROLLED; n++) {
         struct plant_block *b = &f->s.m.block[n];
-        if (!PLANT_CONTROLLED) {
-            for (int k = 0; k < b->sub_steps; k++) {
-                plant_step(b, h / b->sub_steps);
+        (plant_wide(b) ? plant_steps_avx2 : plant_steps_plain)(b, h / b->sub_steps,
+                                                               steps * b->sub_steps);
+    }
+    for (int64_t k = 1; k <= steps && PLANT_CONTROLLED; k++) {
+        for (int n = 0; n < f->s.m.blocks; n++) {
+            struct plant_block *b = &f->s.m.block[n];
+            if (plant_controlled(b, h) != 0) {
+                return fmu_fail(f,
+                                "axis %d: too stiff at %.9f s, %g s would need more than %d "
+                                "sub-steps",
+                                b->instance[0] + 1, 1e-9 * (double)(now + k * step), h,
+                                PLANT_SUB_STEPS_MAX);
             }
-        } else if (plant_controlled(b, h) != 0) {
-            return fmu_fail(f,
-                            "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
-                            b->instance[0] + 1, 1e-9 * (double)now, h, PLANT_SUB_STEPS_MAX);
         }
     }
     return 0;
@@ -478,18 +481,26 @@ static int model_step(struct fmu *f, int64_t t0, int64_t t1)
         return -1;
     }
     f->tuned = false;
-    const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
+    const int64_t h = f->s.m.step_ns, last = t1 / h * h;
+    int64_t now = t0 / h * h;
     if (!f->s.m.watched) {
         f->s.m.watched = true;
         plant_watch(f, 1e-9 * (double)(t1 - t0));
     }
-    for (int64_t now = first; now <= t1; now += h) {
-        if (now > t0 && plant_advance(f, now) != 0) {
-            return -1;
-        }
-        if (now >= t0 && now < t1) {
+    if (last <= t0) {
+        if (now == t0) {
             plant_read(f);
         }
+        return 0;
     }
-    return last > t0 ? plant_publish(f, last) : 0;
+    if (now < t0) { /* the micro step that has begun goes on with the inputs of its begin */
+        if (plant_advance(f, now, 1) != 0) {
+            return -1;
+        }
+        now += h;
+    }
+    if (now < t1) {
+        plant_read(f);
+    }
+    return plant_advance(f, now, (last - now) / h) != 0 ? -1 : plant_publish(f, last);
 }

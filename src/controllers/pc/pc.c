@@ -83,8 +83,11 @@ static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
     voltage_follow(&pc->voltage, m);
     for (int i = 0; i < AXES; i++) {
         const double fixed = pc->config.law.axis[i].gain;
+        if (!axis[i].on) {
+            continue;
+        }
         axis[i].gain = fixed > 0.0 ? fixed : panel->software_gain[i];
-        if (axis[i].on && !pc->voltage.special) {
+        if (!pc->voltage.special) {
             const double v = axis[i].gain * panel->signals.err[i];
             pc->volts[i] = el_max(-VOLTS_MAX, el_min(VOLTS_MAX, v));
         }
