@@ -79,24 +79,27 @@ static void plant_read_row(const struct plant_set *set, int n, struct plant_row 
     plant_pad(row->u, set->runs * lanes, row->lanes, PLANT_INPUT_ROWS);
 }
 
-EL_AVX2 static void plant_step_row(struct plant_row *row, double h)
+/* So many steps of h [s] of a row. */
+EL_AVX2 static void plant_steps_row(struct plant_row *row, double h, int64_t steps)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_together, row->x, row->u, row->c, h))
+#define STEPS(n) \
+    PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n##_avx2, row->x, row->u, row->c, h, steps))
     switch (row->lanes) {
-        PLANT_TOGETHER(STEP)
+        PLANT_TOGETHER(STEPS)
     }
-#undef STEP
+#undef STEPS
 }
 
-/* Whether all values of rows are finite. */
-static bool plant_finite_row(int lanes, const double *a, int rows)
+/* Compute the outputs y of a row. Returns whether all states and outputs are finite. */
+static bool plant_outputs_row(const struct plant_row *row, double *y)
 {
     bool good = false;
-#define FINITE(n) PLANT_CASE(n, good = plant_finite_of(n, a, rows))
-    switch (lanes) {
-        PLANT_TOGETHER(FINITE)
+#define OUTPUTS(n) \
+    PLANT_CASE(n, good = plant_outputs_of(n, plant_outputs_##n##_avx2, row->x, row->u, row->c, y))
+    switch (row->lanes) {
+        PLANT_TOGETHER(OUTPUTS)
     }
-#undef FINITE
+#undef OUTPUTS
     return good;
 }
 
@@ -106,9 +109,7 @@ static void plant_publish_row(const struct plant_set *set, int n, const struct p
                               int64_t now)
 {
     double y[PLANT_OUTPUTS * PLANT_WIDEST];
-    plant_outputs_together(row->lanes, row->x, row->u, row->c, y);
-    const bool good = plant_finite_row(row->lanes, row->x, PLANT_STATES)
-                      && plant_finite_row(row->lanes, y, PLANT_OUTPUTS);
+    const bool good = plant_outputs_row(row, y);
     for (int r = 0; r < set->runs; r++) {
         const struct plant_block *b = &set->f[r]->s.m.block[n];
         if (good) {
@@ -119,12 +120,14 @@ static void plant_publish_row(const struct plant_set *set, int n, const struct p
     }
 }
 
-/* As plant_run, of the block n of each run. */
+/* As plant_run, of the block n of each run, for a step in which a micro step ends. */
 static void plant_run_row(const struct plant_set *set, int n, int64_t t0, int64_t t1)
 {
     const struct model *m = &set->f[0]->s.m;
-    const int64_t h = m->step_ns, first = t0 / h * h, last = t1 / h * h;
+    const int64_t h = m->step_ns, last = t1 / h * h;
+    int64_t now = t0 / h * h;
     const int lanes = m->block[n].lanes, sub_steps = m->block[n].sub_steps;
+    const double part = 1e-9 * (double)h / sub_steps;
     struct plant_row row;
     row.lanes = PLANT_WIDEST;
 #define NARROWER(w) \
@@ -134,23 +137,19 @@ static void plant_run_row(const struct plant_set *set, int n, int64_t t0, int64_
     PLANT_TOGETHER(NARROWER)
 #undef NARROWER
     plant_gather(set, n, &row);
-    bool fresh = false; /* inputs are those of this step */
-    for (int64_t now = first; now <= t1; now += h) {
-        for (int k = 0; now > t0 && k < sub_steps; k++) {
-            plant_step_row(&row, 1e-9 * (double)h / sub_steps);
-        }
-        if (now >= t0 && now < t1 && !fresh) {
-            plant_read_row(set, n, &row);
-            fresh = true;
-        }
+    if (now < t0) {
+        plant_steps_row(&row, part, sub_steps);
+        now += h;
     }
+    if (now < t1) {
+        plant_read_row(set, n, &row);
+    }
+    plant_steps_row(&row, part, (last - now) / h * sub_steps);
     for (int r = 0; r < set->runs; r++) {
         plant_copy(lanes, set->f[r]->s.m.block[n].x, lanes, &row.x[r * lanes], row.lanes,
                    PLANT_STATES);
     }
-    if (last > t0) {
-        plant_publish_row(set, n, &row, last);
-    }
+    plant_publish_row(set, n, &row, last);
 }
 
 /* Whether blocks of two runs may be lanes of one block. */
@@ -176,8 +175,11 @@ static int plant_room(const struct model *m)
 
 static void plant_run_set(const struct plant_set *set, int64_t t0, int64_t t1)
 {
-    if (set->runs == 1) {
-        *set->failed[0] = plant_run(set->f[0], t0, t1) != 0;
+    const int64_t h = set->f[0]->s.m.step_ns;
+    if (set->runs == 1 || t1 / h * h <= t0) {
+        for (int r = 0; r < set->runs; r++) {
+            *set->failed[r] = plant_run(set->f[r], t0, t1) != 0;
+        }
         return;
     }
     for (int n = 0; n < set->f[0]->s.m.blocks; n++) {
