@@ -108,7 +108,7 @@ class Session:
 
     @property
     def lanes(self) -> int:
-        """How many runs `run_together` takes at once; 1 if the engine runs one by one."""
+        """How many runs `run_together` takes at once."""
         engine = self._engine
         return engine.lanes(self._execution.system) if isinstance(engine, SideBySide) else 1
 

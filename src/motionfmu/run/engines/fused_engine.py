@@ -233,6 +233,7 @@ class Fused:
                 one.release()
         return [ran for ran in found if ran is not None]
 
+    # CCN 17: who has begun, failed and ended is asked between the parts of a run.
     def _side_by_side(
         self,
         systems: Sequence[System],
