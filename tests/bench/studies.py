@@ -72,7 +72,7 @@ class Study:
                 counts["sweep of the demo"].count / 1e9,
                 counted=True,
             ),
-            Figure("sweep of the demo, runs/s of a core", DEMO_RUNS / self.demo, least=5.0),
+            Figure("sweep of the demo, runs/s of a core", DEMO_RUNS / self.demo, least=15.0),
         ]
 
 
