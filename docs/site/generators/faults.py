@@ -1,0 +1,53 @@
+"""The page of faults: each number that an FMU tells, its meaning, and what to do."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from generators.markdown import code, plain, table
+
+# Beside the alarm of a panel: outputs that tell of a fault have one of these words in their names.
+NAMES = ("alarm", "error", "fault", "code", "refus", "result")
+
+
+@dataclass(frozen=True)
+class FaultTable:
+    """The numbers of one variable: meaning, and what to do about those that have advice."""
+
+    fmu: str
+    variable: str
+    about: str
+    meanings: Mapping[int, str]
+    advice: Mapping[int, str]
+
+
+def tables() -> Iterator[FaultTable]:
+    """All variables of the built FMUs that tell a fault."""
+    from motionfmu.live.machine_about import meanings
+    from motionfmu.live.panel import panel_of
+    from motionfmu.scenarios import fmus
+
+    for fmu in fmus.fmu_names():
+        panel = panel_of(fmu)
+        for name, port in fmus.ports(fmu).items():
+            alarm = panel is not None and name == panel.alarm
+            if port.causality != "output" or not (alarm or any(word in name for word in NAMES)):
+                continue
+            if told := meanings(port):
+                advice = {int(k): v for k, v in panel.advice.items()} if panel and alarm else {}
+                yield FaultTable(fmu, name, port.doc.split(": ")[0], told, advice)
+
+
+def page(found: list[FaultTable]) -> str:
+    """The page of all faults."""
+    parts = [
+        "# Faults\n\nAn FMU tells what went wrong by a number. "
+        "Here is what each number means, and what to do about it.\n\n"
+    ]
+    for one in found:
+        parts.append(f"## {code(f'{one.fmu}.{one.variable}')}\n\n{plain(one.about)}.\n\n")
+        rows = [
+            (str(number), plain(text), plain(one.advice.get(number, "")))
+            for number, text in sorted(one.meanings.items())
+        ]
+        parts.append(table(("number", "meaning", "what to do"), rows) + "\n")
+    return "".join(parts)
