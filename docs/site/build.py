@@ -12,7 +12,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 sys.path.insert(0, str(HERE))
 
-from generators import sections, staging  # noqa: E402
+from site_pages import sections, staging  # noqa: E402
 
 
 def build(target: Path) -> int:
@@ -22,7 +22,7 @@ def build(target: Path) -> int:
     staged = staging.stage(ROOT, source)
     sections.write_all(staged)
     shutil.rmtree(target, ignore_errors=True)
-    options = ["-b", "html", "-W", "--keep-going", "-j", "2", "-c", str(HERE)]
+    options = ["-b", "html", "-W", "--keep-going", "-c", str(HERE)]
     options += ["-d", f"{target}.doctrees", "-D", f"html_extra_path={source / 'extra'}"]
     return subprocess.run([sys.executable, "-m", "sphinx", *options, source, target]).returncode
 

@@ -21,13 +21,13 @@ napoleon_use_ivar = True
 suppress_warnings = ["ref.python"]
 autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
-python_maximum_signature_line_length = 90
 
+smartquotes = False
 html_theme = "furo"
 html_title = "motionfmu"
 html_static_path = [str(HERE / "static")]
 html_css_files = ["site.css"]
-html_js_files = ["gallery.js"]
+html_js_files = ["site.js"]
 html_copy_source = False
 html_show_sourcelink = False
 html_show_search_summary = False  # it would fetch pages, which a browser refuses from disk
@@ -41,15 +41,16 @@ pygments_dark_style = "a11y-high-contrast-dark"
 
 def _listings(app: Any) -> Any:
     """Pages of the files that are linked, which the search leaves out."""
-    from generators.listings import listing
+    from site_pages.listings import listing
 
     root = HERE.parent.parent
     for name in (Path(app.srcdir) / "listed.txt").read_text(encoding="utf-8").splitlines():
         yield f"files/{name}", {"title": name, "body": listing(root, name)}, "page.html"
 
 
-def _bars(app: Any, what: str, name: str, found: Any, options: Any, lines: list[str]) -> None:
+def _bars(app: Any, what: str, name: str, *more: Any) -> None:
     """In a docstring |x| is a size and no substitution."""
+    lines = more[-1]
     lines[:] = [re.sub(r"\|([^|`]+)\|", r"\\|\1\\|", line) for line in lines]
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from generators.markdown import code, plain, table
+from site_pages.markdown import code, plain, table
 
 # Beside the alarm of a panel: outputs that tell of a fault have one of these words in their names.
 NAMES = ("alarm", "error", "fault", "code", "refus", "result")

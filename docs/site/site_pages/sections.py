@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from generators import (
+from site_pages import (
     c_headers,
     commands,
     faults,
@@ -12,8 +12,8 @@ from generators import (
     gallery,
     python_modules,
 )
-from generators.markdown import code, plain, table, toctree
-from generators.staging import Staged, index, write
+from site_pages.markdown import code, plain, table, toctree
+from site_pages.staging import Staged, index, write
 
 # By where pages stand: name, heading and first words of a section. The first that fits counts.
 SECTIONS = (

@@ -1,5 +1,10 @@
-// Cards of the gallery are shown if they fit all choices.
+// The gallery's choices, and what the theme leaves open for people who have no mouse.
 document.addEventListener("DOMContentLoaded", () => {
+  for (const e of document.querySelectorAll("pre, .table-wrapper, .math"))
+    if (e.scrollWidth > e.clientWidth) e.tabIndex = 0;
+  for (const e of document.querySelectorAll("[role=heading]:not([aria-level])"))
+    e.ariaLevel = "2";
+
   const form = document.getElementById("choices");
   if (!form) return;
   const cards = [...document.querySelectorAll(".cards .card")];

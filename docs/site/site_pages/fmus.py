@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from generators.markdown import code, plain, table
+from site_pages.markdown import code, plain, table
 
 if TYPE_CHECKING:
     from motionfmu.scenarios.port import Port

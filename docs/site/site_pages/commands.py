@@ -5,8 +5,8 @@ from enum import Enum
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
-from generators.file_keys import kind
-from generators.markdown import code, plain, table
+from site_pages.file_keys import kind
+from site_pages.markdown import code, plain, table
 
 # What each command has beside its own options.
 HABITS = ("quiet", "verbose", "open", "help")

@@ -5,7 +5,7 @@ import importlib
 from collections.abc import Sequence
 from pathlib import Path
 
-from generators.markdown import code, plain, table
+from site_pages.markdown import code, plain, table
 
 
 def modules(package: Path) -> list[str]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from generators.markdown import code, plain, table, toctree
+from site_pages.markdown import code, plain, table, toctree
 
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```|~~~)")
@@ -30,7 +30,7 @@ class Staged:
 
 def found_pages(root: Path) -> list[str]:
     """Markdown of the project, without templates and the site's own."""
-    skipped = ("src/motionfmu/cli/templates/", "docs/site/")
+    skipped = ("src/motionfmu/cli/templates/", "docs/site/index.md")
     files = [root / name for name in AT_ROOT]
     files += [file for folder in FOLDERS for file in sorted((root / folder).rglob("*.md"))]
     names = (file.relative_to(root).as_posix() for file in files)

@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from generators.key_words import words_of
-from generators.markdown import code, plain, table
+from site_pages.key_words import words_of
+from site_pages.markdown import code, plain, table
 
 WORDS = {float: "number", int: "whole number", str: "text", bool: "true or false", Any: "value"}
 SIGNS = (("gt", "> "), ("ge", ">= "), ("lt", "< "), ("le", "<= "))
@@ -46,8 +46,8 @@ def files() -> list[TomlFile]:
     return [
         TomlFile(
             "scenario.toml",
-            "A scenario: which FMUs, how they are wired, set, driven, recorded and judged. A machine.toml"
-            " has the same keys; a scenario that names a machine extends it.",
+            "A scenario: which FMUs, how they are wired, set, driven, recorded and judged."
+            " A machine.toml has the same keys; a scenario that names a machine extends it.",
             Body,
         ),
         TomlFile("sweep.toml", "A study: one scenario with many values.", StudyBody, axis),
@@ -73,7 +73,7 @@ def page(file: TomlFile) -> str:
     for path, model in tables(file):
         rows = [_row(name, f, words_of(model)) for name, f in fields_of(model).items()]
         if rows:
-            head = ("key", "type", "range", "default", "meaning")
+            head = ("key", "type", "default", "meaning")
             text += _heading(path) + _about(model) + table(head, rows) + "\n"
     return text
 
@@ -135,13 +135,8 @@ def _row(name: str, f: FieldInfo, words: Mapping[str, str]) -> tuple[str, ...]:
     told = words.get(name, "") or (own.words if own else "")
     unit = f" [{own.unit}]" if own and own.unit else ""
     limits = ", ".join(dict.fromkeys(_limits(f.metadata) + _inner_limits(f.annotation)))
-    return (
-        code(f.alias or name),
-        plain(kind(f.annotation)),
-        plain(limits),
-        _default(f),
-        plain(told + unit),
-    )
+    told_type = kind(f.annotation) + (f", {limits}" if limits else "")
+    return code(f.alias or name), plain(told_type), _default(f), plain(told + unit)
 
 
 def kind(annotation: Any) -> str:

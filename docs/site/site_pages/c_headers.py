@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from generators.markdown import plain
+from site_pages.markdown import plain
 
 # Lines of a header that are for the compiler alone.
 _FRAME = re.compile(r'extern "C" \{|#.*|\}\n(?=#)')
@@ -40,16 +40,14 @@ def _item(declared: Declared) -> str:
 def declarations(text: str) -> list[Declared]:
     """Comments of a header with what they are about; the first is about the whole file."""
     found = [Declared()]
-    whole = True  # the comment at the top stands alone
     for kind, part in _parts(text):
         if kind == "gap":
-            if found[-1].code:
+            if found[-1].code or found[-1].comment:
                 found.append(Declared())
         elif kind == "comment":
-            if not whole or found[-1].code or found[-1].comment:
+            if found[-1].code or found[-1].comment:
                 found.append(Declared())
             found[-1].comment = part
-            whole = False
         else:
             found[-1].code.append(part)
     return [d for k, d in enumerate(found) if k == 0 or d.comment or d.code]
@@ -67,13 +65,9 @@ def _parts(text: str) -> Iterator[tuple[str, str]]:
                 held.append(next(lines))
             yield "comment", _comment(held)
         else:
-            held, depth = [line], _depth(line)
-            while depth > 0 or not held[-1].split("/*")[0].rstrip().endswith((";", "}", "*/")):
-                more = next(lines, None)
-                if more is None:
-                    break
+            held = [line]
+            while not _whole("\n".join(held)) and (more := next(lines, None)) is not None:
                 held.append(more)
-                depth += _depth(more)
             yield "code", _declaration(held)
 
 
@@ -84,9 +78,12 @@ def _bare(text: str) -> list[str]:
     return [line for line in text.splitlines() if not _FRAME.fullmatch(line)]
 
 
-def _depth(line: str) -> int:
-    bare = re.sub(r"/\*.*?(\*/|$)", "", line)
-    return bare.count("{") - bare.count("}") + bare.count("(") - bare.count(")")
+def _whole(text: str) -> bool:
+    """Whether a declaration has come to its end."""
+    bare = re.sub(r"/\*.*?(\*/|\Z)", "", text, flags=re.DOTALL).rstrip()
+    pairs = ("{}", "()")
+    closed = all(bare.count(a) == bare.count(b) for a, b in pairs)
+    return closed and text.count("/*") == text.count("*/") and bare.endswith((";", "}"))
 
 
 def _declaration(lines: list[str]) -> str:
