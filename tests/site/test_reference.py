@@ -238,7 +238,7 @@ def test_a_header_is_its_comments_and_declarations() -> None:
     ]
     assert found[4].code == ["static inline int32_t thing_now(const struct thing *t);"]
     page = c_headers.page("thing", {"thing.h": HEADER})
-    assert "a thing that counts." in page and "- first and on\n- second\n" in page
+    assert "A thing that counts." in page and "- first and on\n- second\n" in page
     assert "cplusplus" not in page and "THING_H" not in page
     other = c_headers.page("thing", {"thing.h": HEADER.replace("int32_t by", "double by")})
     assert "double by" in other

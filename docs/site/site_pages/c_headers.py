@@ -25,7 +25,8 @@ def page(core: str, headers: Mapping[str, str]) -> str:
         first, *rest = declarations(text)
         parts.append(f"## `{name}`\n\n")
         if first.comment:
-            parts.append(words(re.sub(r"^\w+ - ", "", first.comment)))
+            told = re.sub(r"^\w+ - ", "", first.comment)
+            parts.append(words(told[0].upper() + told[1:]))
         parts += [_item(d) for d in ([Declared("", first.code)] if first.code else []) + rest]
     return "".join(parts)
 

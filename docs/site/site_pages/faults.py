@@ -49,5 +49,7 @@ def page(found: list[FaultTable]) -> str:
             (str(number), plain(text), plain(one.advice.get(number, "")))
             for number, text in sorted(one.meanings.items())
         ]
-        parts.append(table(("number", "meaning", "what to do"), rows) + "\n")
+        if not one.advice:
+            rows = [row[:2] for row in rows]
+        parts.append(table(("number", "meaning", "what to do")[: len(rows[0])], rows) + "\n")
     return "".join(parts)

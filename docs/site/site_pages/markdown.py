@@ -19,6 +19,14 @@ def code(text: str) -> str:
     return f"{ticks}{pad}{text}{pad}{ticks}".replace("|", "\\|") if text else ""
 
 
+def told(text: str) -> str:
+    """A text in one line in which names between single marks are code."""
+    parts = " ".join(text.split()).split("`")
+    if len(parts) % 2 == 0:
+        return plain(text)
+    return "".join(code(part) if k % 2 else plain(part) for k, part in enumerate(parts))
+
+
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A table; columns without a single entry are left out but the first and the last."""
     kept = [list(row) for row in rows]
@@ -29,14 +37,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def anchor(name: str) -> str:
-    """A target that links reach as ``#name``, in the line before a heading or a block."""
-    return f"({name})=\n"
-
-
-def toctree(names: Iterable[str], caption: str = "", hidden: bool = True) -> str:
-    """A list of pages for the menu."""
-    options = (":hidden:\n" if hidden else "") + (f":caption: {caption}\n" if caption else "")
-    return (
-        "```{toctree}\n" + options + ":maxdepth: 1\n\n" + "".join(f"{n}\n" for n in names) + "```\n"
-    )
+def toctree(names: Iterable[str]) -> str:
+    """A list of pages for the menu, each ``page`` or ``words <page>``."""
+    lines = ["```{toctree}", ":hidden:", ":maxdepth: 1", "", *names, "```"]
+    return "\n".join(lines) + "\n"

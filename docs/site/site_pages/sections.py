@@ -13,7 +13,7 @@ from site_pages import (
     python_modules,
 )
 from site_pages.markdown import code, plain, table, toctree
-from site_pages.staging import Staged, index, write
+from site_pages.staging import Staged, index, rewritten, write
 
 # By where pages stand: name, heading and first words of a section. The first that fits counts.
 SECTIONS = (
@@ -39,7 +39,8 @@ def write_all(staged: Staged) -> None:
     _write_indexes(staged)
     _write_reference(staged)
     here = Path(__file__).parent.parent
-    write(staged.folder / "index.md", (here / "index.md").read_text(encoding="utf-8"))
+    front = (here / "index.md").read_text(encoding="utf-8")
+    write(staged.folder / "index.md", rewritten(front, "index.md", staged))
     write(staged.folder / "listed.txt", "".join(f"{name}\n" for name in sorted(staged.listed)))
 
 
@@ -104,12 +105,18 @@ def reference(root: Path) -> Iterator[tuple[str, str]]:
     package, *modules = python_modules.modules(root / "src/motionfmu")
     for module, text in python_modules.pages(modules).items():
         yield f"python/{module}", text
-    menu = toctree(f"python/{module}" for module in modules)
+    menu = toctree(f"{m.removeprefix('motionfmu.')} <python/{m}>" for m in modules)
     yield "python", python_modules.front(package, modules) + menu
     cores = {f"c/{core}": headers for core, headers in _headers(root).items()}
     for name, headers in cores.items():
         yield name, c_headers.page(name[2:], headers)
-    yield "c", "# C\n\n" + _links({name: name[2:] for name in cores}) + "\n" + toctree(cores)
+    yield (
+        "c",
+        "# C\n\n"
+        + _links({name: name[2:] for name in cores})
+        + "\n"
+        + toctree(f"{name[2:]} <{name}>" for name in cores),
+    )
 
 
 def _links(pages: Mapping[str, str]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from site_pages.markdown import code, plain, table, toctree
+from site_pages.markdown import code, plain, table, toctree, told
 
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^(```|~~~)")
@@ -65,10 +65,10 @@ def rewritten(text: str, name: str, staged: Staged) -> str:
 
 
 def _link(match: re.Match[str], name: str, staged: Staged) -> str:
-    mark, told, address = match.groups()
-    told = LINK.sub(lambda m: _link(m, name, staged), told)
+    mark, words, address = match.groups()
+    words = LINK.sub(lambda m: _link(m, name, staged), words)
     if OUTSIDE.match(address):
-        return f"{mark}[{told}]({address})"
+        return f"{mark}[{words}]({address})"
     path, _, place = address.partition("#")
     there = Path(os.path.normpath(Path(name).parent / path)).as_posix()
     file = staged.root / there
@@ -77,13 +77,13 @@ def _link(match: re.Match[str], name: str, staged: Staged) -> str:
         copied.parent.mkdir(parents=True, exist_ok=True)
         if file.is_file():
             shutil.copyfile(file, copied)
-        return f"![{told}]({address})"
+        return f"![{words}]({address})"
     if file.is_dir() and (file / "README.md").is_file():
-        return f"[{told}]({path.rstrip('/')}/README.md{'#' * bool(place)}{place})"
+        return f"[{words}]({path.rstrip('/')}/README.md{'#' * bool(place)}{place})"
     if there in staged.pages or not file.exists():
-        return f"[{told}]({address})"  # a page; what leads nowhere is told by the build
+        return f"[{words}]({address})"  # a page; what leads nowhere is told by the build
     staged.listed.add(there)
-    return f'<a class="listing" href="{listing_address(name, there)}">{told}</a>'
+    return f'<a class="listing" href="{listing_address(name, there)}">{words}</a>'
 
 
 def listing_address(page: str, file: str) -> str:
@@ -126,7 +126,7 @@ def index(heading: str, lead: str, pages: list[str], root: Path) -> str:
         (
             f"[{plain(title(root / p))}]({p})",
             code(Path(p).parent.as_posix()),
-            plain(about(root / p)),
+            told(about(root / p)),
         )
         for p in pages
     ]
