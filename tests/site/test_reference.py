@@ -11,6 +11,7 @@ import pytest
 import typer
 from conftest import FMUS, ROOT
 from console import within
+from py_mini_racer import MiniRacer
 from pydantic import BaseModel, Field
 from site_pages import (
     c_headers,
@@ -190,6 +191,20 @@ def test_every_fault_says_what_its_panel_advises() -> None:
     one = next(t for t in found if t.advice)
     changed = replace(one, advice=dict.fromkeys(one.advice, "Do nothing."))
     assert "Do nothing." in faults.page([changed]) and "Do nothing." not in page
+
+
+def test_advice_by_words_is_that_of_the_live_page() -> None:
+    script = (ROOT / "src/motionfmu/live/serving/page/words.js").read_text("utf-8")
+    page = MiniRacer()
+    page.eval(re.sub("^export ", "", script, flags=re.MULTILINE))
+    tables_ = [t for t in faults.tables() if t.fmu in ("mcc", "mcc_groups")]
+    assert {t.variable for t in tables_} == {"error"} and len(tables_) == 2
+    for one in tables_:
+        told = {n: text for n, text in one.meanings.items() if n}
+        assert len(told) > 18 and len(set(one.advice.values())) > 4
+        assert one.advice == {n: page.eval(f"advice({text!r})") for n, text in told.items()}
+    rules = faults.AdviceRules.read(script.replace("jog away", "walk away"))
+    assert rules.of("axis 1 at a limit") == "Reset, then walk away from the switch."
 
 
 HEADER = """/* thing - a thing that counts.

@@ -11,6 +11,7 @@ from site_pages import (
     fmus,
     gallery,
     python_modules,
+    tutorials,
 )
 from site_pages.markdown import code, plain, table, toctree
 from site_pages.staging import Staged, index, rewritten, write
@@ -25,6 +26,12 @@ SECTIONS = (
     ("src/", "cores", "C cores", "What the FMUs compute with, free of FMI."),
     ("modelica/", "cores", "", ""),
     ("docs/theory/", "theory", "Theory", "Each claim names its code and the test that holds it."),
+    (
+        "docs/tutorials/",
+        "tutorials",
+        "Tutorials",
+        "One for each kind of user; each is a notebook, too.",
+    ),
     ("docs/", "words", "Words and tools", "The glossary, and other people's importers."),
     ("examples/", "examples", "Examples", "Small projects to copy; each builds by itself."),
     ("tests/", "tests", "Tests", "How things are held, and tools beside them."),
@@ -36,6 +43,7 @@ def write_all(staged: Staged) -> None:
     """Write all pages that are made, and the names of the files that are listed."""
     _write_fmus(staged)
     _write_gallery(staged)
+    _write_notebooks(staged)
     _write_indexes(staged)
     _write_reference(staged)
     here = Path(__file__).parent.parent
@@ -74,6 +82,17 @@ def _write_gallery(staged: Staged) -> None:
     pages = _of("scenarios/", staged.pages) + _of("src/motionfmu/machines/", staged.pages)
     write(staged.folder / "gallery.md", gallery.page(found) + "\n" + toctree(pages))
     gallery.write_pictures(found, staged.folder / "extra/pictures")
+
+
+def _write_notebooks(staged: Staged) -> None:
+    """Write each tutorial as a notebook, to which its page leads."""
+    for page in _of("docs/tutorials/", staged.pages):
+        text = (staged.root / page).read_text(encoding="utf-8")
+        name = f"{Path(page).stem}.ipynb"
+        write(staged.folder / "extra/notebooks" / name, tutorials.notebook(text))
+        head, _, rest = (staged.folder / page).read_text(encoding="utf-8").partition("\n")
+        link = f'<a href="../../notebooks/{name}" download>Take it as a notebook</a>'
+        write(staged.folder / page, f"{head}\n\n{link}\n{rest}")
 
 
 def _write_indexes(staged: Staged) -> None:
