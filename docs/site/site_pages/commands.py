@@ -52,19 +52,21 @@ def _paragraphs(command: Any) -> list[str]:
 
 
 def _command(name: str, command: Any) -> str:
-    own = [p for p in command.params if p.name not in HABITS and not getattr(p, "hidden", False)]
-    arguments = [p for p in own if p.param_type_name == "argument"]
-    options = [p for p in own if p.param_type_name == "option"]
-    words = " ".join(_argument(p) for p in arguments)
+    arguments, options = (_own(command, kind) for kind in ("argument", "option"))
+    words = ["motionfmu", name, *["[OPTIONS]"] * bool(options), *map(_argument, arguments)]
     told = "\n\n".join(plain(part) for part in _paragraphs(command))
-    line = f"motionfmu {name}{' [OPTIONS]' if options else ''}{' ' + words if words else ''}"
-    text = (
-        f"(command-{name.replace(' ', '-')})=\n## {name}\n\n```console\n{line}\n```\n\n{told}\n\n"
-    )
+    target = f"(command-{name.replace(' ', '-')})="
+    text = f"{target}\n## {name}\n\n```console\n{' '.join(words)}\n```\n\n{told}\n\n"
     if arguments:
         rows = [(code(_argument(p)), plain(_kind(p)), plain(p.help or "")) for p in arguments]
         text += table(("argument", "type", "meaning"), rows) + "\n"
     return text + (_options(options) + "\n" if options else "")
+
+
+def _own(command: Any, kind: str) -> list[Any]:
+    """Arguments or options of a command beside those of all."""
+    shown = (p for p in command.params if p.name not in HABITS and not getattr(p, "hidden", False))
+    return [p for p in shown if p.param_type_name == kind]
 
 
 def _argument(parameter: Any) -> str:
