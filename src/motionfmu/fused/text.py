@@ -113,8 +113,11 @@ def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
     return _function(head, [f"return {joined} ? -1 : 0;"], [])
 
 
-def _shows(system: System, used: Roles) -> Iterable[str]:
+def _shows(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterable[str]:
     taken = [f"SYSTEM_COPY({_in_part(e)}, {_here(e)});" for e in used.taken]
+    for component in dict.fromkeys(e.component for e in used.taken if e.port.tunable):
+        part = parts[system.components[component]].identifier
+        taken.append(f"motionfmu_part_{part}.tuned(&m->of_{component});")
     yield _function("void system_take(struct model *m, const struct vars *v)", taken, ["m", "v"])
     back = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.taken]
     yield _function("void system_return(const struct model *m, struct vars *v)", back, ["m", "v"])
@@ -181,7 +184,7 @@ def model(
         _carry(system),
         _until(system),
         _step(system, parts),
-        *_shows(system, used),
+        *_shows(system, parts, used),
         '\n#include "fmi_system.inc"\n',
     ]
     return "".join(pieces)
