@@ -27,6 +27,7 @@ from site_pages.markdown import plain, table
 
 from motionfmu import cli
 from motionfmu.scenarios import fmus as built
+from motionfmu.scenarios.table_sources import ORIGINS
 
 pytestmark = [pytest.mark.more, pytest.mark.xdist_group("site")]
 
@@ -137,7 +138,8 @@ CHOSEN = ("component", "connect", "set", "check", "expect", "limits", "levels", 
 def test_keys_that_scenarios_use_are_on_the_page() -> None:
     listed = {f.name: f for f in file_keys.files()}
     page = file_keys.page(listed["scenario.toml"])
-    origins = {"extends", "without"}  # the manual says where tables come from
+    origins = set(ORIGINS)
+    assert all(f" {name} " in page for name in origins)
     files = sorted(ROOT.glob("scenarios/*/scenario.toml"))
     assert len(files) > 50
     for file in files:

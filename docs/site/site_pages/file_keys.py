@@ -47,7 +47,8 @@ def files() -> list[TomlFile]:
         TomlFile(
             "scenario.toml",
             "A scenario: which FMUs, how they are wired, set, driven, recorded and judged."
-            " A machine.toml has the same keys; a scenario that names a machine extends it.",
+            " A machine.toml has the same keys; a scenario that names a machine extends it."
+            " At the top, extends takes another file's tables, and without takes away some of them.",
             Body,
         ),
         TomlFile("sweep.toml", "A study: one scenario with many values.", StudyBody, axis),
