@@ -48,7 +48,8 @@ def files() -> list[TomlFile]:
             "scenario.toml",
             "A scenario: which FMUs, how they are wired, set, driven, recorded and judged."
             " A machine.toml has the same keys; a scenario that names a machine extends it."
-            " At the top, extends takes another file's tables, and without takes away some of them.",
+            " At the top, extends takes the tables of another file;"
+            " without takes some of them away.",
             Body,
         ),
         TomlFile("sweep.toml", "A study: one scenario with many values.", StudyBody, axis),
