@@ -219,7 +219,7 @@ def unreadable(page: Any) -> list[str]:
     package = pytest.importorskip("axe_playwright_python").__path__[0]
     page.evaluate(next(Path(package).glob("axe.min.js")).read_text(encoding="utf-8"))
     found = page.evaluate("axe.run(document, { preload: false })")
-    assert len(found["passes"]) > 10
+    assert found["passes"]
     rules = (r for r in found["violations"] if r["impact"] in ("serious", "critical"))
     return [f"{rule['id']}: {rule['nodes'][0]['html'][:200]}" for rule in rules]
 
