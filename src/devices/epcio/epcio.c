@@ -283,8 +283,8 @@ enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lin
     card->lines = *lines;
     for (int k = 0; k < card->counters; k++) {
         const int i = card->counter[k];
-        (lines->unplugged[i] ? encoder_unplugged
-                             : encoder_sample)(&card->encoder[i], lines->phase[i], card->clock);
+        (lines->unplugged[i] ? encoder_unplugged : encoder_sample)(&card->encoder[i],
+                                                                   lines->phase[i], card->clock);
     }
     sample_local(card, &lines->local);
     run_encoders(card);

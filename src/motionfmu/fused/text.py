@@ -89,7 +89,12 @@ def _gives(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterabl
 def _carry(system: System) -> str:
     """C text that copies every wire's output to its input, then checks the limits of inputs."""
     lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
-    checks = [check for w in system.wires if (check := _limits(w.target))]
+    # An output may feed several inputs: what is asked of it is asked once for all with its limits.
+    asked: dict[tuple[str, str], str] = {}
+    for w in system.wires:
+        if check := _limits(w.target):
+            asked.setdefault((w.source.name, check.replace(_in_part(w.target), "")), check)
+    checks = asked.values()
     ends = ["struct system_check check = { .good = true };", *checks, "return system_good(&check);"]
     return _function("bool system_carry(struct model *m)", [*lines, *ends], ["m"])
 
