@@ -91,6 +91,9 @@ static bool axes_good(const struct controller_settings *s, struct controller_wro
         if (s->joint_level[i] > i) {
             return refuse(wrong, "joint_level", i, s->joint_level[i], "more than joints before it");
         }
+        if (s->joint_level[i] > 0 && s->joints == OPW_JOINTS) {
+            return refuse(wrong, "joint_level", i, s->joint_level[i], "no palletizer of four joints");
+        }
     }
     for (int i = s->joints; i < OPW_JOINTS; i++) {
         if (s->start_joint[i] != 0.0) {
