@@ -46,7 +46,8 @@ def arm_in_mm(settings: Mapping[str, Any]) -> Arm:
     if settings["arm_by"] == 1:
         origin, direction = settings["axis_origin"], settings["axis_direction"]
         slides, count = settings["joint_slides"], [settings["joints"]]
-        return Arm((), axes=axes_in_mm(origin, direction, slides, count))
+        level, hand = settings["joint_level"], settings["hand_offset"]
+        return Arm((), axes=axes_in_mm(origin, direction, slides, count, level, hand))
     lengths = tuple(1e3 * float(settings[n]) for n in LENGTHS)
     offsets, signs = (np.asarray(settings[n], float) for n in ("joint_offset", "joint_sign"))
     return Arm(lengths, tuple(np.radians(offsets).tolist()), tuple(signs.tolist()))
