@@ -100,10 +100,10 @@ def urdf(a: Arm) -> str:
     """The arm as a URDF, payload on the last link, frames as at inner 0."""
     kind = kinds_of(a)
     joints = "".join(
-        joint_line(f"j{k + 1}", kind[k], f"l{k}", f"l{k + 1}", o, axis)
+        joint_line(f"j{k + 1}", kind[k], (f"l{k}", f"l{k + 1}"), o, axis)
         for k, (o, axis) in enumerate(zip(*axes_of(a), strict=True))
     )
-    fixed = joint_line("held", "fixed", "l6", "load", np.zeros(3), np.ones(3))
+    fixed = joint_line("held", "fixed", ("l6", "load"), np.zeros(3), np.ones(3))
     return f'<robot name="arm"><link name="l0"/>{bodies_of(a)}{joints}{fixed}</robot>'
 
 
@@ -116,10 +116,10 @@ def bodies_of(a: Arm) -> str:
     return "".join(body(*row) for row in [*bodies, payload])
 
 
-def joint_line(name: str, kind: str, parent: str, child: str, origin: Any, axis: Any) -> str:
-    """A joint of a URDF."""
+def joint_line(name: str, kind: str, ends: tuple[str, str], origin: Any, axis: Any) -> str:
+    """A joint of a URDF, its ends parent and child."""
     return (
-        f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<joint name="{name}" type="{kind}"><parent link="{ends[0]}"/><child link="{ends[1]}"/>'
         f'<origin xyz="{_numbers(origin)}" rpy="0 0 0"/><axis xyz="{_numbers(axis)}"/>'
         '<limit lower="-9" upper="9" effort="1e6" velocity="1e3"/></joint>'
     )

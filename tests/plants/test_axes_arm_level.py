@@ -64,18 +64,20 @@ class Tree:
             origin, turned = origins[k], np.zeros(count)
             if k in (2, 3):
                 pivot = "continuous" if level[k] else "fixed"
-                joints.append(joint_line(f"q{k + 1}", pivot, before, f"p{k + 1}", origin, axes[2]))
+                joints.append(
+                    joint_line(f"q{k + 1}", pivot, (before, f"p{k + 1}"), origin, axes[2])
+                )
                 before, origin = f"p{k + 1}", a.parameter("hand_offset") if k == 3 else np.zeros(3)
                 if level[k]:
                     turned = -sum(total[k - n] for n in range(level[k]))
                     rows.append(turned)
-            joints.append(joint_line(f"j{k + 1}", kind, before, f"l{k + 1}", origin, axes[k]))
+            joints.append(joint_line(f"j{k + 1}", kind, (before, f"l{k + 1}"), origin, axes[k]))
             if k < count:
                 rows.append(share)
             total[k + 1] = (same if k == 1 else 1.0) * share + turned
             before = f"l{k + 1}"
         text = f'<robot name="arm">{links}{bodies_of(a)}{"".join(joints)}'
-        text += joint_line("held", "fixed", "l6", "load", np.zeros(3), np.ones(3)) + "</robot>"
+        text += joint_line("held", "fixed", ("l6", "load"), np.zeros(3), np.ones(3)) + "</robot>"
         self.model = pinocchio.buildModelFromXML(text)
         self.model.gravity.linear = np.array([0.0, 0.0, -float(a.parameter("gravity"))])
         self.data = self.model.createData()

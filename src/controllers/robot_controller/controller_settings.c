@@ -94,7 +94,8 @@ static bool axes_good(const struct controller_settings *s, struct controller_wro
             return refuse(wrong, "joint_level", i, s->joint_level[i], "more than joints before it");
         }
         if (s->joint_level[i] > 0 && s->joints == OPW_JOINTS) {
-            return refuse(wrong, "joint_level", i, s->joint_level[i], "no palletizer of four joints");
+            return refuse(wrong, "joint_level", i, s->joint_level[i],
+                          "no palletizer of four joints");
         }
     }
     for (int k = 0; k < 3; k++) {

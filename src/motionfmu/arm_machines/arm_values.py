@@ -321,8 +321,8 @@ class _Values:
         ]
         if beside:
             raise InputError(
-                f"{self.arm.name}: {', '.join(beside)}: a link between joints of the linkage has no "
-                "place in the plant; its mass belongs to the links before and behind it"
+                f"{self.arm.name}: {', '.join(beside)}: a link between joints of the linkage has "
+                "no place in the plant; its mass belongs to the links before and behind it"
             )
         return {
             "arm.hand_mass": round(hand.mass, 9),

@@ -108,7 +108,8 @@ class AxesGeometry:
 
     def _carried(self, q: Array) -> Iterator[tuple[Array, Array]]:
         """Of each link its frame, and of its joint the pivot before a hand, or its own place."""
-        frame, found = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)), []
+        frame = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))
+        found: list[Array] = []
         levels = self.levels or (0,) * len(self.axes)
         for k, (origin, axis) in enumerate(zip(self.origins, self.axes, strict=True)):
             pivot = (frame @ placed(origin))[..., :3, 3]

@@ -114,7 +114,9 @@ class _TableFile(_TableKeys):
                 raise ValueError(f"{name}: joints of opw follow no other")
             elif row.follows not in leaders:
                 known = ", ".join(leaders) or "none"
-                raise ValueError(f"{name}: follows {row.follows!r}: no free joint before it ({known})")
+                raise ValueError(
+                    f"{name}: follows {row.follows!r}: no free joint before it ({known})"
+                )
         return self
 
     @model_validator(mode="after")

@@ -41,8 +41,7 @@ def arm_of(
     component = joints.partition(".")[0]
     ports = resolver.ports[component]
     if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
-        names = (ORIGIN, DIRECTION, SLIDES, COUNT, LEVEL, HAND)
-        return Arm((), axes=axes_in_mm(*(parameter(f"{component}.{n}") for n in names)))
+        return Arm((), axes=axes_in_mm(lambda name: parameter(f"{component}.{name}")))
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -58,22 +57,20 @@ def arm_of(
 
 
 def axes_in_mm(
-    origin: Sequence[float],
-    direction: Sequence[float],
-    slides: Sequence[float] = (0,) * 6,
-    count: Sequence[float] = (6,),
-    level: Sequence[float] = (0,) * 6,
-    hand: Sequence[float] = (0.0,) * 3,
+    parameter: Callable[[str], Sequence[float]],
 ) -> tuple[tuple[Three, Three, bool, int, Three], ...]:
     """Rows of `Arm.axes` of parameters in m: origins in mm, directions of length 1."""
+    count = int(parameter(COUNT)[0])
 
-    def rows(numbers: Sequence[float], factor: float) -> list[Three]:
-        ends = range(0, 3 * int(count[0]), 3)
-        return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in ends]
+    def rows(name: str, factor: float) -> list[Three]:
+        numbers = parameter(name)
+        return [
+            tuple(factor * float(x) for x in numbers[k : k + 3]) for k in range(0, 3 * count, 3)
+        ]
 
-    units = [tuple(x / math.hypot(*d) for x in d) for d in rows(direction, 1.0)]
-    slide = [bool(s) for s in slides[: len(units)]]
-    levels = [int(n) for n in level[: len(units)]]
-    held = tuple(1e3 * float(x) for x in hand)
-    hands = [held if k == PALLETIZED else (0.0,) * 3 for k in range(len(units))]
-    return tuple(zip(rows(origin, 1e3), units, slide, levels, hands, strict=True))
+    units = [tuple(x / math.hypot(*d) for x in d) for d in rows(DIRECTION, 1.0)]
+    slides = [bool(s) for s in parameter(SLIDES)[:count]]
+    levels = [int(n) for n in parameter(LEVEL)[:count]]
+    held = tuple(1e3 * float(x) for x in parameter(HAND))
+    hands = [held if k == PALLETIZED else (0.0,) * 3 for k in range(count)]
+    return tuple(zip(rows(ORIGIN, 1e3), units, slides, levels, hands, strict=True))
