@@ -14,7 +14,7 @@ VENV := import ensurepip, venv
 QUIET := $(if $(MAKE_TERMOUT),,-- --quiet)
 
 .NOTPARALLEL: # ninja, ctest and pytest share out the cores
-.PHONY: needs demo test test-more test-all test-long sanitized check bench importers warnings fuzz explore mutants build export wheel clean
+.PHONY: needs demo test test-more test-all test-long sanitized check bench importers warnings fuzz explore mutants build export wheel docs clean
 
 demo: build                     ## build all and run the demo scenario
 	$(BIN)/motionfmu run scenarios/circle
@@ -37,6 +37,10 @@ export: needs .venv/exporting    ## FMUs for Linux, Windows and macOS in build/e
 wheel: build export             ## the wheel for pip in build/wheel, tried in a new environment
 	$(BIN)/python tests/wheel/wheel.py build/export build/wheel
 
+docs: build .venv/documenting    ## the site in build/site, which opens from disk; its warnings are errors
+	@$(BIN)/python docs/site/build.py build/site > build/site.txt 2>&1 || { grep -E "WARNING|ERROR|rror:" build/site.txt; exit 1; }
+	@echo build/site/index.html
+
 # Nothing of one test run is repeated by the next: test, test-more and test-long have no test in common.
 PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25
 # C tests of a build; those that hold are told in its tests.txt alone.
@@ -47,7 +51,7 @@ test: build check               ## what every change needs, in six minutes: styl
 	@$(call CTEST,build)
 	$(PYTEST) --durations-min=5
 
-test-more: build export sanitized    ## what is slow and stands by itself: sanitized C tests, exports, tests marked `more`
+test-more: build export sanitized .venv/documenting    ## what is slow and stands by itself: sanitized C tests, exports, tests marked `more`
 	@$(call CTEST,build/asan)
 	MOTIONFMU_SKIPS=listed $(PYTEST) -m "more and not long" --durations-min=20
 
@@ -107,4 +111,11 @@ clean:
 	@$(BIN)/python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \
 	  print(*p['optional-dependencies']['export'], sep='\n')" > .venv/exporting.txt
 	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check -r .venv/exporting.txt
+	@touch $@
+
+# Only the site needs Sphinx.
+.venv/documenting: .venv/installed
+	@echo "Installing Sphinx into .venv (once) ..."
+	@$(BIN)/python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['dependency-groups']['docs'], sep='\n')" > .venv/documenting.txt
+	@$(BIN)/python -m pip install --no-compile --quiet --disable-pip-version-check -r .venv/documenting.txt
 	@touch $@

@@ -106,7 +106,7 @@ static void publish_remote(struct vars *v, const struct epcio *card)
 static void publish(struct vars *v, const struct epcio *card)
 {
     v->irq_pages = 0;
-    for (int i = 0; i < IRQ_PAGES; i++)
+    for (int i = 0; i < IRQ_PAGES && card->irq.line; i++) /* a page that pulls holds the line */
         v->irq_pages |= (int32_t)((card->irq.flags[i] & card->irq.mask[i]) != 0) << i;
     v->overflows = card->overflows;
     v->dda_time = (double)dda_time(card->dda.ticks, card->dda.divider) / EPCIO_CLOCK_HZ;

@@ -83,12 +83,19 @@ static int read_host(struct fmu *f)
     return command > 0 ? wires_sent(f, &w, epcio_post(&m->card, &w)) : command;
 }
 
-static uint32_t bits_of(const bool *level, int count)
+/* Up to eight levels, a byte each, as bits: a factor moves byte k to bit 56 + k. */
+static uint32_t bits_of(const bool *level, size_t count)
 {
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__
+    uint64_t bytes = 0;
+    memcpy(&bytes, level, count);
+    return (uint32_t)(bytes * UINT64_C(0x0102040810204080) >> 56);
+#else
     uint32_t bits = 0;
-    for (int i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++)
         bits |= (uint32_t)level[i] << i;
     return bits;
+#endif
 }
 
 static void read_pins(const struct vars *v, struct epcio_lines *l)

@@ -16,6 +16,8 @@ struct model {
     int32_t told_refusals; /* starts of the program that were refused, */
     int32_t told_refused;  /* and line by hand that was, as reported last */
     bool told_change;      /* the tool change for which the program waits was reported */
+    int32_t shown_order;   /* services of interrupts begun so far, */
+    uint32_t shown_uses;   /* and changes of the modules' statistics, in what is shown */
 };
 
 #define MODEL_BLOB
@@ -102,12 +104,14 @@ static void publish_card(struct vars *v, const struct pc *pc)
     }
 }
 
-static void publish_schedule(struct vars *v, const struct pc *pc)
+/* Show how the PC's processor is used: what has changed, and loads, which time changes. */
+static void publish_schedule(struct vars *v, struct model *m)
 {
-    const struct isr *isr = &pc->shown_isr;
-    const struct cyclic_report *r = &pc->shown;
+    const struct isr *isr = &m->pc.shown_isr;
+    const struct cyclic_report *r = &m->pc.shown;
+    const bool served = m->shown_order != isr->order, used = m->shown_uses != r->changes;
 
-    for (int i = 0; i < ISR_PAGES; i++) {
+    for (int i = 0; i < ISR_PAGES && served; i++) {
         v->served[i] = isr->served[i];
         v->served_latency[i] = (double)isr->latency[i] / CLOCK_HZ;
     }
@@ -115,12 +119,17 @@ static void publish_schedule(struct vars *v, const struct pc *pc)
     v->module = r->running + 1;
     for (int i = 0; i <= PC_MODULES; i++) {
         const struct cyclic_use *u = i < PC_MODULES ? &r->task[i] : &r->all;
+        v->module_load[i] = r->clock > 0 ? (double)u->busy / (double)r->clock : 0.0;
+    }
+    for (int i = 0; i <= PC_MODULES && used; i++) {
+        const struct cyclic_use *u = i < PC_MODULES ? &r->task[i] : &r->all;
         v->module_runs[i] = u->runs;
         v->module_latency[i] = (double)u->latency / CLOCK_HZ;
         v->module_response[i] = (double)u->response / CLOCK_HZ;
         v->module_missed[i] = u->missed;
-        v->module_load[i] = r->clock > 0 ? (double)u->busy / (double)r->clock : 0.0;
     }
+    m->shown_order = isr->order;
+    m->shown_uses = r->changes;
 }
 
 /* Show a window of the tool table. */
@@ -129,6 +138,9 @@ static void publish_tools(struct vars *v, const struct tool_table *t)
     enum { ROWS = sizeof v->tool_listed / sizeof *v->tool_listed };
     static const struct tool none = { .number = -1 };
 
+    if (t->count == 0 && v->tool_rows == 0 && v->tool_listed[0] == none.number) {
+        return;
+    }
     v->tool_rows = t->count;
     for (int i = 0; i < ROWS; i++) {
         const int32_t row = v->tool_row - 1 + i;
@@ -182,7 +194,7 @@ static void publish(struct fmu *f)
     v->starved = m->pc.pcl.starved;
     v->services = m->pc.pcl.services;
     v->latency = (double)m->pc.pcl.latency / CLOCK_HZ;
-    publish_schedule(v, &m->pc);
+    publish_schedule(v, m);
     publish_card(v, &m->pc);
     if ((v->tool_asked >= 0) != m->told_change) {
         m->told_change = v->tool_asked >= 0;

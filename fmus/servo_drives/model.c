@@ -8,6 +8,7 @@ enum { CHANNELS = 6 };
 
 struct model {
     struct drive_state drive[CHANNELS];
+    struct drive_config config[CHANNELS];
     struct drive_output next[CHANNELS]; /* outputs of the latest instant, shown at the next one */
     int64_t period;                     /* [ns] sampling grid */
     int64_t instant;                    /* [ns] next instant of that grid */
@@ -59,7 +60,7 @@ static void publish(struct vars *v, const struct model *m, bool all)
 {
     for (int i = 0; i < CHANNELS; i++) {
         const struct drive_output *o = &m->next[i];
-        if (!all && !v->prompt[i])
+        if (!v->active[i] || (!all && !v->prompt[i]))
             continue;
         v->torque[i] = o->torque;
         v->speed[i] = o->speed;
@@ -95,11 +96,11 @@ static int sample(struct fmu *f)
     for (int i = 0; i < CHANNELS; i++) {
         if (!v->active[i])
             continue;
-        struct drive_config c = config(v, i);
+        const struct drive_config *c = &m->config[i];
         struct drive_input in = { v->enable[i],      v->alarm_reset[i], v->dac[i],
                                   v->pulse_count[i], v->phase[i],       v->encoder_unplugged[i] };
         int32_t alarm = m->drive[i].alarm;
-        if (drive_tick(&c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
+        if (drive_tick(c, &m->drive[i], &in, &m->next[i]) != DRIVE_OK)
             return fmu_fail(f, "phase[%d] = %g: more counts than a number can hold exactly", i + 1,
                             v->phase[i]);
         const bool overload = m->next[i].alarm == DRIVE_OVERLOAD && alarm != DRIVE_OVERLOAD;
@@ -127,6 +128,9 @@ static int sample(struct fmu *f)
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
+    for (int i = 0; i < CHANNELS && f->tuned; i++)
+        m->config[i] = config(&f->s.v, i);
+    f->tuned = false;
     for (; m->instant < t1; m->instant += m->period) {
         if (m->instant > t0)
             publish(&f->s.v, m, true);

@@ -40,6 +40,8 @@ struct state {
 struct fmu {
     struct state s;
     void *blob; /* files and buffers that model_open made; NULL without MODEL_BLOB */
+    bool tuned; /* parameters may have changed since model_step last began; the layer sets it, and a
+                 * model that keeps what it makes of them clears it */
 };
 
 /* The model's own functions. They return 0, or -1 after fmu_fail(). */

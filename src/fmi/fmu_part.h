@@ -32,7 +32,7 @@ struct fmu_host {
 
 /* The sizes are in the object file as decimal digits too, for the generator of a system's C
  * text. */
-#define FMU_PART_MARK "motionfmu part 4 "
+#define FMU_PART_MARK "motionfmu part 5 "
 enum { FMU_PART_DIGITS = 9, FMU_PART_ALIGN = 16 };
 
 struct fmu_part {
@@ -58,6 +58,9 @@ struct fmu_part {
     int (*step)(void *part, int64_t t0, int64_t t1);
     int (*end)(void *part);
     void (*close)(void *part);
+
+    /* The parameters may have changed: to be called behind a change after `start`. */
+    void (*tuned)(void *part);
 
     /* Warn if communication steps [ns] and the FMU's own grid do not divide each other. */
     void (*watch)(void *part, int64_t step);

@@ -66,10 +66,20 @@ struct system_column {
 
 /* Check of the values on all wires together, which is evaluated once. Most values need only be
  * finite: x * 0 is 0 for a finite x and NaN for any other. */
+#if defined(__GNUC__)
+typedef double system_pair __attribute__((vector_size(16)));
+#define SYSTEM_SUM(pair) ((pair)[0] + (pair)[1])
+#else
+typedef double system_pair;
+#define SYSTEM_SUM(pair) (pair)
+#endif
+enum { SYSTEM_PAIR = sizeof(system_pair) / sizeof(double) };
+
 struct system_check {
-    double off[2]; /* sums of x * 0, of even and odd elements */
-    uint32_t bits; /* union of the bits that integers have and must not have */
-    bool good;     /* the values with other limits are within them */
+    system_pair off; /* sums of x * 0, of pairs of elements, */
+    double rest;     /* and of what has no other */
+    uint32_t bits;   /* union of the bits that integers have and must not have */
+    bool good;       /* the values with other limits are within them */
 };
 
 #define SYSTEM_FINITE(x) system_finite(&check, (const double *)&(x), sizeof(x) / sizeof(double))
@@ -82,12 +92,13 @@ struct system_check {
 
 static inline void system_finite(struct system_check *c, const double *x, size_t n)
 {
-    for (size_t i = 0; i + 1 < n; i += 2) {
-        c->off[0] += x[i] * 0.0;
-        c->off[1] += x[i + 1] * 0.0;
+    size_t i = 0;
+    for (system_pair pair; i + SYSTEM_PAIR <= n; i += SYSTEM_PAIR) {
+        memcpy(&pair, x + i, sizeof pair);
+        c->off += pair * 0.0;
     }
-    if (n % 2) {
-        c->off[0] += x[n - 1] * 0.0;
+    for (; i < n; i++) {
+        c->rest += x[i] * 0.0;
     }
 }
 
@@ -117,7 +128,7 @@ static inline void system_wholes(struct system_check *c, const int32_t *x, size_
 
 static inline bool system_good(const struct system_check *c)
 {
-    return c->good & (c->bits == 0) & (c->off[0] + c->off[1] == 0.0);
+    return c->good & (c->bits == 0) & (SYSTEM_SUM(c->off) + c->rest == 0.0);
 }
 
 #endif

@@ -75,62 +75,57 @@ static const double plant_h_lambda = 2.0; /* largest (h/n) |lambda| */
 #define PLANT_CASE(n, call) \
     case n: call; break;
 
-typedef void plant_rates(int lanes, const double *restrict x, const double *restrict u,
-                         const double *restrict c, double *restrict dx);
-
-/* One Runge-Kutta step of h [s]. */
-static PLANT_INLINE void plant_step_of(int lanes, plant_rates *rhs, struct plant_block *b, double h)
+/* So many Runge-Kutta steps of h [s]. */
+static PLANT_INLINE void plant_steps_of(int lanes, plant_function *rhs, struct plant_block *b,
+                                        double h, int64_t steps)
 {
     const int n = PLANT_STATES * lanes;
     double k1[PLANT_STATE_SIZE], k2[PLANT_STATE_SIZE], k3[PLANT_STATE_SIZE], k4[PLANT_STATE_SIZE];
     double at[PLANT_STATE_SIZE];
-    rhs(lanes, b->x, b->u, b->c, k1);
-    for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + 0.5 * h * k1[i];
-    }
-    rhs(lanes, at, b->u, b->c, k2);
-    for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + 0.5 * h * k2[i];
-    }
-    rhs(lanes, at, b->u, b->c, k3);
-    for (int i = 0; i < n; i++) {
-        at[i] = b->x[i] + h * k3[i];
-    }
-    rhs(lanes, at, b->u, b->c, k4);
-    for (int i = 0; i < n; i++) {
-        b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+    for (int64_t k = 0; k < steps; k++) {
+        rhs(b->x, b->u, b->c, k1);
+        for (int i = 0; i < n; i++) {
+            at[i] = b->x[i] + 0.5 * h * k1[i];
+        }
+        rhs(at, b->u, b->c, k2);
+        for (int i = 0; i < n; i++) {
+            at[i] = b->x[i] + 0.5 * h * k2[i];
+        }
+        rhs(at, b->u, b->c, k3);
+        for (int i = 0; i < n; i++) {
+            at[i] = b->x[i] + h * k3[i];
+        }
+        rhs(at, b->u, b->c, k4);
+        for (int i = 0; i < n; i++) {
+            b->x[i] += h / 6.0 * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
+        }
     }
 }
 
-static void plant_step_plain(struct plant_block *b, double h)
+static void plant_steps_plain(struct plant_block *b, double h, int64_t steps)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs, b, h))
+#define STEPS(n) PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n, b, h, steps))
     switch (b->lanes) {
-        PLANT_WIDTHS(STEP)
+        PLANT_WIDTHS(STEPS)
     }
-#undef STEP
+#undef STEPS
 }
 
 /* The sums between the rates use wide vectors, too: a wide load would wait for two narrow
  * stores. */
-EL_AVX2 static void plant_step_avx2(struct plant_block *b, double h)
+EL_AVX2 static void plant_steps_avx2(struct plant_block *b, double h, int64_t steps)
 {
-#define STEP(n) PLANT_CASE(n, plant_step_of(n, plant_rhs_avx2, b, h))
+#define STEPS(n) PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n##_avx2, b, h, steps))
     switch (b->lanes) {
-        PLANT_WIDTHS(STEP)
+        PLANT_WIDTHS(STEPS)
     }
-#undef STEP
+#undef STEPS
 }
 
 /* Whether wide vectors pay: not for a block of one or two lanes, unless the plant has only one. */
 static bool plant_wide(const struct plant_block *b)
 {
     return (b->lanes > 2 || PLANT_LANES == 1) && plant_has_avx2();
-}
-
-static void plant_step(struct plant_block *b, double h)
-{
-    (plant_wide(b) ? plant_step_avx2 : plant_step_plain)(b, h);
 }
 
 /* One step of h [s] by Bogacki and Shampine (1989) to y. Returns its error relative to the allowed
@@ -151,7 +146,7 @@ static double plant_trial(const struct plant_block *b, double h, double *y)
             }
             y[i] = b->x[i] + h * sum;
         }
-        plant_rhs(1, y, b->u, b->c, k[s]);
+        plant_rhs_1(y, b->u, b->c, k[s]);
     }
     double worst = 0.0;
     for (int i = 0; i < PLANT_STATE_SIZE; i++) {
@@ -193,20 +188,26 @@ static int plant_controlled(struct plant_block *b, double h)
     return 0;
 }
 
-/* One micro step of all axes, which ends at `now` [ns]. */
-static int plant_advance(struct fmu *f, int64_t now)
+/* So many micro steps of all axes, the first of which begins at `now` [ns]. */
+static int plant_advance(struct fmu *f, int64_t now, int64_t steps)
 {
-    const double h = 1e-9 * (double)f->s.m.step_ns;
-    for (int n = 0; n < f->s.m.blocks; n++) {
+    const int64_t step = f->s.m.step_ns;
+    const double h = 1e-9 * (double)step;
+    for (int n = 0; n < f->s.m.blocks && !PLANT_CONTROLLED; n++) {
         struct plant_block *b = &f->s.m.block[n];
-        if (!PLANT_CONTROLLED) {
-            for (int k = 0; k < b->sub_steps; k++) {
-                plant_step(b, h / b->sub_steps);
+        (plant_wide(b) ? plant_steps_avx2 : plant_steps_plain)(b, h / b->sub_steps,
+                                                               steps * b->sub_steps);
+    }
+    for (int64_t k = 1; k <= steps && PLANT_CONTROLLED; k++) {
+        for (int n = 0; n < f->s.m.blocks; n++) {
+            struct plant_block *b = &f->s.m.block[n];
+            if (plant_controlled(b, h) != 0) {
+                return fmu_fail(f,
+                                "axis %d: too stiff at %.9f s, %g s would need more than %d "
+                                "sub-steps",
+                                b->instance[0] + 1, 1e-9 * (double)(now + k * step), h,
+                                PLANT_SUB_STEPS_MAX);
             }
-        } else if (plant_controlled(b, h) != 0) {
-            return fmu_fail(f,
-                            "axis %d: too stiff at %.9f s, %g s would need more than %d sub-steps",
-                            b->instance[0] + 1, 1e-9 * (double)now, h, PLANT_SUB_STEPS_MAX);
         }
     }
     return 0;
@@ -237,17 +238,25 @@ static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
     return sum == 0.0;
 }
 
-/* Whether all states and outputs of a block are finite. */
-static bool plant_finite(const struct plant_block *b, const double *y)
+/* Compute the outputs y of a block. Returns whether all its states and outputs are finite. */
+static PLANT_INLINE bool plant_outputs_of(int lanes, plant_function *outputs,
+                                          const struct plant_block *b, double *y)
 {
+    outputs(b->x, b->u, b->c, y);
+    return plant_finite_of(lanes, b->x, PLANT_STATES) && plant_finite_of(lanes, y, PLANT_OUTPUTS);
+}
+
+static bool plant_outputs(const struct plant_block *b, double *y)
+{
+    const bool wide = plant_wide(b);
     bool good = false;
-#define FINITE(n) \
-    PLANT_CASE(n, good = plant_finite_of(n, b->x, PLANT_STATES) \
-                         && plant_finite_of(n, y, PLANT_OUTPUTS))
+#define OUTPUTS(n) \
+    PLANT_CASE(n, good = plant_outputs_of(n, wide ? plant_outputs_##n##_avx2 : plant_outputs_##n, \
+                                          b, y))
     switch (b->lanes) {
-        PLANT_WIDTHS(FINITE)
+        PLANT_WIDTHS(OUTPUTS)
     }
-#undef FINITE
+#undef OUTPUTS
     return good;
 }
 
@@ -275,8 +284,7 @@ static int plant_publish(struct fmu *f, int64_t now)
     for (int n = 0; n < f->s.m.blocks; n++) {
         const struct plant_block *b = &f->s.m.block[n];
         double y[PLANT_OUTPUT_SIZE];
-        (plant_wide(b) ? plant_outputs_avx2 : plant_outputs)(b->lanes, b->x, b->u, b->c, y);
-        if (!plant_finite(b, y)) {
+        if (!plant_outputs(b, y)) {
             return plant_refuse(f, b, y, now);
         }
         for (int lane = 0; lane < b->used; lane++) {
@@ -468,21 +476,31 @@ static int plant_tune(struct fmu *f)
 
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
-    if (PLANT_TUNABLES > 0 && plant_tuned(&f->s.v, &f->s.m.tuned) && plant_tune(f) != 0) {
+    if (PLANT_TUNABLES > 0 && f->tuned && plant_tuned(&f->s.v, &f->s.m.tuned)
+        && plant_tune(f) != 0) {
         return -1;
     }
-    const int64_t h = f->s.m.step_ns, first = t0 / h * h, last = t1 / h * h;
+    f->tuned = false;
+    const int64_t h = f->s.m.step_ns, last = t1 / h * h;
+    int64_t now = t0 / h * h;
     if (!f->s.m.watched) {
         f->s.m.watched = true;
         plant_watch(f, 1e-9 * (double)(t1 - t0));
     }
-    for (int64_t now = first; now <= t1; now += h) {
-        if (now > t0 && plant_advance(f, now) != 0) {
-            return -1;
-        }
-        if (now >= t0 && now < t1) {
+    if (last <= t0) {
+        if (now == t0) {
             plant_read(f);
         }
+        return 0;
     }
-    return last > t0 ? plant_publish(f, last) : 0;
+    if (now < t0) { /* the micro step that has begun goes on with the inputs of its begin */
+        if (plant_advance(f, now, 1) != 0) {
+            return -1;
+        }
+        now += h;
+    }
+    if (now < t1) {
+        plant_read(f);
+    }
+    return plant_advance(f, now, (last - now) / h) != 0 ? -1 : plant_publish(f, last);
 }

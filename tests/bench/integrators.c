@@ -19,7 +19,7 @@ void plant_slope(const double *x, const double *u, const double *p, double *jaco
 static void rhs(const double *x, const double *u, const double *c, double *dx)
 {
     bench_rhs_calls++;
-    plant_rhs(x, u, c, dx);
+    plant_rhs_1(x, u, c, dx);
 }
 
 /* Explicit method of s stages: y += h sum b k, error h sum e k. */

@@ -61,6 +61,7 @@ void JOIN(PART, start)(void)
     model_open(&part);
 #endif
     model_start(&part);
+    part.tuned = true;
 }
 
 void JOIN(PART, step)(int64_t t0, int64_t t1);

@@ -275,6 +275,21 @@ SMALL: dict[str, Any] = {
 }
 
 
+def test_a_gain_counts_from_the_first_step_that_begins_behind_its_setting() -> None:
+    """Also behind a step that began before, in the same communication step."""
+    gains = {"drives.velocity_gain": [0.9] * 6}
+    torques = []
+    for at in (STEP, 1.5 * STEP, 2 * STEP):
+        instance = Instance(NAME, 3).initialize({})
+        assert instance.step(at) == OK
+        for name, values in gains.items():
+            assert instance.set(name, values) == OK
+        assert instance.step(5 * STEP - at) == OK
+        torques.append(instance.get("drives.torque"))
+        instance.free()
+    assert torques[1] == torques[2] != torques[0]
+
+
 def test_what_a_wire_brings_is_within_limits_or_ends_the_run(tmp_path: Path) -> None:
     wired = {
         "component": {"one": "epcio", "two": "network_card"},

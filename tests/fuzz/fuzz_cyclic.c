@@ -97,7 +97,7 @@ static void end(struct bytes *b, int i)
 /* A timer has asked so often by now, whose requests were met, wait or were lost behind one. */
 static void count(void)
 {
-    struct cyclic_report r;
+    struct cyclic_report r = { .clock = 0 };
 
     cyclic_tell(&s, &r);
     for (int i = 0; i < N; i++) {

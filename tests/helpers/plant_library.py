@@ -64,7 +64,12 @@ const size_t run_size = sizeof(struct fmu);
 struct fmu *run_new(void) { return calloc(1, sizeof(struct fmu)); }
 void run_free(struct fmu *f) { free(f); }
 int run_start(struct fmu *f) { said[0] = 0; return model_start(f); }
-int run_step(struct fmu *f, int64_t t0, int64_t t1) { said[0] = 0; return model_step(f, t0, t1); }
+int run_step(struct fmu *f, int64_t t0, int64_t t1)
+{
+    said[0] = 0;
+    f->tuned = true; /* variables are set in place */
+    return model_step(f, t0, t1);
+}
 double run_radius(double *a) { return plant_spectral_radius(a, PLANT_FINE); }
 """
 

@@ -86,6 +86,22 @@ def test_a_torque_stands_one_period_after_its_cause(fmi: int) -> None:
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
+def test_a_gain_set_before_a_state_was_saved_counts_where_it_is_restored(fmi: int) -> None:
+    fmu = drives(fmi, velocity_time=0.0, velocity_gain=0.1)
+    fmu.set("dac", 1.0)
+    to_tick(fmu, PERIOD)
+    fmu.set("velocity_gain", 0.2)
+    state, time = fmu.save(), fmu.time
+    fmu.set("velocity_gain", 0.1)
+    to_tick(fmu, 2 * PERIOD)
+    assert fmu.restore(state, time) == OK
+    to_tick(fmu, 3 * PERIOD)
+    assert fmu.get("torque") == pytest.approx([0.2 * 300 * 3.141592653589793 / 30] * 6, rel=1e-14)
+    fmu.free_state(state)
+    fmu.free()
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
 def test_an_encoder_that_is_unplugged_trips_its_drive_alone(fmi: int) -> None:
     fmu = drives(fmi)
     to_tick(fmu, PERIOD)

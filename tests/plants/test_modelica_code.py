@@ -50,8 +50,8 @@ def test_c_equals_casadi_in_every_lane(library, axis, lanes):
             library.c.plant_constants(array(p[i]), one)
             c[:, i] = one
         dx, y = array(np.empty((5, lanes))), array(np.empty((12, lanes)))
-        library.c.plant_rhs(lanes, array(x), array(u), array(c), dx)
-        library.c.plant_outputs(lanes, array(x), array(u), array(c), y)
+        getattr(library.c, f"plant_rhs_{lanes}")(array(x), array(u), array(c), dx)
+        getattr(library.c, f"plant_outputs_{lanes}")(array(x), array(u), array(c), y)
         for i in range(lanes):
             expected = [np.array(r).ravel() for r in f(x[:, i], u[:, i], p[i])]
             # Divisions by parameters became multiplications: an ulp of 0.6 m is 1e-8 N at 1e8 N/m

@@ -59,6 +59,38 @@ value = [true]
 [record]
 """
 
+TUNED = """# Gains that change while a drive moves its axis.
+stop = 0.02
+step = 1e-4
+leave = ["drives.*", "machine.*"]
+
+[component]
+drives = "servo_drives"
+machine = "ball_screw_axes"
+
+[connect]
+"machine.torque_command" = "drives.torque"
+"drives.phase" = "machine.motor_phase"
+
+[[drive]]
+input = "drives.dac"
+at = [0.0]
+value = [1.0]
+
+[[drive]]
+input = "drives.velocity_gain"
+at = [0.005]
+value = [0.9]
+
+[[drive]]
+input = "machine.table_viscous"
+at = [0.01]
+value = [5000.0]
+
+[record]
+signals = ["drives.torque", "machine.table_speed"]
+"""
+
 
 @functools.cache
 def loaded(scenario: str) -> motionfmu.Scenario:
@@ -235,6 +267,32 @@ def test_stimuli_reach_every_engine_alike(driven: Path, fmi: int) -> None:
     for engine in ENGINES:
         assert differing(one, scenario.run(engine=engine, fmi=fmi)) == [], engine
     assert differing(one, fmpy_container.run(scenario)) in ([], ["mcc.done"])
+
+
+def test_tunable_parameters_count_in_every_engine_from_the_step_on(tmp_path: Path) -> None:
+    runs = {}
+    for name, text in {
+        "tuned": TUNED,
+        "drives": TUNED.replace("value = [5000.0]", "value = [100.0]"),
+        "machine": TUNED.replace("value = [0.9]", "value = [0.5]"),
+    }.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        (folder / "scenario.toml").write_text(text)
+        scenario = motionfmu.load(folder)
+        runs[name] = scenario.run(engine="fused")
+        for engine in ENGINES if name == "tuned" else ():
+            assert differing(runs[name], scenario.run(engine=engine)) == [], engine
+    t = runs["tuned"].time
+
+    def parts(other: str) -> float:
+        """The time at which the table's speed becomes another one [s]."""
+        one, two = runs["tuned"]["machine.table_speed"], runs[other]["machine.table_speed"]
+        return t[np.flatnonzero(np.any(one != two, axis=1))[0]]
+
+    # The sample at 5 ms takes the gain, its torque stands from 5.1 ms on.
+    assert parts("machine") == pytest.approx(0.0052, abs=1e-9)
+    assert parts("drives") == pytest.approx(0.0101, abs=1e-9)
 
 
 @pytest.mark.parametrize("divisor", [2, 4, 10])

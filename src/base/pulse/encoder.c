@@ -138,7 +138,7 @@ bool encoder_unplugged(struct encoder *e, double phase, int64_t clock)
     return true;
 }
 
-int encoder_run(struct encoder *e, int64_t until)
+int encoder_run_on(struct encoder *e, int64_t until)
 {
     const struct quadrature *q = &e->pins;
     if (!q->primed)
@@ -147,7 +147,5 @@ int encoder_run(struct encoder *e, int64_t until)
     bool aliased = 4.0 * fabs(q->to - q->from) > (double)(q->clock - q->from_clock);
     if (e->config.filter > 0)
         return aliased ? encoder_run_blind(e, way, until) : encoder_run_filtered(e, way, until);
-    if (q->quarter == q->end)
-        return 0;
     return aliased ? run_aliased(e, way, until) : run_plain(e, way, until);
 }

@@ -31,6 +31,7 @@ static void ask(struct cyclic *s)
         if (t->next > s->processor.clock) {
             continue;
         }
+        s->changes++;
         t->use.missed += (t->active && !t->event) || (t->asked && !t->woken);
         t->due = t->asked && t->due < t->next ? t->due : t->next;
         t->ready = t->asked && t->ready < t->next ? t->ready : t->next;
@@ -72,12 +73,31 @@ static void pass(struct cyclic *s, int64_t until)
         until = t->next < until ? t->next : until;
         until = t->asked && t->ready > s->processor.clock && t->ready < until ? t->ready : until;
     }
+    s->changes += s->processor.running >= 0;
     processor_pass(&s->processor, until);
     s->running = s->processor.running;
 }
 
+/* Whether no task runs, waits or is due before `until`. */
+static bool idle(const struct cyclic *s, int64_t until)
+{
+    bool busy = false;
+    int64_t next = INT64_MAX;
+
+    for (int i = 0; i < s->processor.tasks; i++) {
+        const struct cyclic_task *t = &s->task[i];
+        busy |= t->asked | t->active;
+        next = t->next < next ? t->next : next;
+    }
+    return !busy && next >= until;
+}
+
 struct cyclic_event cyclic_next(struct cyclic *s, int64_t until)
 {
+    if (s->processor.clock < until && idle(s, until)) {
+        s->running = s->processor.running = -1;
+        processor_pass(&s->processor, until);
+    }
     while (s->processor.clock < until) {
         const int over = processor_over(&s->processor);
         if (over >= 0) {
@@ -107,6 +127,7 @@ void cyclic_begin(struct cyclic *s, int task, int64_t due, int64_t clocks)
 {
     struct cyclic_task *t = &s->task[task];
 
+    s->changes++;
     t->asked = false;
     t->active = true;
     t->event = t->woken;
@@ -125,6 +146,7 @@ void cyclic_end(struct cyclic *s, int task)
 {
     struct cyclic_task *t = &s->task[task];
 
+    s->changes++;
     processor_block(&s->processor, task);
     t->active = false;
     t->use.runs++;
@@ -135,6 +157,10 @@ void cyclic_tell(const struct cyclic *s, struct cyclic_report *r)
 {
     r->clock = s->processor.clock;
     r->running = s->running;
+    if (r->changes == s->changes) {
+        return;
+    }
+    r->changes = s->changes;
     r->all = (struct cyclic_use){ 0 };
     for (int i = 0; i < s->processor.tasks; i++) {
         struct cyclic_use *u = &r->task[i];

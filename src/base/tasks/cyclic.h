@@ -57,6 +57,7 @@ struct cyclic_task {
 struct cyclic {
     struct processor processor; /* everything before its clock is done */
     int running;                /* task that ran up to the processor's clock; -1 none */
+    uint32_t changes;           /* of the tasks' statistics; counts round */
     struct cyclic_task task[CYCLIC_TASKS];
 };
 
@@ -94,9 +95,10 @@ struct cyclic_report {
     int running;                          /* task that ran up to this clock; -1 none */
     struct cyclic_use task[CYCLIC_TASKS]; /* statistics of each task */
     struct cyclic_use all;                /* their sums; the longest latency and response of all */
+    uint32_t changes;                     /* of the statistics so far */
 };
 
-/* Fill in the report. */
+/* Bring a report up to date; the first one begins with all members 0. */
 void cyclic_tell(const struct cyclic *s, struct cyclic_report *r);
 
 #endif

@@ -233,7 +233,7 @@ void reaction_look(struct mcc *m, const struct reaction_look *l)
         follow(m);
         return;
     }
-    for (int i = 0; i < AXES; i++) {
+    for (int i = 0; i < AXES && l->overflow != 0; i++) {
         if (m->machine.axis[i].track_limit > 0 && (l->overflow >> i & 1)) {
             stop_at_once(m, MCC_ERROR_TRACK + i, l->flying);
         }

@@ -12,7 +12,9 @@ static const double VOLTS_MAX = VOLTAGE_RANGE; /* [V] */
 static void show(struct pc *pc)
 {
     cyclic_tell(&pc->modules, &pc->shown);
-    pc->shown_isr = pc->pcl.isr;
+    if (pc->shown_isr.order != pc->pcl.isr.order) { /* else no page was served since */
+        pc->shown_isr = pc->pcl.isr;
+    }
 }
 
 int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *config, bool program)
@@ -33,6 +35,7 @@ int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *con
         isr.mask[ISR_LOOP_PAGE] |= (m->axis[i].used && m->axis[i].track_limit > 0) << i;
     }
     pcl_start(&pc->pcl, m, config->min_stock, config->batch, &isr);
+    pc->shown_isr = pc->pcl.isr;
     show(pc);
     const int code = MCC_init_motion(&pc->mcc, m);
     task_set_switches(&pc->mcc, config->block_delete, config->optional_stop);
@@ -80,8 +83,11 @@ static void control(struct pc *pc, int64_t now, const struct pcl_card *card,
     voltage_follow(&pc->voltage, m);
     for (int i = 0; i < AXES; i++) {
         const double fixed = pc->config.law.axis[i].gain;
+        if (!axis[i].on) {
+            continue;
+        }
         axis[i].gain = fixed > 0.0 ? fixed : panel->software_gain[i];
-        if (axis[i].on && !pc->voltage.special) {
+        if (!pc->voltage.special) {
             const double v = axis[i].gain * panel->signals.err[i];
             pc->volts[i] = el_max(-VOLTS_MAX, el_min(VOLTS_MAX, v));
         }

@@ -67,8 +67,11 @@ enum epcio_status epcio_reset(struct epcio *card, const struct epcio_config *con
         fifo_reset(&card->fifo[i], EPCIO_FIFO_DEPTH);
         pulse_reset(&card->pulse[i]);
     }
-    for (int i = 0; i < EPCIO_ENCODERS; i++)
+    for (int i = 0; i < EPCIO_ENCODERS; i++) {
         encoder_reset(&card->encoder[i], &config->encoder[i]);
+        if (i >= EPCIO_AXES || config->active[i])
+            card->counter[card->counters++] = i;
+    }
     epcio_plan(card);
     return EPCIO_OK;
 }
@@ -212,17 +215,13 @@ void epcio_encoder_events(struct epcio *card, int encoder, int events)
     }
 }
 
-static bool counts(const struct epcio *card, int encoder)
-{
-    return encoder >= EPCIO_AXES || card->config.active[encoder];
-}
-
 /* Find the index pulses of this sampling period that latch counters, before any counter moves on:
  * each counter that they latch must be run to their clocks. */
 static void foresee_indices(struct epcio *card, uint32_t sources)
 {
-    for (int i = 0; i < EPCIO_ENCODERS; i++) {
-        if (!(sources & (uint32_t)1 << (LATCH_INDEX + i)) || !counts(card, i))
+    for (int k = 0; k < card->counters; k++) {
+        const int i = card->counter[k];
+        if (!(sources & (uint32_t)1 << (LATCH_INDEX + i)))
             continue;
         struct encoder ahead = card->encoder[i];
         encoder_run(&ahead, card->clock);
@@ -240,9 +239,8 @@ static void run_encoders(struct epcio *card)
         sources |= card->latch[i].armed ? card->latch[i].source : 0;
     if (sources != 0)
         foresee_indices(card, sources);
-    for (int i = 0; i < EPCIO_ENCODERS; i++) {
-        if (!counts(card, i))
-            continue;
+    for (int k = 0; k < card->counters; k++) {
+        const int i = card->counter[k];
         struct encoder *e = &card->encoder[i];
         int events = 0;
         int64_t due = latch_due(&card->latch[i], &card->moments);
@@ -277,16 +275,17 @@ enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lin
             *bad = i;
             return EPCIO_BAD_VOLTS;
         }
-    for (int i = 0; i < EPCIO_ENCODERS; i++)
-        if (counts(card, i) && !(fabs(lines->phase[i]) <= QUADRATURE_PHASE_MAX)) {
-            *bad = i;
+    for (int k = 0; k < card->counters; k++)
+        if (!(fabs(lines->phase[card->counter[k]]) <= QUADRATURE_PHASE_MAX)) {
+            *bad = card->counter[k];
             return EPCIO_BAD_PHASE;
         }
     card->lines = *lines;
-    for (int i = 0; i < EPCIO_ENCODERS; i++)
-        if (counts(card, i))
-            (lines->unplugged[i] ? encoder_unplugged
-                                 : encoder_sample)(&card->encoder[i], lines->phase[i], card->clock);
+    for (int k = 0; k < card->counters; k++) {
+        const int i = card->counter[k];
+        (lines->unplugged[i] ? encoder_unplugged : encoder_sample)(&card->encoder[i],
+                                                                   lines->phase[i], card->clock);
+    }
     sample_local(card, &lines->local);
     run_encoders(card);
     return EPCIO_OK;

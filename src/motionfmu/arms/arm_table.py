@@ -48,23 +48,23 @@ class _TableKeys(BaseModel):
 
 
 class _JointRow(_TableKeys):
-    name: str | None = None
-    kind: Literal["revolute", "continuous", "prismatic"] = "revolute"
-    a: float = 0.0
-    alpha: float = 0.0
-    d: float = 0.0
-    theta: float = 0.0
-    sign: Literal[1, -1] = 1
-    follows: str | None = None
-    multiplier: float = -1.0
-    low: float | None = None
-    high: float | None = None
-    speed: float | None = Field(default=None, gt=0.0)
-    acceleration: float | None = Field(default=None, gt=0.0)
+    name: str | None = None  # what messages call it
+    kind: Literal["revolute", "continuous", "prismatic"] = "revolute"  # how it moves
+    a: float = 0.0  # [mm] length along x
+    alpha: float = 0.0  # [deg] turn about x
+    d: float = 0.0  # [mm] length along z
+    theta: float = 0.0  # [deg] turn about z at angle 0
+    sign: Literal[1, -1] = 1  # of the joint's angle
+    follows: str | None = None  # name of the joint whose angle it has, multiplied
+    multiplier: float = -1.0  # of that angle
+    low: float | None = None  # [deg, mm] least angle or way
+    high: float | None = None  # [deg, mm] largest angle or way
+    speed: float | None = Field(default=None, gt=0.0)  # [deg/s, mm/s] largest
+    acceleration: float | None = Field(default=None, gt=0.0)  # [deg/s2, mm/s2] largest
     torque: float = Field(default=0.0, ge=0.0)  # [N.m]
-    ratio: float | None = Field(default=None, gt=0.0)
+    ratio: float | None = Field(default=None, gt=0.0)  # turns of the motor for one of the joint
     mass: float = Field(default=0.0, ge=0.0)  # [kg]
-    center: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    center: tuple[float, float, float] = (0.0, 0.0, 0.0)  # [mm] of mass, in the link's frame
     inertia: Six = (0.0,) * 6  # [kg.m2] xx, yy, zz, xy, yz, zx about the centre
 
     @model_validator(mode="after")
@@ -78,15 +78,15 @@ class _JointRow(_TableKeys):
 
 
 class _OpwRow(_TableKeys):
-    a1: float
-    a2: float
-    b: float = 0.0
-    c1: float
-    c2: float = Field(gt=0.0)
-    c3: float = Field(gt=0.0)
-    c4: float
-    offset: Six = (0.0,) * 6
-    sign: tuple[int, int, int, int, int, int] = (1,) * 6
+    a1: float  # [mm] from axis 1 to axis 2, forward
+    a2: float  # [mm] from axis 3 to axis 4
+    b: float = 0.0  # [mm] sideways
+    c1: float  # [mm] height of axis 2
+    c2: float = Field(gt=0.0)  # [mm] upper arm
+    c3: float = Field(gt=0.0)  # [mm] forearm
+    c4: float  # [mm] from the wrist to the flange
+    offset: Six = (0.0,) * 6  # [deg] of each joint
+    sign: tuple[int, int, int, int, int, int] = (1,) * 6  # of each joint, 1 or -1
 
     @model_validator(mode="after")
     def _signed(self) -> "_OpwRow":
@@ -96,8 +96,8 @@ class _OpwRow(_TableKeys):
 
 
 class _TableFile(_TableKeys):
-    name: str
-    convention: Literal["dh", "modified_dh", "opw"]
+    name: str  # of the arm
+    convention: Literal["dh", "modified_dh", "opw"]  # how the lengths are meant
     base: Six = (0.0,) * 6  # X Y Z A B C of the first frame
     tool: Six = (0.0,) * 6  # of the tip in the last one
     opw: _OpwRow | None = None

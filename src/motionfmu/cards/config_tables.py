@@ -112,7 +112,7 @@ class CardAxis(Table):
         ("home_speed", "<=", "speed_max"),
         ("home_slow", "<=", "home_speed"),
     )
-    name: Literal["X", "Y", "Z", "U"]
+    name: Literal["X", "Y", "Z", "U"]  # letter of the axis
     pulses_per_mm: Annotated[
         float,
         Is("Scale", "pulses/mm", "PULSES_PER_M", "pulses/m", 1, 10**9, factor=1e3, exact=True,

@@ -34,7 +34,27 @@ def _commands(asked: str = "") -> "typer.Typer":
     alone = asked in known and asked not in SEVERAL
     for name in [asked] if alone else known:
         importlib.import_module(f"{__name__}.{name}")
+    if asked == "--help":
+        _name_only(app)
     return app
+
+
+def _name_only(app: "typer.Typer") -> None:
+    """Leave names and first sentences: options that nobody asks for are a fifth of a start."""
+    for command in app.registered_commands:
+        if (real := command.callback) is not None:
+            command.callback = _bare(real)
+    for group in app.registered_groups:
+        if group.typer_instance is not None:
+            _name_only(group.typer_instance)
+
+
+def _bare(command: "Callable[..., Any]") -> "Callable[..., Any]":
+    def nothing() -> None:
+        pass
+
+    nothing.__name__, nothing.__doc__ = command.__name__, command.__doc__
+    return nothing
 
 
 def main(begin: "Callable[[], None]" = lambda: None) -> None:

@@ -15,7 +15,7 @@ from motionfmu.fmu.archive_names import MAIN_UNIT, PART_UNIT, PARTS
 from motionfmu.scenarios.fmus import digest, opened
 
 # Text in a part's object: version of the interface, sizes of instance and struct vars [bytes].
-_MARK = re.compile(rb"motionfmu part 4 (\d{9}) (\d{9})\n")
+_MARK = re.compile(rb"motionfmu part 5 (\d{9}) (\d{9})\n")
 _DEFINED = re.compile(r'^#define FMU_(\w+) "?([^"\n]*)"?$', re.MULTILINE)
 _STRUCT = re.compile(r"^struct vars \{\n(.*?)^\};", re.MULTILINE | re.DOTALL)
 

@@ -89,7 +89,12 @@ def _gives(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterabl
 def _carry(system: System) -> str:
     """C text that copies every wire's output to its input, then checks the limits of inputs."""
     lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
-    checks = [check for w in system.wires if (check := _limits(w.target))]
+    # An output may feed several inputs: what is asked of it is asked once for all with its limits.
+    asked: dict[tuple[str, str], str] = {}
+    for w in system.wires:
+        if check := _limits(w.target):
+            asked.setdefault((w.source.name, check.replace(_in_part(w.target), "")), check)
+    checks = asked.values()
     ends = ["struct system_check check = { .good = true };", *checks, "return system_good(&check);"]
     return _function("bool system_carry(struct model *m)", [*lines, *ends], ["m"])
 
@@ -113,8 +118,11 @@ def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
     return _function(head, [f"return {joined} ? -1 : 0;"], [])
 
 
-def _shows(system: System, used: Roles) -> Iterable[str]:
+def _shows(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterable[str]:
     taken = [f"SYSTEM_COPY({_in_part(e)}, {_here(e)});" for e in used.taken]
+    for component in dict.fromkeys(e.component for e in used.taken if e.port.tunable):
+        part = parts[system.components[component]].identifier
+        taken.append(f"motionfmu_part_{part}.tuned(&m->of_{component});")
     yield _function("void system_take(struct model *m, const struct vars *v)", taken, ["m", "v"])
     back = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.taken]
     yield _function("void system_return(const struct model *m, struct vars *v)", back, ["m", "v"])
@@ -181,7 +189,7 @@ def model(
         _carry(system),
         _until(system),
         _step(system, parts),
-        *_shows(system, used),
+        *_shows(system, parts, used),
         '\n#include "fmi_system.inc"\n',
     ]
     return "".join(pieces)

@@ -75,11 +75,11 @@ def _variable(port: Port, settable: bool) -> dict[str, Any]:
         "causality": port.causality,
         "set": settable,
         "tunable": port.tunable,
-        "words": _words(port),
+        "words": meanings(port),
     }
 
 
-def _words(port: Port) -> dict[int, str]:
+def meanings(port: Port) -> dict[int, str]:
     """What the numbers of a variable mean, if its type says it."""
     if port.type != "Int32" or port.declared is None:
         return {}

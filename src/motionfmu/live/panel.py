@@ -19,60 +19,60 @@ class _PanelTable(BaseModel):
 class Key(_PanelTable):
     """A key: pressed for a moment, or a switch that stays."""
 
-    label: str
-    kind: Literal["press", "switch"]
+    label: str  # what stands on it
+    kind: Literal["press", "switch"]  # whether it stays
     seconds: float = Field(0.01, gt=0.0, le=10.0)  # that a press is down, simulated
 
 
 class Dial(_PanelTable):
     """A number that an operator turns, between the variable's limits or its own."""
 
-    label: str
-    low: float | None = None
-    high: float | None = None
+    label: str  # what stands below it
+    low: float | None = None  # least value
+    high: float | None = None  # largest value
 
 
 class Lamp(_PanelTable):
     """A truth that is shown."""
 
-    label: str
+    label: str  # what stands beside it
 
 
 class Jog(_PanelTable):
     """Motion by hand: an array of directions, its speed, an increment."""
 
-    direction: str
-    speed: str | None = None
-    way: str | None = None
-    frame: str | None = None
+    direction: str  # input: a direction for each axis
+    speed: str | None = None  # input: how fast
+    way: str | None = None  # input: length of an increment
+    frame: str | None = None  # input: frame of the directions
 
 
 class Readout(_PanelTable):
     """Outputs that are numbers of the machine."""
 
-    machine: str | None = None
+    machine: str | None = None  # output: positions in machine coordinates
     low: str | None = None  # ends of its travel: parameters
-    high: str | None = None
+    high: str | None = None  # see low
     limited: str | None = None  # whether they are in force
     offset: str | None = None  # machine less this is the work coordinate
-    to_go: str | None = None
-    feed: str | None = None
-    spindle: str | None = None
-    tool: str | None = None
-    modes: str | None = None
+    to_go: str | None = None  # output: way that is left of the block
+    feed: str | None = None  # output: feed along the path
+    spindle: str | None = None  # output: speed of the spindle
+    tool: str | None = None  # output: number or place of the tool
+    modes: str | None = None  # output: codes in force
 
 
 class Mdi(_PanelTable):
     """Lines that are typed: the line, its number, the last number taken, refusals."""
 
-    line: str
-    number: str
-    taken: str
-    room: str | None = None
+    line: str  # input: the line as typed
+    number: str  # input: a new number takes the line
+    taken: str  # output: number of the latest line taken, or refused
+    room: str | None = None  # output: [bytes] free for lines
     lines: str | None = None  # read so far
     done: str | None = None  # of these, with their motion ended
-    fault: str | None = None
-    refused: str | None = None
+    fault: str | None = None  # output: number of what is wrong with it
+    refused: str | None = None  # output: how many lines were refused
 
 
 class ToolWindow(_PanelTable):
@@ -80,16 +80,16 @@ class ToolWindow(_PanelTable):
 
     rows: str  # how many there are
     first: str  # from 1
-    number: str
-    offset: str
-    diameter: str
+    number: str  # outputs: numbers of the tools
+    offset: str  # outputs: lengths of the tools
+    diameter: str  # outputs: diameters of the tools
 
 
 class PanelCommand(_PanelTable):
     """Commands by number: the code is set, then a new number takes it once."""
 
-    code: str
-    number: str
+    code: str  # input: what is to be done
+    number: str  # input: a new number takes the code
     codes: dict[str, int]  # by label
 
 
@@ -106,17 +106,18 @@ class Monitor(_PanelTable):
     is rest.
     """
 
-    running: list[int]
-    interrupted: list[int] = Field(default_factory=list)
-    aborting: list[int] = Field(default_factory=list)
-    fault: list[int] = Field(default_factory=list)
+    running: list[int]  # values of `state`: a program moves
+    interrupted: list[int] = Field(default_factory=list)  # values of `state`: a program waits
+    aborting: list[int] = Field(default_factory=list)  # values of `state`: a program is being ended
+    fault: list[int] = Field(default_factory=list)  # values of `state`: a program has failed
+    # values of `state` by the motion by hand
     by_hand: dict[ByHand, list[int]] = Field(default_factory=dict)
     # Where `running` does not tell: inputs whose new value begins a motion, and what it is then.
     begins: dict[str, ByHand | Literal["Automatic"]] = Field(default_factory=dict)
     abort: str | None = None  # its rising edge ends the program
     feed: str | None = None  # overrides, 1 is 100 %
-    rapid: str | None = None
-    spindle: str | None = None
+    rapid: str | None = None  # see feed
+    spindle: str | None = None  # see feed
 
     def names(self) -> list[str]:
         """All variables that it names."""
@@ -127,10 +128,10 @@ class Monitor(_PanelTable):
 class OperatorPanel(_PanelTable):
     """The tables of a panel.toml; all names are of variables of its FMU."""
 
-    title: str
-    state: str | None = None
-    alarm: str | None = None
-    line: str | None = None
+    title: str  # heading of the panel
+    state: str | None = None  # output: what the controller is doing
+    alarm: str | None = None  # output: number of the fault
+    line: str | None = None  # output: line of the program
     readout: Readout = Field(default_factory=Readout)
     jog: Jog | None = None
     mdi: Mdi | None = None

@@ -39,25 +39,29 @@ class Drive(BaseModel):
     """An input that steps to given values at given times [s]."""
 
     model_config = _STRICT
-    input: Name
-    at: list[float] = Field(min_length=1)
-    value: list[Value] = Field(min_length=1)
+    input: Name  # input or tunable parameter, component.variable
+    at: list[float] = Field(min_length=1)  # [s] times of the steps, on communication steps
+    value: list[Value] = Field(min_length=1)  # the value from each time on
 
 
 class Bounds(BaseModel):
     """Bounds of one signal or figure; each one given must hold."""
 
     model_config = _STRICT
-    min: float | Pair | None = None
-    max: float | Pair | None = None
+    min: float | Pair | None = None  # no sample is below; of two numbers: the smallest is within
+    max: float | Pair | None = None  # no sample is above; of two numbers: the largest is within
+    # no magnitude is above; of two numbers: the largest is within
     absmax: float | Pair | None = None
-    peak: Pair | None = None
-    rms: Pair | None = None
-    final: bool | float | Pair | None = None
+    peak: Pair | None = None  # the largest magnitude of all samples and axes is within
+    rms: Pair | None = None  # the root of the mean square of all samples and axes is within
+    final: bool | float | Pair | None = None  # the last sample of every axis is this, or within
+    # so often every axis has another value than in the sample before
     changes: float | Pair | None = None
+    # every axis takes these values one after the other, and no others
     order: tuple[float, ...] | None = Field(default=None, min_length=1, max_length=LISTED_MAX)
-    rate: float | None = None
-    at: float | None = None
+    rate: float | None = None  # [s] the other bounds look at (x(t) - x(t - rate)) / rate
+    at: float | None = None  # [s] the other bounds look at the first sample from this time on only
+    # [s] the other bounds look at the samples within these spans only
     windows: tuple[Pair, ...] | None = Field(default=None, min_length=1)
 
 
@@ -65,17 +69,17 @@ class Contrary(BaseModel):
     """Values that switch off what the scenario claims; the checks it names must then fail."""
 
     model_config = _STRICT
-    off: str = Field(min_length=1)
-    set: dict[str, Value] = Field(min_length=1)
-    fails: Names = Field(min_length=1)
+    off: str = Field(min_length=1)  # in words: what is switched off
+    set: dict[str, Value] = Field(min_length=1)  # values by component.variable, for the whole run
+    fails: Names = Field(min_length=1)  # lines of [check] and [expect] each of which must fail
 
 
 class Contour(BaseModel):
     """Which signals hold the actual position and the pulses put out."""
 
     model_config = _STRICT
-    position: Name
-    pulses: Name
+    position: Name  # output: where the tool is
+    pulses: Name  # output: the pulses that the card has put out
 
 
 class RecordTable(BaseModel):
@@ -83,28 +87,29 @@ class RecordTable(BaseModel):
 
     model_config = _STRICT
     every: int = Field(default=1, ge=1, le=1_000_000)  # [steps]
-    signals: list[Name] = Field(min_length=1, max_length=NAMED_MAX)
+    signals: list[Name] = Field(min_length=1, max_length=NAMED_MAX)  # names or patterns of outputs
 
 
 class Plot(BaseModel):
     """One panel of a figure: signals, and how they are shown."""
 
     model_config = _STRICT
-    signals: Names = Field(min_length=1)
-    label: str = Field(min_length=1)
-    steps: bool = False
-    rate: float | None = None
-    scale: float = 1.0
-    levels: dict[str, float] = Field(default_factory=dict)
-    names: list[str] | None = None
+    signals: Names = Field(min_length=1)  # outputs, or elements of them
+    label: str = Field(min_length=1)  # the vertical axis
+    steps: bool = False  # values hold between samples; else straight lines
+    rate: float | None = None  # [s] show (x(t) - x(t - rate)) / rate
+    scale: float = 1.0  # factor, after rate
+    levels: dict[str, float] = Field(default_factory=dict)  # dotted lines by their names
+    names: list[str] | None = None  # one for each curve, instead of the signals' own
 
 
 class Figure(BaseModel):
     """Panels above each other that share the time axis [s]."""
 
     model_config = _STRICT
-    title: str = Field(min_length=1)
-    note: str = ""
+    title: str = Field(min_length=1)  # heading of the section
+    note: str = ""  # a sentence below the heading
+    # [s] from and to; else the whole run
     window: list[float] | None = Field(default=None, min_length=2, max_length=2)
     plot: list[Plot] = Field(min_length=1, max_length=FIGURES_MAX)
 
@@ -114,7 +119,7 @@ class MachineSignals(BaseModel):
 
     model_config = _STRICT
     program: Name | None = None  # parameter that names it
-    done: Name | None = None
+    done: Name | None = None  # output that tells the end of the program
     start: Name | None = None  # input that starts it when it becomes 1
     config: Name | None = None  # configuration of a network card, for which drawings are planned
     # Parameters that name a file beside the program with its name and this ending, if there is one.
@@ -122,7 +127,7 @@ class MachineSignals(BaseModel):
     target: Name | None = None  # input of a positioner: where to go when `start` becomes 1
     count: Annotated[float, Field(gt=0)] | None = None  # [m] of one of `target`
     lowest: Name | None = None  # parameters: least and largest target
-    highest: Name | None = None
+    highest: Name | None = None  # see lowest
     homed: dict[str, Value] = Field(default_factory=dict)  # with which it starts as after homing
 
 
@@ -130,8 +135,9 @@ class MachineAxis(BaseModel):
     """An axis of a machine."""
 
     model_config = _STRICT
+    # a letter or a word, as programs and pages have it
     name: Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
-    kind: Literal["linear", "rotary"]
+    kind: Literal["linear", "rotary"]  # what it does
     row: int | None = Field(default=None, ge=1)  # its element of arrays, from 1
 
 
@@ -139,12 +145,14 @@ class DrawingTable(BaseModel):
     """What is done with a drawing that a machine gets as its program."""
 
     model_config = _STRICT
+    # of contours; else inside for SVG and DXF, file for plots
     order: Literal["file", "nearest", "inside"] | None = None
-    corners: Literal["round", "stop"] | None = None
+    corners: Literal["round", "stop"] | None = None  # how sharp corners are taken
+    # numbers of the pens that are drawn; else all
     pens: list[int] | None = Field(default=None, max_length=LISTED_MAX)
-    speeds: bool = False
+    speeds: bool = False  # the drawing's own speeds count
     at: Annotated[list[float], Field(min_length=2, max_length=2)] = [0.0, 0.0]  # [mm]
-    scale: float = Field(default=1.0, gt=0, le=1e6)
+    scale: float = Field(default=1.0, gt=0, le=1e6)  # factor of the drawing's size
     copies: Annotated[
         list[Annotated[int, Field(ge=1, le=1000)]], Field(min_length=2, max_length=2)
     ] = [1, 1]  # along X and Y
@@ -185,12 +193,12 @@ class FigureLimit(BaseModel):
     """Where the signal of a figure of the axes is, and what limits it."""
 
     model_config = _STRICT
-    signal: Name
+    signal: Name  # output: its value for each axis
     derivative: int = Field(default=0, ge=0, le=3)  # the figure is this derivative by time
     limit: Bound | None = None  # of the figure's size
     over: Name | None = None  # parameter, a time: the limit is divided by it; 0: there is none
-    low: Bound | None = None
-    high: Bound | None = None
+    low: Bound | None = None  # least value of the figure
+    high: Bound | None = None  # largest value of the figure
     continuous: Bound | None = None  # of its RMS
     overload: Numbers | None = None  # [s] that it may stay above continuous at a time
     when: Name | None = None  # parameter; where it is 0 or false there is no limit
@@ -210,20 +218,26 @@ class Body(BaseModel):
     """The tables of a scenario.toml."""
 
     model_config = _STRICT
-    machine: Name | None = None
+    machine: Name | None = None  # machine whose tables are taken: its name, or the path of a folder
     signals: MachineSignals = MachineSignals()
     drawing: DrawingTable = DrawingTable()
     axis: list[MachineAxis] = Field(default_factory=list, max_length=LISTED_MAX)
     limits: dict[FigureName, FigureLimit] = Field(default_factory=dict, max_length=FIGURES_MAX)
-    stop: Annotated[float, Field(gt=0)] | Name
+    stop: Annotated[float, Field(gt=0)] | Name  # [s] when the run ends, or the signal that ends it
+    # [s] at the latest, where a signal ends the run; planned: twice the planned time
     limit: Annotated[float, Field(gt=0)] | Literal["planned"] | None = None
+    # [s] how long a run goes on behind the signal that ends it
     settle: float | None = Field(default=None, ge=0)
     begin: Name | None = None  # file of a saved state in which it begins
-    step: float = Field(gt=0)
+    step: float = Field(gt=0)  # [s] communication step
+    # FMU by the name of the component
     component: dict[Component, Name] = Field(min_length=1, max_length=COMPONENTS_MAX)
+    # output by input: wires; both have the same type, shape and unit
     connect: dict[str, Name] = Field(default_factory=dict, max_length=NAMED_MAX)
+    # values of parameters, and of inputs that stay
     set: dict[str, Value] = Field(default_factory=dict)
     drive: list[Drive] = Field(default_factory=list, max_length=LISTED_MAX)
+    # inputs left at their start values on purpose; patterns
     leave: Names = Field(default_factory=list)
     record: RecordTable
     record_file: RecordFile | None = None

@@ -29,25 +29,25 @@ class Span(BaseModel):
     """A range: n even values of a grid, or a uniform distribution."""
 
     model_config = _STRICT
-    low: float = Field(alias="from", strict=True)
-    high: float = Field(alias="to", strict=True)
-    n: int | None = Field(default=None, ge=2, le=RUNS_MAX, strict=True)
-    log: bool = Field(default=False, strict=True)
+    low: float = Field(alias="from", strict=True)  # least value
+    high: float = Field(alias="to", strict=True)  # largest value
+    n: int | None = Field(default=None, ge=2, le=RUNS_MAX, strict=True)  # values in a grid
+    log: bool = Field(default=False, strict=True)  # even in the logarithm
 
 
 class Normal(BaseModel):
     """A normal distribution."""
 
     model_config = _STRICT
-    mean: float = Field(strict=True)
-    deviation: float = Field(gt=0, strict=True)
+    mean: float = Field(strict=True)  # mean of the draws
+    deviation: float = Field(gt=0, strict=True)  # standard deviation of the draws
 
 
 class ListedValues(BaseModel):
     """Values one by one; each equally likely where points are drawn."""
 
     model_config = _STRICT
-    values: list[Value] = Field(min_length=1)
+    values: list[Value] = Field(min_length=1)  # of any type, one by one
 
 
 Source = Span | Normal | ListedValues

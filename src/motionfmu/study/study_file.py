@@ -25,18 +25,20 @@ class StudyBody(BaseModel):
     """The keys of a study file."""
 
     model_config = _STRICT
-    scenario: Place = "."
+    scenario: Place = "."  # folder, from this file
     machine: Place | None = None  # in place of a scenario: the machine of a program
-    program: Place | None = None
+    program: Place | None = None  # part program of the machine
+    # how points are chosen: all, at random, Latin hypercube
     sampling: Literal["grid", "random", "latin"] = "grid"
-    runs: int | None = Field(default=None, ge=1)
-    seed: int = Field(default=0, ge=0)
-    stop: float | None = None
-    step: float | None = None
-    set: dict[str, Value] = Field(default_factory=dict)
-    results: Names = Field(default_factory=list)
-    cost: Name | None = None
-    tuned: Place | None = None
+    runs: int | None = Field(default=None, ge=1)  # how many; not for a grid
+    seed: int = Field(default=0, ge=0)  # of the draws
+    stop: float | None = None  # [s] instead of the scenario's
+    step: float | None = None  # [s] instead of the scenario's
+    set: dict[str, Value] = Field(default_factory=dict)  # values for all runs
+    results: Names = Field(default_factory=list)  # numbers of a run that the table keeps
+    cost: Name | None = None  # of the results, what is to be small
+    tuned: Place | None = None  # file of gains that the picture marks
+    # what varies: a range, a distribution or a list by component.variable
     axis: dict[str, Any] = Field(default_factory=dict)
 
 

@@ -193,7 +193,7 @@ static void conservation(void)
         for (int k = 0; k < 2; k++) {
             CHECK_EQ(c.sum[k], (int32_t)lround(end[k] * 1000.0));
         }
-        struct cyclic_report r;
+        struct cyclic_report r = { .clock = 0 };
         cyclic_tell(&pc.modules, &r);
         CHECK(r.all.busy <= r.clock && r.all.runs > 0);
         missed += r.all.missed;

@@ -130,21 +130,41 @@ static double off_way(const double at[3], const double (*w)[3])
     return sqrt(least);
 }
 
-/* Largest share of the zones; the ways' own chords are off by SAG. Ways are looked at from the one
- * before's on, until one is nearer than the largest share so far. */
+/* How far the chords of a way leave its arc: an eighth of the largest second difference of its
+ * points. [mm] */
+static double sag(const double (*w)[3])
+{
+    double most = 0.0;
+
+    for (int k = 1; k < STEPS; k++) {
+        double square = 0.0;
+        for (int i = 0; i < 3; i++) {
+            const double d = w[k + 1][i] - 2.0 * w[k][i] + w[k - 1][i];
+            square += d * d;
+        }
+        most = fmax(most, square);
+    }
+    return sqrt(most) / 8.0;
+}
+
+/* Largest share of the zones, besides what a curve may leave its path by and the sag of the chords.
+ * Ways are looked at from the one before's on, until one is nearer than the largest share so far. */
 static double most_off(const struct robot_config *c)
 {
-    static const double SAG = 5e-3;
-    double most = 0.0;
+    static const double FIT = 1e-4;
+    double most = 0.0, allowed[WAYS];
     int m = 0;
+
+    for (int k = 0; k < ways; k++) {
+        allowed[k] = fmax(zone_of[k], zone_of[k + 1]) + FIT + sag((const double(*)[3])way[k]);
+    }
 
     for (int n = 0; n < cycles && ways > 0; n += STRIDE) {
         double at[3], off = INFINITY;
         tip(c, q[n], at);
         for (int k = 0; k < ways && off > most; k++) {
             m = k > 0 ? (m + 1) % ways : m;
-            const double zone = fmax(zone_of[m], zone_of[m + 1]);
-            off = fmin(off, off_way(at, (const double(*)[3])way[m]) / (zone + SAG));
+            off = fmin(off, off_way(at, (const double(*)[3])way[m]) / allowed[m]);
         }
         most = fmax(most, off);
     }

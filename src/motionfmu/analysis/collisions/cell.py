@@ -86,11 +86,11 @@ class _CellKeys(BaseModel):
 
 
 class _BodyRow(_CellKeys):
-    name: str = Field(min_length=1)
-    box: Three | None = None
-    at: Six = (0.0,) * 6
-    bar: tuple[Three, Three] | None = None
-    radius: float | None = Field(default=None, gt=0.0)
+    name: str = Field(min_length=1)  # what messages call it
+    box: Three | None = None  # [mm] lengths along x, y, z
+    at: Six = (0.0,) * 6  # [mm, deg] X Y Z A B C of its centre, in the arm's base
+    bar: tuple[Three, Three] | None = None  # [mm] ends of a bar with round ends
+    radius: float | None = Field(default=None, gt=0.0)  # [mm] of the bar
 
     @model_validator(mode="after")
     def _one_kind(self) -> "_BodyRow":
@@ -104,8 +104,9 @@ class _BodyRow(_CellKeys):
 
 
 class _CellFile(_CellKeys):
-    clearance: float = Field(default=0.0, ge=0.0)
-    floor: float | None = None
+    clearance: float = Field(default=0.0, ge=0.0)  # [mm] least distance that is wanted
+    floor: float | None = None  # [mm] height of a floor; without it there is none
+    # [mm] of parts of the arm, instead of usual ones
     radius: dict[Part, Annotated[float, Field(gt=0.0)]] = Field(default_factory=dict)
     body: list[_BodyRow] = Field(default_factory=list)
 

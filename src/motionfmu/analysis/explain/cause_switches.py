@@ -42,13 +42,15 @@ class Switch(BaseModel):
     """How one FMU switches one cause off."""
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-    title: str = ""
-    set: dict[str, float] = Field(default_factory=dict)
-    times: dict[str, float] = Field(default_factory=dict)
-    plus: dict[str, float] = Field(default_factory=dict)
-    mean: list[str] = Field(default_factory=list)
+    title: str = ""  # what pages call it; common causes have a title
+    set: dict[str, float] = Field(default_factory=dict)  # value by parameter
+    times: dict[str, float] = Field(default_factory=dict)  # factor by parameter
+    plus: dict[str, float] = Field(default_factory=dict)  # what is added, by parameter
+    mean: list[str] = Field(default_factory=list)  # parameters that become the mean of all axes
+    # parameters that may stop at their limits; others then cannot be switched off
     limit: list[str] = Field(default_factory=list)
-    after: str = ""
+    after: str = ""  # cause that is off in both runs whose difference is this one's effect
+    # value by output: it must have come so far, or the cause is absent
     reached: dict[str, float] = Field(default_factory=dict)
 
 

@@ -254,7 +254,7 @@ def _of_parameters(ode: Ode, equations: Split) -> str:
 
 
 def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
-    """plant_rhs and plant_outputs for each number of lanes, each also for processors with AVX2.
+    """plant_rhs_N and plant_outputs_N for N lanes, each also for processors with AVX2.
 
     Angles are one loop over lanes, all that needs their sines and cosines is another: between them
     the angles of all lanes are turned at once.
@@ -299,10 +299,10 @@ def _loops(ode: Ode, equations: Split, used: tuple[int, ...]) -> list[str]:
         head = f"static PLANT_INLINE void {name}(int lanes, el_turns *turns,\n    {arguments}"
         texts.append(_function(head, body))
         for before, after, turns in (("", "", "each"), ("EL_AVX2 ", "_avx2", "avx2")):
-            call = f"{{0}}, el_turns_{turns}, x, u, c, {to}"
-            cases = [f"case {w}: {name}({call.format(w)}); break;" for w in used]
-            head = f"{before}void plant_{name}{after}(int lanes, {arguments}"
-            texts.append(_function(head, ["switch (lanes) {", *cases, "}"]))
+            for w in used:
+                head = f"{before}void plant_{name}_{w}{after}({arguments}"
+                call = f"{name}({w}, el_turns_{turns}, x, u, c, {to});"
+                texts.append(_function(head, [call]))
     return texts
 
 
@@ -397,15 +397,15 @@ void plant_start(const double *p, double *x);
 void plant_sizes(const double *p, double *size);
 void plant_constants(const double *p, double *c);
 
-/* Quantity k of lane i at [k * lanes + i]. */
-void plant_rhs(int lanes, const double *restrict x, const double *restrict u,
-    const double *restrict c, double *restrict dx);
-EL_AVX2 void plant_rhs_avx2(int lanes, const double *restrict x, const double *restrict u,
-    const double *restrict c, double *restrict dx);
-void plant_outputs(int lanes, const double *restrict x, const double *restrict u,
-    const double *restrict c, double *restrict y);
-EL_AVX2 void plant_outputs_avx2(int lanes, const double *restrict x, const double *restrict u,
-    const double *restrict c, double *restrict y);
+/* Rates of the states dx, and outputs y, of so many lanes; quantity k of lane i at
+ * [k * lanes + i]. */
+typedef void plant_function(const double *restrict x, const double *restrict u,
+    const double *restrict c, double *restrict result);
+#define PLANT_LANE_FUNCTIONS(n) \
+    plant_function plant_rhs_##n, plant_outputs_##n; \
+    EL_AVX2 plant_function plant_rhs_##n##_avx2, plant_outputs_##n##_avx2;
+PLANT_WIDTHS(PLANT_LANE_FUNCTIONS)
+#undef PLANT_LANE_FUNCTIONS
 
 /* d(rhs)/dx row by row, with each comparison decided by a bit of `branches`. */
 void plant_jacobian(const double *x, const double *u, const double *p, unsigned branches,

@@ -1,0 +1,1 @@
+"""Pages of the site that the code makes: each module turns one kind of fact into Markdown."""
