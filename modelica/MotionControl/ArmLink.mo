@@ -1,6 +1,6 @@
 within MotionControl;
 model ArmLink
-  "Rigid link that turns on the one before it, or on a hand on a pivot, slides along it, or is fixed"
+  "Rigid link that turns on the one before it or on its hand, slides along it, or is fixed to it"
   parameter Real axis[3](each unit = "1") = {0, 0, 1} "Axis of the joint, alike in both frames";
   parameter Real origin[3](each unit = "m") = {0, 0, 0} "Joint in the frame before";
   parameter Real mass(unit = "kg", min = 0) = 1 "Mass";
@@ -135,9 +135,12 @@ equation
     + hand_rate[3]*hand_whirl[1] - hand_rate[1]*hand_whirl[3]);
   hand_force[3] = hand_mass*(hand_a[3] + hand_z[1]*hand_center[2] - hand_z[2]*hand_center[1]
     + hand_rate[1]*hand_whirl[2] - hand_rate[2]*hand_whirl[1]);
-  hand_spin[1] = hand_inertia[1]*hand_rate[1] + hand_product[1]*hand_rate[2] + hand_product[3]*hand_rate[3];
-  hand_spin[2] = hand_inertia[2]*hand_rate[2] + hand_product[1]*hand_rate[1] + hand_product[2]*hand_rate[3];
-  hand_spin[3] = hand_inertia[3]*hand_rate[3] + hand_product[3]*hand_rate[1] + hand_product[2]*hand_rate[2];
+  hand_spin[1] = hand_inertia[1]*hand_rate[1] + hand_product[1]*hand_rate[2]
+    + hand_product[3]*hand_rate[3];
+  hand_spin[2] = hand_inertia[2]*hand_rate[2] + hand_product[1]*hand_rate[1]
+    + hand_product[2]*hand_rate[3];
+  hand_spin[3] = hand_inertia[3]*hand_rate[3] + hand_product[3]*hand_rate[1]
+    + hand_product[2]*hand_rate[2];
   carried[1] = r[1,1]*hand_rate[1] + r[2,1]*hand_rate[2] + r[3,1]*hand_rate[3];
   carried[2] = r[1,2]*hand_rate[1] + r[2,2]*hand_rate[2] + r[3,2]*hand_rate[3];
   carried[3] = r[1,3]*hand_rate[1] + r[2,3]*hand_rate[2] + r[3,3]*hand_rate[3];
@@ -183,15 +186,21 @@ equation
   hand_f[1] = joint_f[1] + hand_force[1];
   hand_f[2] = joint_f[2] + hand_force[2];
   hand_f[3] = joint_f[3] + hand_force[3];
-  hand_t[1] = r[1,1]*twist[1] + r[1,2]*twist[2] + r[1,3]*twist[3] + hand[2]*joint_f[3] - hand[3]*joint_f[2]
+  hand_t[1] = r[1,1]*twist[1] + r[1,2]*twist[2] + r[1,3]*twist[3] + hand[2]*joint_f[3]
+    - hand[3]*joint_f[2]
     + hand_inertia[1]*hand_z[1] + hand_product[1]*hand_z[2] + hand_product[3]*hand_z[3]
-    + hand_rate[2]*hand_spin[3] - hand_rate[3]*hand_spin[2] + hand_center[2]*hand_force[3] - hand_center[3]*hand_force[2];
-  hand_t[2] = r[2,1]*twist[1] + r[2,2]*twist[2] + r[2,3]*twist[3] + hand[3]*joint_f[1] - hand[1]*joint_f[3]
+    + hand_rate[2]*hand_spin[3] - hand_rate[3]*hand_spin[2] + hand_center[2]*hand_force[3]
+    - hand_center[3]*hand_force[2];
+  hand_t[2] = r[2,1]*twist[1] + r[2,2]*twist[2] + r[2,3]*twist[3] + hand[3]*joint_f[1]
+    - hand[1]*joint_f[3]
     + hand_inertia[2]*hand_z[2] + hand_product[1]*hand_z[1] + hand_product[2]*hand_z[3]
-    + hand_rate[3]*hand_spin[1] - hand_rate[1]*hand_spin[3] + hand_center[3]*hand_force[1] - hand_center[1]*hand_force[3];
-  hand_t[3] = r[3,1]*twist[1] + r[3,2]*twist[2] + r[3,3]*twist[3] + hand[1]*joint_f[2] - hand[2]*joint_f[1]
+    + hand_rate[3]*hand_spin[1] - hand_rate[1]*hand_spin[3] + hand_center[3]*hand_force[1]
+    - hand_center[1]*hand_force[3];
+  hand_t[3] = r[3,1]*twist[1] + r[3,2]*twist[2] + r[3,3]*twist[3] + hand[1]*joint_f[2]
+    - hand[2]*joint_f[1]
     + hand_inertia[3]*hand_z[3] + hand_product[3]*hand_z[1] + hand_product[2]*hand_z[2]
-    + hand_rate[1]*hand_spin[2] - hand_rate[2]*hand_spin[1] + hand_center[1]*hand_force[2] - hand_center[2]*hand_force[1];
+    + hand_rate[1]*hand_spin[2] - hand_rate[2]*hand_spin[1] + hand_center[1]*hand_force[2]
+    - hand_center[2]*hand_force[1];
   a.f[1] = p[1,1]*hand_f[1] + p[1,2]*hand_f[2] + p[1,3]*hand_f[3];
   a.f[2] = p[2,1]*hand_f[1] + p[2,2]*hand_f[2] + p[2,3]*hand_f[3];
   a.f[3] = p[3,1]*hand_f[1] + p[3,2]*hand_f[2] + p[3,3]*hand_f[3];

@@ -157,7 +157,8 @@ protected
       (1 - one[4])*hanging[3].up + (one[4] - two)*hanging[2].up + two*hanging[1].up,
       hanging[4].up, hanging[5].up},
     next_origin = {origin[2,:], origin[3,:], origin[4,:], origin[5,:], origin[6,:], {0, 0, 0}},
-    next_weight = {hanging[2].weight_before, hanging[3].weight_before, hanging[4].weight_before, hanging[5].weight_before,
+    next_weight = {hanging[2].weight_before, hanging[3].weight_before, hanging[4].weight_before,
+    hanging[5].weight_before,
       hanging[6].weight_before, 0},
     next_moment = {hanging[2].moment_before + one[3]*hanging[3].moment_before
       + two*hanging[4].moment_before, (1 - one[3])*hanging[3].moment_before

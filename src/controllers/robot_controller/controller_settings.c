@@ -78,7 +78,8 @@ static struct chain axes_of(const struct controller_settings *s)
     return c;
 }
 
-/* Whether an arm by its axes is one that the controller moves. */
+/* Whether an arm by its axes is one that the controller moves.
+ * CCN 18: a refusal for each number that fits no arm. */
 static bool axes_good(const struct controller_settings *s, struct controller_wrong *wrong)
 {
     for (int i = 0; i < s->joints; i++) {
