@@ -109,7 +109,7 @@ class NoOpwGeometry(ValueError):
     """A chain of joints has other kinematics, and the text says why."""
 
 
-# CCN 19: one question for each kind of arm, in the order in which they exclude each other.
+# CCN 20: one question for each kind of arm, in the order in which they exclude each other.
 def kind_of(arm: ArmDescription) -> str:
     """Say what kind of arm a chain of joints is.
 
