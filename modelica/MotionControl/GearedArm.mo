@@ -137,15 +137,32 @@ protected
   parameter Real axis[6,3](each unit = "1") "Axes of the joints";
   parameter Real slides[6](each unit = "1") "1 of a joint that slides, in m for rad, N for N.m";
   parameter Real stands[6](each unit = "1") "1 of a joint that is none";
+  parameter Real hand_way[6,3](each unit = "m") "Joints on the hands of their pivots";
+  parameter Real hand_weight[6](each unit = "kg") "Masses of these hands";
+  parameter Real hand_middle[6,3](each unit = "m") "Their centres from the pivots";
+  parameter Real hand_tensor[6,3](each unit = "kg.m2") "Their moments of inertia xx, yy, zz";
+  parameter Real hand_aside[6,3](each unit = "kg.m2") "The other elements: xy, yz, zx";
+  parameter Real level[6](each unit = "1")
+    "So many joints before it do not tilt its link: of joint 3 up to 1, of joint 4 up to 2";
+  final parameter Real one[6](each unit = "1") = {0, 0, level[3], min(level[4], 1), 0, 0}
+    "1 of a link that the joint before it does not tilt";
+  final parameter Real two(unit = "1") = max(level[4] - 1, 0)
+    "1 if joint 2 does not tilt link 4 either";
+  final parameter Real along(unit = "1") = axis[2,1]*axis[3,1] + axis[2,2]*axis[3,2]
+    + axis[2,3]*axis[3,3] "Axis 2 along axis 3: 1 or -1 where a link is kept level";
   HangingJoint hanging[6](axis = axis, slides = slides, stands = stands, each gravity = gravity,
-    mass = link_mass,
+    hand = hand_way, hand_mass = hand_weight, hand_center = hand_middle, mass = link_mass,
     center = link_center, angle = ideal_start, motor = motor_start,
-    up_before = {{0, 0, 1}, hanging[1].up, hanging[2].up, hanging[3].up, hanging[4].up,
-      hanging[5].up},
+    up_before = {{0, 0, 1}, hanging[1].up, (1 - one[3])*hanging[2].up + one[3]*hanging[1].up,
+      (1 - one[4])*hanging[3].up + (one[4] - two)*hanging[2].up + two*hanging[1].up,
+      hanging[4].up, hanging[5].up},
     next_origin = {origin[2,:], origin[3,:], origin[4,:], origin[5,:], origin[6,:], {0, 0, 0}},
-    next_weight = {hanging[2].weight, hanging[3].weight, hanging[4].weight, hanging[5].weight,
-      hanging[6].weight, 0},
-    next_moment = {hanging[2].moment_before, hanging[3].moment_before, hanging[4].moment_before,
+    next_weight = {hanging[2].weight_before, hanging[3].weight_before, hanging[4].weight_before,
+    hanging[5].weight_before,
+      hanging[6].weight_before, 0},
+    next_moment = {hanging[2].moment_before + one[3]*hanging[3].moment_before
+      + two*hanging[4].moment_before, (1 - one[3])*hanging[3].moment_before
+      + (one[4] - two)*hanging[4].moment_before, (1 - one[4])*hanging[4].moment_before,
       hanging[5].moment_before, hanging[6].moment_before, {0, 0, 0}},
     stiffness_1 = stiffness_1, stiffness_2 = stiffness_2, stiffness_3 = stiffness_3,
     knee_1 = knee_1, knee_2 = knee_2, lost_motion = lost_motion, error_1 = transmission_error_1,
@@ -162,7 +179,9 @@ protected
     phase_1 = transmission_phase_1, phase_2 = transmission_phase_2, zero_error = zero_error)
     "Gears";
   ArmLink link[6](
-    axis = axis, slides = slides, stands = stands,
+    axis = axis, slides = slides, stands = stands, level = one, each pivot = axis[3,:],
+    hand = hand_way, hand_mass = hand_weight, hand_center = hand_middle, hand_inertia = hand_tensor,
+    hand_product = hand_aside,
     origin = origin, mass = link_mass, center = link_center, inertia = link_inertia,
     product = link_product, viscous = link_viscous, start_angle = hanging.start) "Links";
   Pen pen(length = tool_length, paper = paper_height, stiffness = pen_stiffness,
@@ -179,6 +198,18 @@ equation
     link[i + 1].rate = link[i].own_rate;
     link[i + 1].place = link[i].own_place;
     link[i + 1].turn = link[i].own_turn;
+  end for;
+  for i in 1:6 loop
+    link[i].tilt = if i == 3 then -one[3]*along*link[2].angle
+      elseif i == 4 then -one[4]*(link[3].angle + link[3].tilt) - two*along*link[2].angle else 0;
+    link[i].tilt_rate = if i == 3 then -one[3]*along*link[2].speed
+      elseif i == 4 then -one[4]*(link[3].speed + link[3].tilt_rate) - two*along*link[2].speed
+      else 0;
+    link[i].tilt_change = if i == 3 then -one[3]*along*der(link[2].speed)
+      elseif i == 4 then -one[4]*(der(link[3].speed) + link[3].tilt_change)
+      - two*along*der(link[2].speed) else 0;
+    link[i].linkage = if i == 2 then (one[4]*one[3] - two)*along*link[4].tilt_torque
+      - one[3]*along*link[3].tilt_torque elseif i == 3 then -one[4]*link[4].tilt_torque else 0;
   end for;
   connect(link[6].b, pen.a);
   pen.place = link[6].own_place;

@@ -8,6 +8,9 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
   parameter Real stands(unit = "1") = 0 "1 of a joint that is none: it has no gear";
   parameter Real angle(unit = "rad") = 0 "Angle of the joint behind an ideal gear";
   parameter Real motor(unit = "rad") = 0 "Angle of the motor";
+  parameter Real hand[3](each unit = "m") = {0, 0, 0} "Joint in the frame of a hand before it";
+  parameter Real hand_mass(unit = "kg") = 0 "Mass of the hand";
+  parameter Real hand_center[3](each unit = "m") = {0, 0, 0} "Its centre";
   parameter Real up_before[3](each unit = "1") = {0, 0, 1} "Upwards in the axes before";
   parameter Real next_origin[3](each unit = "m") = {0, 0, 0} "Next joint in the frame of the link";
   parameter Real next_weight(unit = "N") = 0 "Weight of all that comes after";
@@ -43,10 +46,16 @@ block HangingJoint "Where a joint stands still under gravity: of parameters alon
   final parameter Real moment[3](each unit = "N.m") = next_moment + {
     arm[2]*up[3] - arm[3]*up[2], arm[3]*up[1] - arm[1]*up[3], arm[1]*up[2] - arm[2]*up[1]}
     "What holds it, about the joint";
+  final parameter Real weight_before(unit = "N") = weight + gravity*hand_mass "With the hand";
+  final parameter Real hanging[3](each unit = "N.m") = weight*hand + gravity*hand_mass*hand_center
+    "Weights times their places from the hand's pivot";
   final parameter Real moment_before[3](each unit = "N.m") = {
+    hanging[2]*up_before[3] - hanging[3]*up_before[2],
+    hanging[3]*up_before[1] - hanging[1]*up_before[3],
+    hanging[1]*up_before[2] - hanging[2]*up_before[1]} + {
     r[1,1]*moment[1] + r[1,2]*moment[2] + r[1,3]*moment[3],
     r[2,1]*moment[1] + r[2,2]*moment[2] + r[2,3]*moment[3],
-    r[3,1]*moment[1] + r[3,2]*moment[2] + r[3,3]*moment[3]} "The same in the axes before";
+    r[3,1]*moment[1] + r[3,2]*moment[2] + r[3,3]*moment[3]} "The same before the hand";
   final parameter Real torque(unit = "N.m") = (1 - slides)*(axis[1]*moment[1] + axis[2]*moment[2]
     + axis[3]*moment[3]) + slides*weight*(axis[1]*up[1] + axis[2]*up[2] + axis[3]*up[3])
     "What the gear holds";

@@ -13,7 +13,17 @@ model SixAxisArm
       {0, 0, c4}},
     final axis = {{0, 0, 1}, {0, 1, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 0}, {0, 0, 1}},
     final slides = {0, 0, 0, 0, 0, 0},
-    final stands = {0, 0, 0, 0, 0, 0});
+    final stands = {0, 0, 0, 0, 0, 0},
+    final level = {0, 0, 0, 0, 0, 0},
+    final hand_way = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+      {0, 0, 0}},
+    final hand_weight = {0, 0, 0, 0, 0, 0},
+    final hand_middle = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+      {0, 0, 0}},
+    final hand_tensor = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+      {0, 0, 0}},
+    final hand_aside = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0},
+      {0, 0, 0}});
 protected
   Real half[6](each unit = "rad") "Half of the joint angles; those of axes 2 and 3 together";
   Real arm[4](each unit = "1") "Orientation of the forearm: w, x, y, z";

@@ -58,7 +58,9 @@ def driven(arm: ArmDescription, file: Path, rng: np.random.Generator) -> None:
         machine = run.machine(made.folder)
         own = arm_machine(machine)
         solver = Kinematics(**made.values.controller)
-        q = np.degrees(rng.uniform(-3.0, 3.0, (STATES, 6)))
+        count = len(arm.driven)
+        q = np.zeros((STATES, 6))
+        q[:, :count] = np.degrees(rng.uniform(-3.0, 3.0, (STATES, count)))
         branches = solver.inverse(solver.forward(q))
         there = ~np.isnan(branches).any(axis=-1)
         wanted = np.broadcast_to(solver.forward(q)[:, None], (*there.shape, 4, 4))
@@ -68,13 +70,14 @@ def driven(arm: ArmDescription, file: Path, rng: np.random.Generator) -> None:
         assert apart < 1e-9 and np.nanmin(nearest, axis=1).max() < 1e-4, file
         assert made.example is not None, file
         result = machine.run(made.example)
-        joints = result["soft.joint_command"]
+        joints = result["soft.joint_command"][:, :count]
         base = np.linalg.inv(made.geometry.base)
         tip = (base @ arm.forward(joints))[:, :3, 3]
         gap = float(np.abs(tip - result["soft.tool_position"]).max())
-        rate = np.abs(result["soft.joint_rate"]) / [j.speed for j in own.arm.joints]
-        within = (joints >= [j.low - 1e-9 for j in own.arm.joints]).all()
-        within &= (joints <= [j.high + 1e-9 for j in own.arm.joints]).all()
+        limits = own.arm.driven
+        rate = np.abs(result["soft.joint_rate"])[:, :count] / [j.speed for j in limits]
+        within = (joints >= [j.low - 1e-9 for j in limits]).all()
+        within &= (joints <= [j.high + 1e-9 for j in limits]).all()
         assert result.ok and within and rate.max() < 1.0 + 1e-6 and gap < 1e-6, file
         print(f"  branches {apart:.0e} m; ran {result.time[-1]:.2f} s, command {gap:.0e} m from it")
 

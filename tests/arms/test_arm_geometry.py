@@ -193,7 +193,8 @@ def test_kinds_of_arms_have_names():
     assert kind_of(chain("PPPRRR")) == "a gantry with a wrist"
     assert kind_of(chain("PRRRRRR")) == "an arm of six joints on a linear track"
     assert kind_of(chain("R" * 7)) == "an arm of seven joints"
-    assert kind_of(replace(arm, joints=arm.joints[:4])) == "a palletizer"
+    four = "an arm of four joints whose tool no linkage keeps level"
+    assert kind_of(replace(arm, joints=arm.joints[:4])) == four
     assert kind_of(chain("RR")) == "a chain of 2 joints (RR)"
     tied = list(arm.joints)
     tied[3] = replace(tied[3], follows=(1, -1.0, 0.0))

@@ -92,7 +92,7 @@ def test_its_job_runs_within_the_limits(result, folder: Path) -> None:
 def test_its_picture_slides(result) -> None:
     scene = scene_of(result)
     assert scene is not None and scene.arm is not None
-    assert [slides for _, _, slides in scene.arm.axes] == [False, False, True, False]
+    assert [row[2] for row in scene.arm.axes] == [False, False, True, False]
     assert scene.joints is not None and scene.joints.shape[1] >= 4
 
 

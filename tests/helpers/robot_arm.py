@@ -98,24 +98,31 @@ def axes_of(a: Arm) -> tuple[np.ndarray, np.ndarray]:
 
 def urdf(a: Arm) -> str:
     """The arm as a URDF, payload on the last link, frames as at inner 0."""
+    kind = kinds_of(a)
+    joints = "".join(
+        joint_line(f"j{k + 1}", kind[k], (f"l{k}", f"l{k + 1}"), o, axis)
+        for k, (o, axis) in enumerate(zip(*axes_of(a), strict=True))
+    )
+    fixed = joint_line("held", "fixed", ("l6", "load"), np.zeros(3), np.ones(3))
+    return f'<robot name="arm"><link name="l0"/>{bodies_of(a)}{joints}{fixed}</robot>'
+
+
+def bodies_of(a: Arm) -> str:
+    """Its links l1 .. l6 and the payload as elements of a URDF."""
     names = ("mass", "center", "inertia", "product")
     rows = zip(*(a.parameter(n) for n in names), strict=True)
     bodies = [(f"l{k}", *row) for k, row in enumerate(rows, 1)]
     payload = ("load", *(a.parameter(f"payload_{n}") for n in ("mass", "center", "inertia")))
-    links = "".join(_body(*body) for body in [*bodies, payload])
-    kind = kinds_of(a)
-    joints = "".join(
-        f'<joint name="j{k + 1}" type="{kind[k]}"><parent link="l{k}"/><child link="l{k + 1}"/>'
-        f'<origin xyz="{_numbers(o)}" rpy="0 0 0"/>'
-        f'<axis xyz="{_numbers(axis)}"/>'
+    return "".join(body(*row) for row in [*bodies, payload])
+
+
+def joint_line(name: str, kind: str, ends: tuple[str, str], origin: Any, axis: Any) -> str:
+    """A joint of a URDF, its ends parent and child."""
+    return (
+        f'<joint name="{name}" type="{kind}"><parent link="{ends[0]}"/><child link="{ends[1]}"/>'
+        f'<origin xyz="{_numbers(origin)}" rpy="0 0 0"/><axis xyz="{_numbers(axis)}"/>'
         '<limit lower="-9" upper="9" effort="1e6" velocity="1e3"/></joint>'
-        for k, (o, axis) in enumerate(zip(*axes_of(a), strict=True))
     )
-    fixed = (
-        '<joint name="held" type="fixed"><parent link="l6"/><child link="load"/>'
-        '<origin xyz="0 0 0" rpy="0 0 0"/></joint>'
-    )
-    return f'<robot name="arm"><link name="l0"/>{links}{joints}{fixed}</robot>'
 
 
 def kinds_of(a: Arm) -> list[str]:
@@ -131,7 +138,8 @@ def _numbers(v: Any) -> str:
     return " ".join(repr(float(x)) for x in np.ravel(v))
 
 
-def _body(name: str, mass: Any, center: Any, inertia: Any, product: Any = (0, 0, 0)) -> str:
+def body(name: str, mass: Any, center: Any, inertia: Any, product: Any = (0, 0, 0)) -> str:
+    """A link of a URDF."""
     xx, yy, zz = (repr(float(v)) for v in inertia)
     xy, yz, zx = (repr(float(v)) for v in product)
     return (

@@ -126,6 +126,20 @@ def test_a_joint_that_slides_is_drawn_where_it_is(script: MiniRacer) -> None:
     assert np.allclose(drawn[3]["axis"], [0, 0, -1])
 
 
+def test_a_level_hand_is_drawn_level(script: MiniRacer) -> None:
+    """A palletizer: upper arm and forearm by formulas, the hand turned by joint 1 alone."""
+    none = [0, 0, 0]
+    rows = [[[0, 0, 400], [0, 0, 1], False, 0, none], [[260, 0, 340], [0, 1, 0], False, 0, none],
+            [[0, 0, 900], [0, -1, 0], False, 1, none],
+            [[1000, 0, 0], [0, 0, -1], False, 2, [200, 0, -100]]]  # fmt: skip
+    drawn = of(script, f"axesPose({json.dumps({'axes': rows})}, [0.3, 0.5, 0.2, 2.0])")
+    out = 260 + 900 * np.sin(0.5) + 1000 * np.cos(0.2) + 200
+    up = 740 + 900 * np.cos(0.5) + 1000 * np.sin(0.2) - 100
+    wanted = [out * np.cos(0.3), out * np.sin(0.3), up]
+    assert np.allclose(drawn[3]["at"], wanted, atol=1e-9)
+    assert np.allclose(drawn[3]["axis"], [0, 0, -1])
+
+
 @given(st.lists(st.floats(-1e5, 1e5), max_size=60))
 def test_packed_numbers_are_off_by_half_a_step_at_most(values: list[float]) -> None:
     packed = quantised(np.array(values))

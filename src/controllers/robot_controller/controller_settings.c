@@ -53,7 +53,8 @@ static bool refuse(struct controller_wrong *w, const char *name, int32_t index, 
     return false;
 }
 
-/* The arm by its axes: origins and axes at zero, flange behind the last joint. */
+/* The arm by its axes: origins and axes at zero, flange behind the last joint. The hand of a
+ * palletizer turns with joint 1 alone, so its offset may as well be one of axis 2. */
 static struct chain axes_of(const struct controller_settings *s)
 {
     const struct pose flange = pose_of(s->flange, s->flange + 3);
@@ -70,13 +71,15 @@ static struct chain axes_of(const struct controller_settings *s)
         c.joint[i].level = s->joint_level[i];
     }
     for (int k = 0; k < 3; k++) {
+        c.joint[1].origin[k] += s->hand_offset[k];
         c.flange.at[k] = 1e-3 * flange.at[k];
     }
     quaternion_matrix(flange.turn, c.flange.turn);
     return c;
 }
 
-/* Whether an arm by its axes is one that the controller moves. */
+/* Whether an arm by its axes is one that the controller moves.
+ * CCN 18: a refusal for each number that fits no arm. */
 static bool axes_good(const struct controller_settings *s, struct controller_wrong *wrong)
 {
     for (int i = 0; i < s->joints; i++) {
@@ -90,6 +93,16 @@ static bool axes_good(const struct controller_settings *s, struct controller_wro
         }
         if (s->joint_level[i] > i) {
             return refuse(wrong, "joint_level", i, s->joint_level[i], "more than joints before it");
+        }
+        if (s->joint_level[i] > 0 && s->joints == OPW_JOINTS) {
+            return refuse(wrong, "joint_level", i, s->joint_level[i],
+                          "no palletizer of four joints");
+        }
+    }
+    for (int k = 0; k < 3; k++) {
+        if (s->hand_offset[k] != 0.0 && !(s->joints == 4 && s->joint_level[3] == 2)) {
+            return refuse(wrong, "hand_offset", k, s->hand_offset[k],
+                          "no hand that joint_level[4] = 2 keeps level");
         }
     }
     for (int i = s->joints; i < OPW_JOINTS; i++) {

@@ -54,7 +54,8 @@
     X(int32_t, arm_by, , "", 0, 0, 1) /* its lengths a1 .. c4, or its axes */ \
     X(int32_t, joints, , "", 6, 1, 6) /* by its axes */ \
     X(int32_t, joint_slides, [6], "", 0, 0, 1) \
-    X(int32_t, joint_level, [6], "", 0, 0, 2) /* chain_joint.level */ \
+    X(int32_t, joint_level, [6], "", 0, 0, 2)            /* chain_joint.level */ \
+    X(double, hand_offset, [3], "m", 0.0, -100.0, 100.0) /* of a palletizer */ \
     X(double, axis_origin, [18], "m", 0.0, -100.0, 100.0) \
     X(double, axis_direction, [18], "", 0.0, -1e3, 1e3) \
     X(double, flange, [6], "mm, deg", 0.0, -1e4, 1e4) \

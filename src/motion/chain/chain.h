@@ -25,7 +25,8 @@ struct chain_joint {
     double axis[3];   /* unit vector at zero */
     bool slides;      /* along its axis, [m]; false: it turns about it, [rad] */
     int32_t level;    /* so many joints before it do not tilt its link, which a parallelogram
-                       * carries on a pivot in its origin: 2 in palletizers, 0 elsewhere */
+                       * carries on a pivot in its origin: 2 of a palletizer's last one, 1 of its
+                       * forearm if that is driven from the base; 0 elsewhere */
 };
 
 struct chain {

@@ -219,16 +219,18 @@ static uint32_t flags_of(enum chain_kind kind, int count)
     }
 }
 
-/* A linkage is known to palletizers: four joints, the last one level. */
+/* A linkage is known to palletizers: four joints, the last one level, and the forearm too where it
+ * is driven from the base. */
 static bool level_fits(const struct chain *c, enum chain_kind kind, bool reversed)
 {
     bool plain = true;
 
     for (int i = 0; i < c->joints; i++) {
-        plain = plain && (c->joint[i].level == 0 || (c->joints == 4 && i == 3));
+        plain = plain && c->joint[i].level == 0;
     }
-    const int32_t last = c->joint[c->joints - 1].level;
-    return plain && (last == 0 || (last == 2 && kind == CHAIN_WRIST_PARALLEL && !reversed));
+    const bool four = c->joints == 4 && c->joint[3].level == 2 && c->joint[2].level <= 1
+                      && c->joint[1].level == 0;
+    return plain || (four && kind == CHAIN_WRIST_PARALLEL && !reversed);
 }
 
 /* Order in which kinds are tried. */

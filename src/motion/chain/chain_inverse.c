@@ -576,6 +576,17 @@ static uint32_t with_shoulder(const struct task *t, double joint[CHAIN_BRANCHES]
     return there;
 }
 
+/* A forearm that is driven from the base turns by joint 3 alone, that of the forms by both: take
+ * joint 2, seen along axis 3, `times` from it. */
+static void carry(const struct chain_form *f, double times, const double second, double *third)
+{
+    const struct chain_joint *j = f->chain.joint;
+
+    if (f->chain.joints > 2 && j[2].level == 1) {
+        *third -= times * same_way(j[1].axis, j[2].axis) * second;
+    }
+}
+
 /* Lines and points for a value of the held joint, and near[] in their order. */
 static void begin(const struct chain_form *f, const double near[CHAIN_JOINTS], double value,
                   struct task *t)
@@ -600,6 +611,7 @@ static void begin(const struct chain_form *f, const double near[CHAIN_JOINTS], d
     if (f->reversed) {
         chain_lines_reverse(&lines);
     }
+    carry(f, 1.0, t->near[1], &t->near[2]);
     chain_points_of(f->kind, &lines, f->size, &t->p);
 }
 
@@ -648,8 +660,11 @@ static void outer(const struct task *t, const double q[CHAIN_JOINTS], double val
 
     for (int i = 0; i < f->chain.joints; i++) {
         joint[i] = i == f->held ? value : q[f->reversed ? t->p.lines.count - 1 - n : n];
-        joint[i] = within_turn(f, i, joint[i]);
         n += i != f->held;
+    }
+    carry(f, -1.0, joint[1], &joint[2]);
+    for (int i = 0; i < f->chain.joints; i++) {
+        joint[i] = within_turn(f, i, joint[i]);
     }
 }
 

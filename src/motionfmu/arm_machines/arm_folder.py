@@ -63,7 +63,8 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
         geometry = driven_geometry(arm)
     except NoOpwGeometry as error:
         told = (
-            "it cannot be driven yet: the controller moves six joints that turn, SCARAs, gantries"
+            "it cannot be driven yet: the controller moves six joints that turn, SCARAs, "
+            "palletizers, gantries"
         )
         raise InputError(f"{source}: {arm.name} is {error}; {told}") from None
     like = arm_machine(machine(LIKE))
@@ -76,7 +77,7 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
         slides = geometry.sliding
         tables["axis"] = [
             {**row, "kind": "linear" if k in slides else row["kind"]}
-            for k, row in enumerate(tables["axis"][: len(arm.joints)])
+            for k, row in enumerate(tables["axis"][: len(arm.driven)])
         ]
     kept = {k: v for k, v in like.tables["set"].items() if k not in _given(values)}
     kept = {k: v for k, v in kept.items() if k not in ("soft.tool", "arm.paper_height")}
@@ -151,7 +152,7 @@ def _readme(
         f"{arm.name}, made from {source} by `motionfmu import {source}`.",
         "",
     )
-    joints = values.arm.joints
+    joints = values.arm.driven
     yield "| joint | " + " | ".join(j.name for j in joints) + " |"
     yield "|" + "---|" * (len(joints) + 1)
     some = any(j.slides for j in joints)  # has units of its own
@@ -188,7 +189,7 @@ def taken_lines(taken: list[TakenValue]) -> list[str]:
 
 
 def _ranges(values: ArmValues) -> list[tuple[float, float]]:
-    return [(_told(j, j.low), _told(j, j.high)) for j in values.arm.joints]
+    return [(_told(j, j.low), _told(j, j.high)) for j in values.arm.driven]
 
 
 def _told(joint: ArmJoint, value: float) -> float:
@@ -206,7 +207,7 @@ def joint_count(arm: ArmDescription) -> str:
     -------
     str
     """
-    return f"{COUNTS[len(arm.joints) - 1]} joints"
+    return f"{COUNTS[len(arm.driven) - 1]} joints"
 
 
 def _cells(values: list[float]) -> list[str]:

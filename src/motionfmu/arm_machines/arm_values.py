@@ -29,6 +29,7 @@ from motionfmu.arms.arm_description import (
     joined,
     placed,
 )
+from motionfmu.arms.linkage import linkage_of
 from motionfmu.base.errors import InputError
 
 Array = NDArray[np.float64]
@@ -91,7 +92,8 @@ class _Values:
         self.taken: list[TakenValue] = []
         self.size = geometry.reach / like.geometry.reach
         self.slides = getattr(geometry, "sliding", [])
-        self.count = len(arm.joints)
+        self.levels = getattr(geometry, "levels", ())
+        self.count = len(arm.driven)
         self.arm = self._moving(self._massive(arm))
 
     def all(self) -> ArmValues:
@@ -123,10 +125,10 @@ class _Values:
 
     def _massive(self, arm: ArmDescription) -> ArmDescription:
         """With masses for links that have none: those of the other arm by size."""
-        bare = [k for k, j in enumerate(arm.joints) if j.link.mass <= 0.0]
+        joints = list(arm.driven)
+        bare = [k for k, j in enumerate(joints) if j.link.mass <= 0.0]
         if not bare:
             return arm
-        joints = list(arm.joints)
         share = self.size**MASS_POWER
         frames = self._frames(arm)
         masses = []
@@ -154,33 +156,33 @@ class _Values:
             why += ", in the middle of the link"
         parameters = "arm.mass, arm.center, arm.inertia"
         self._take(f"mass, centre, inertia of {names}", parameters, masses, why)
-        return replace(arm, joints=tuple(joints))
+        return _with_driven(arm, joints)
 
     # CCN 19: each kind of number that a joint lacks is taken and told by itself.
     def _moving(self, arm: ArmDescription) -> ArmDescription:
         """With speeds, ranges, accelerations and gears for joints that have none."""
-        joints = [self._limited(k, j) for k, j in enumerate(arm.joints)]
+        joints = [self._limited(k, j) for k, j in enumerate(arm.driven)]
         name = self.like.machine.name
-        if bare := [k for k, j in enumerate(arm.joints) if math.isinf(j.speed)]:
+        if bare := [k for k, j in enumerate(arm.driven) if math.isinf(j.speed)]:
             speeds = self._told([j.speed for j in joints])
             what = f"speed of joints {_numbered(bare)}"
             unit = "°/s, mm/s" if self.slides else "°/s"
             self._take(what, "soft.joint_speed", speeds, f"{unit}; of {name}")
-        if any(j.acceleration is None for j in arm.joints):
+        if any(j.acceleration is None for j in arm.driven):
             found = self._told([float(j.acceleration or 0.0) for j in joints])
             unit = "°/s², mm/s²" if self.slides else "°/s²"
             why = f"{unit}; full speed in the time of {name}, 0.25 to 0.35 s"
             self._take("acceleration", "soft.joint_acc", found, why)
-        if endless := [k for k, j in enumerate(arm.joints) if math.isinf(j.low)]:
+        if endless := [k for k, j in enumerate(arm.driven) if math.isinf(j.low)]:
             what = f"range of joints {_numbered(endless)}, which have none"
             self._take(what, "soft.joint_low", math.degrees(ENDLESS), "° both ways")
-        if any(j.ratio is None for j in arm.joints):
+        if any(j.ratio is None for j in arm.driven):
             why = "the highest of strain wave gears with 4500 rpm at full speed"
             if self.slides:
                 why += "; of what slides rad/m of the shortest lead that allows it"
             names = "soft.gear_ratio, arm.gear_ratio"
             self._take("gear ratio", names, [j.ratio for j in joints], why)
-        return replace(arm, joints=tuple(joints))
+        return _with_driven(arm, joints)
 
     def _limited(self, k: int, joint: ArmJoint) -> ArmJoint:
         known = self.like.arm.joints[k]
@@ -202,13 +204,14 @@ class _Values:
         )
 
     def _frames(self, arm: ArmDescription) -> list[Array]:
-        """Frames of the links of a description in those of the plant."""
+        """Frames of the driven links of a description in those of the plant."""
         geometry = self.geometry
-        places = np.cumsum(geometry.origins, axis=0)
         back = np.linalg.inv(geometry.base)
+        found = zip(arm.joints, arm.frames(geometry.straight), strict=True)
+        frames = [frame for joint, frame in found if joint.follows is None]
         return [
             np.linalg.inv(placed(place)) @ back @ frame
-            for place, frame in zip(places, arm.frames(geometry.straight), strict=True)
+            for place, frame in zip(geometry.places, frames, strict=True)
         ]
 
     def _start(self) -> Array:
@@ -222,7 +225,7 @@ class _Values:
         signs, offsets = np.asarray(self.geometry.signs), np.asarray(self.geometry.offsets)
         wanted = signs * (START + offsets)
         found = []
-        for joint, angle in zip(self.arm.joints, wanted, strict=True):
+        for joint, angle in zip(self.arm.driven, wanted, strict=True):
             turns = [angle + 2.0 * math.pi * n for n in (0, -1, 1, -2, 2)]
             within = [a for a in turns if joint.low <= a <= joint.high]
             margin = 0.05 * (joint.high - joint.low)
@@ -231,7 +234,7 @@ class _Values:
         start = np.array(found)
         fifth = signs[4] * start[4] - offsets[4]
         if abs(math.sin(fifth)) < 0.1:
-            joint = self.arm.joints[4]
+            joint = self.arm.driven[4]
             start[4] = min(max(start[4] + 0.5, joint.low), joint.high)
         self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
                    "°; upper arm upright, forearm level, hand down, within the ranges")  # fmt: skip
@@ -250,6 +253,9 @@ class _Values:
                 by["*.joints"] = self.count
                 slides = [int(k in self.slides) for k in range(self.count)]
                 by["*.joint_slides"] = self._six(slides, 0)
+            if self.levels:
+                by["*.joint_level"] = self._six(self.levels, 0)
+                by["*.hand_offset"] = geometry.hand.tolist()
             by |= {
                 "*.axis_origin": geometry.origins.ravel().tolist() + [0.0, 0.0, 0.0] * none,
                 "*.axis_direction": geometry.axes.ravel().tolist() + [0.0, 0.0, 1.0] * none,
@@ -263,7 +269,7 @@ class _Values:
             by["soft.tool"] = tip
         return {
             **by,
-            "*.gear_ratio": self._six([j.ratio for j in self.arm.joints], 1.0),
+            "*.gear_ratio": self._six([j.ratio for j in self.arm.driven], 1.0),
             "*.start_joint": self._six(self._told(start), 0.0),
             "arm.tool_place": place,
             "arm.tool_turn": angles,
@@ -271,7 +277,7 @@ class _Values:
         }
 
     def _limits(self) -> dict[str, Any]:
-        joints = self.arm.joints
+        joints = self.arm.driven
         return {
             "soft.joint_low": self._six(self._told([j.low for j in joints]), -1.0),
             "soft.joint_high": self._six(self._told([j.high for j in joints]), 1.0),
@@ -284,7 +290,7 @@ class _Values:
     def _links(self) -> dict[str, Any]:
         """Masses, centres and tensors in the plant's frames, flat as its parameters are."""
         masses, centers, moments, products = [], [], [], []
-        for joint, frame in zip(self.arm.joints, self._frames(self.arm), strict=True):
+        for joint, frame in zip(self.arm.driven, self._frames(self.arm), strict=True):
             link = joined("", [(joint.link, frame)])
             masses.append(round(link.mass, 9))
             centers += [_round(x) for x in link.center]
@@ -296,6 +302,33 @@ class _Values:
             "arm.center": centers + none,
             "arm.inertia": [max(0.0, x) for x in moments] + none,
             "arm.product": products + none,
+            **self._hand(),
+        }
+
+    def _hand(self) -> dict[str, Any]:
+        """What a linkage keeps level before the last joint, from its pivot, of a palletizer."""
+        if not isinstance(self.geometry, AxesGeometry) or not self.levels:
+            return {}
+        geometry, linkage = self.geometry, linkage_of(self.arm)
+        frames = self.arm.frames(geometry.straight)
+        back = np.linalg.inv(placed(geometry.places[-1] - geometry.hand))
+        parts = [(self.arm.joints[k].link, back @ frames[k]) for k in linkage.pivots]
+        hand = joined("", parts)
+        beside = [
+            self.arm.joints[k].link.name
+            for k in (*linkage.plates, *linkage.pivots[:-1])
+            if self.arm.joints[k].link.mass > 0.0
+        ]
+        if beside:
+            raise InputError(
+                f"{self.arm.name}: {', '.join(beside)}: a link between joints of the linkage has "
+                "no place in the plant; its mass belongs to the links before and behind it"
+            )
+        return {
+            "arm.hand_mass": round(hand.mass, 9),
+            "arm.hand_center": [_round(x) for x in hand.center],
+            "arm.hand_inertia": [max(0.0, _round(hand.tensor[k, k])) for k in range(3)],
+            "arm.hand_product": [_round(hand.tensor[i, j]) for i, j in ((0, 1), (1, 2), (2, 0))],
         }
 
     def _payload(self) -> dict[str, Any]:
@@ -319,7 +352,7 @@ class _Values:
         torque = np.concatenate([torque, torque_like[self.count :]])
         t, m = torque / torque_like, np.concatenate([inertia, none]) / inertia_like
         m[self.count :] = 1.0
-        ratio = np.array([j.ratio for j in self.arm.joints], dtype=float)
+        ratio = np.array([j.ratio for j in self.arm.driven], dtype=float)
         ratio = np.concatenate([ratio, like.of(PLANT, "gear_ratio")[self.count :]])
         geared = like.of(PLANT, "gear_ratio") / ratio
         motor, friction, stiff = m * geared**2, t * geared, np.maximum(t, m)
@@ -347,15 +380,15 @@ class _Values:
         errors = {"arm.origin_error": [_round(x) for x in moved.ravel()]}
         if self.slides or self.count < SIX:
             errors |= self._screw_errors()
-        if any(j.damping for j in self.arm.joints):
+        if any(j.damping for j in self.arm.driven):
             usual = gears["arm.link_viscous"]
-            given = [j.damping or v for j, v in zip(self.arm.joints, usual, strict=False)]
+            given = [j.damping or v for j, v in zip(self.arm.driven, usual, strict=False)]
             gears["arm.link_viscous"] = [*given, *usual[self.count :]]
         gains = {
             "drives.velocity_gain": scaled(DRIVES, "velocity_gain", motor),
             "drives.torque_limit": self._six(self._torque_limits(torque, motors), 1.0),
         }
-        speeds = np.array([j.speed for j in self.arm.joints]) * ratio[: self.count]
+        speeds = np.array([j.speed for j in self.arm.driven]) * ratio[: self.count]
         speeds *= 60.0 / (2.0 * math.pi)
         if max(speeds) > 5000.0:
             wanted = [float(round(max(5000.0, 1.1 * s))) for s in speeds]
@@ -389,7 +422,7 @@ class _Values:
     def _torque_limits(self, torque: Array, motors: dict[str, list[float]]) -> list[float]:
         """Torque limits of the motors: of the description if they bear the motion."""
         found, weak = [], []
-        for k, joint in enumerate(self.arm.joints):
+        for k, joint in enumerate(self.arm.driven):
             ratio, acceleration = float(joint.ratio or 1.0), float(joint.acceleration or 0.0)
             rotor = motors["arm.motor_inertia"][k] * ratio * acceleration
             need = torque[k] / ratio + rotor + motors["arm.motor_static"][k]
@@ -405,7 +438,7 @@ class _Values:
             why = f"N·m of the motors; the description's is too small: {', '.join(weak)}"
             what = "torque that bears payload and accelerations"
             self._take(what, "drives.torque_limit", found, why)
-        elif not all(j.effort for j in self.arm.joints):
+        elif not all(j.effort for j in self.arm.driven):
             self._take("torque", "drives.torque_limit", found,
                        "N·m of the motors; three times what the motion asks for")  # fmt: skip
         return found
@@ -437,10 +470,17 @@ class _Values:
         return replace(arm, joints=(*arm.joints[:-1], replace(last, link=link)))
 
 
+def _with_driven(arm: ArmDescription, driven: Sequence[ArmJoint]) -> ArmDescription:
+    """An arm with other driven joints, those that follow them as they were."""
+    left = iter(driven)
+    joints = tuple(next(left) if j.follows is None else j for j in arm.joints)
+    return replace(arm, joints=joints)
+
+
 def _demands(arm: ArmDescription) -> tuple[Array, Array]:
     """Largest torque of each joint at its limits, and largest inertia that it feels."""
     random = np.random.default_rng(SEED)
-    joints = arm.joints
+    joints = arm.driven
     count = len(joints)
     q = random.uniform(-math.pi, math.pi, (STATES, count))
     for k, joint in enumerate(joints):

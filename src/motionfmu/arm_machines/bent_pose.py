@@ -20,7 +20,7 @@ def bent_pose(geometry: AxesGeometry, arm: ArmDescription) -> Array:
     Of poses whose Jacobian has half the largest least singular value, the hand down in them if any
     has it so, the one that keeps elbow and hand highest. An InputError says that all are singular.
     """
-    choices = [_choices(k, j, len(arm.joints) - 1) for k, j in enumerate(arm.joints)]
+    choices = [_choices(k, j, len(arm.driven) - 1) for k, j in enumerate(arm.driven)]
     q = np.array(list(product(*choices)))
     frames = geometry.frames(q)
     tip = frames[-1] @ geometry.flange
@@ -28,7 +28,7 @@ def bent_pose(geometry: AxesGeometry, arm: ArmDescription) -> Array:
     jacobian[:, :3] /= geometry.reach
     least = np.linalg.svd(jacobian, compute_uv=False)[:, -1]
     if least.max() < LEAST:
-        ways = "six" if len(arm.joints) == 6 else str(len(arm.joints))
+        ways = "six" if len(arm.driven) == 6 else str(len(arm.driven))
         told = f"its axes leave the hand fewer than {ways} ways to move, wherever the joints are"
         raise InputError(f"{arm.name}: {told}")
     free = least > max(LEAST, 0.5 * least.max())

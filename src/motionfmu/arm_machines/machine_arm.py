@@ -18,6 +18,7 @@ from motionfmu.arms.arm_description import (
     turn_of,
 )
 from motionfmu.arms.arm_geometry import OpwGeometry
+from motionfmu.arms.linkage import tied_joints
 from motionfmu.base import units
 from motionfmu.base.errors import InputError
 from motionfmu.run import Machine
@@ -120,7 +121,12 @@ def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
         axes = values[f"{PLANT}.axis_direction"][:count]
         axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
         slides = tuple(bool(s) for s in values[f"{PLANT}.joint_slides"][:count])
-        return AxesGeometry(values[f"{PLANT}.axis_origin"][:count], axes, tip, slides=slides)
+        origins = values[f"{PLANT}.axis_origin"][:count]
+        levels = tuple(int(n) for n in values[f"{PLANT}.joint_level"][:count])
+        if not any(levels):
+            return AxesGeometry(origins, axes, tip, slides=slides)
+        hand = values[f"{PLANT}.hand_offset"]
+        return AxesGeometry(origins, axes, tip, slides=slides, levels=levels, hand=hand)
     lengths = tuple(float(values[f"{PLANT}.{n}"]) for n in LENGTHS)
     signs = tuple(int(s) for s in values[f"{PLANT}.joint_sign"])
     offsets = tuple(float(x) for x in values[f"{PLANT}.joint_offset"])
@@ -132,9 +138,6 @@ def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDe
     joints = []
     sliding = geometry.sliding if isinstance(geometry, AxesGeometry) else []
     for k, (origin, axis) in enumerate(geometry.joint_frames):
-        xx, yy, zz = values[f"{PLANT}.inertia"][k]
-        xy, yz, zx = values[f"{PLANT}.product"][k]
-        tensor = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
         ratio = float(values[f"{PLANT}.gear_ratio"][k])
         unit = 1e-3 / math.radians(1.0) if k in sliding else 1.0  # mm where others have degrees
         joints.append(
@@ -150,7 +153,7 @@ def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDe
                     f"link_{k + 1}",
                     float(values[f"{PLANT}.mass"][k]),
                     values[f"{PLANT}.center"][k],
-                    tensor,
+                    _tensor(values[f"{PLANT}.inertia"][k], values[f"{PLANT}.product"][k]),
                 ),
                 effort=ratio * float(values[f"{DRIVES}.torque_limit"][k]),
                 acceleration=unit * float(values[f"{CONTROLLER}.joint_acc"][k]),
@@ -158,7 +161,20 @@ def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDe
                 damping=float(values[f"{PLANT}.link_viscous"][k]),
             )
         )
-    return ArmDescription(name, RigidLink("base_link"), tuple(joints), "tool0", geometry.flange)
+    chain = tuple(joints)
+    if isinstance(geometry, AxesGeometry) and geometry.levels:
+        mass, center, inertia, product = (
+            values[f"{PLANT}.hand_{n}"] for n in ("mass", "center", "inertia", "product")
+        )
+        hand = RigidLink("hand", float(mass), center, _tensor(inertia, product))
+        chain = tied_joints(chain, geometry.levels, hand, geometry.hand)
+    return ArmDescription(name, RigidLink("base_link"), chain, "tool0", geometry.flange)
+
+
+def _tensor(moments: Array, products: Array) -> Array:
+    """Of inertia, from xx, yy, zz and xy, yz, zx."""
+    (xx, yy, zz), (xy, yz, zx) = moments, products
+    return np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
 
 
 def in_degrees(values: Array, digits: int = 6) -> list[float]:

@@ -1,21 +1,25 @@
 """An arm of up to six joints by the lines of its axes, whatever its kind."""
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
 from motionfmu.arms.arm_geometry import (
-    ANGLE,
+    PALLETIZER,
     SIX,
     NoOpwGeometry,
     OpwGeometry,
     is_gantry,
+    is_palletizer,
     is_scara,
     kind_of,
     opw_geometry,
     turns_six,
 )
+from motionfmu.arms.joint_axes import ANGLE
+from motionfmu.arms.linkage import FOUR, NoLinkage, linkage_of
 
 # Angles of joints 2, 3, 4 at which the reach is looked for; it is 1 % too short at most.
 STEPS = 24
@@ -43,6 +47,10 @@ class AxesGeometry:
         Of the joints; none given: all turn.
     deviation : float
         Of the tip from the description, whose angles are rounded [m].
+    levels : tuple of int
+        So many joints before each do not tilt its link; none given: all tilt all.
+    hand : (3,) ndarray
+        Of a palletizer: joint 4 on the hand, from the pivot where its origin is [m].
     """
 
     origins: Array
@@ -51,6 +59,16 @@ class AxesGeometry:
     why: str = ""
     slides: tuple[bool, ...] = ()
     deviation: float = 0.0
+    levels: tuple[int, ...] = ()
+    hand: Array = field(default_factory=lambda: np.zeros(3))
+
+    @property
+    def places(self) -> Array:
+        """Origins of the joints in the base, (joints, 3) [m]."""
+        places = np.cumsum(self.origins, axis=0)
+        if self.levels:
+            places[FOUR - 1 :] += self.hand
+        return np.asarray(places)
 
     @property
     def sliding(self) -> list[int]:
@@ -86,16 +104,28 @@ class AxesGeometry:
             Frame of each in the base [m].
         """
         q = np.asarray(q, float)
-        frame, found = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)), []
+        return [frame for frame, _ in self._carried(q)]
+
+    def _carried(self, q: Array) -> Iterator[tuple[Array, Array]]:
+        """Of each link its frame, and of its joint the pivot before a hand, or its own place."""
+        frame = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4))
+        found: list[Array] = []
+        levels = self.levels or (0,) * len(self.axes)
         for k, (origin, axis) in enumerate(zip(self.origins, self.axes, strict=True)):
+            pivot = (frame @ placed(origin))[..., :3, 3]
             step = np.broadcast_to(placed(origin), frame.shape).copy()
+            if levels[k]:
+                frame = found[k - levels[k] - 1].copy()
+                frame[..., :3, 3] = pivot
+                offset = self.hand if k == FOUR - 1 else np.zeros(3)
+                step = np.broadcast_to(placed(offset), frame.shape).copy()
             if k in self.sliding:
                 step[..., :3, 3] += axis * q[..., k, None]
             else:
                 step[..., :3, :3] = about(axis, q[..., k])
             frame = frame @ step
             found.append(frame)
-        return found
+            yield frame, pivot
 
     def jacobian(self, q: Array) -> Array:
         """Velocity and angular velocity of the tip by joint speeds.
@@ -110,10 +140,16 @@ class AxesGeometry:
         (..., 6, joints) ndarray
             Rows of the velocity first [m/rad], [1].
         """
-        frames = self.frames(q)
+        carried = list(self._carried(np.asarray(q, float)))
+        frames = [frame for frame, _ in carried]
         tip = (frames[-1] @ self.flange)[..., :3, 3]
         turns = [f[..., :3, :3] @ a for f, a in zip(frames, self.axes, strict=True)]
         ways = [np.cross(t, tip - f[..., :3, 3]) for t, f in zip(turns, frames, strict=True)]
+        for k in range(len(self.levels)):
+            level = [i for i in range(k + 1, FOUR) if i - self.levels[i] <= k]
+            if level:  # what is behind moves with that pivot and does not turn
+                ways[k] = np.cross(turns[k], carried[level[0]][1] - frames[k][..., :3, 3])
+                turns[k] = np.zeros_like(turns[k])
         for k in self.sliding:
             ways[k], turns[k] = turns[k], np.zeros_like(turns[k])
         return np.concatenate([np.stack(ways, -1), np.stack(turns, -1)], -2)
@@ -188,9 +224,11 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
     Raises
     ------
     NoOpwGeometry
-        It is none of six turning joints, no SCARA and no gantry; the text names its kind and what
-        is missing.
+        It is none of six turning joints, no SCARA, palletizer or gantry; the text names its kind
+        and what is missing.
     """
+    if is_palletizer(arm):
+        return _palletizer(arm)
     try:
         geometry = opw_geometry(arm)
     except NoOpwGeometry as error:
@@ -202,6 +240,33 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
         return geometry
     why = f"its seven lengths are off by {1e3 * geometry.deviation:.3g} mm at the tip"
     return replace(axes_geometry(arm), why=why)
+
+
+def _palletizer(arm: ArmDescription) -> AxesGeometry:
+    """The axes of a palletizer: those that are nearly in parallel are exactly so."""
+    linkage = linkage_of(arm)
+    first, second, third, fourth = linkage.driven
+    frames = arm.frames(np.zeros(FOUR))
+    chain = (first, second, third, linkage.pivots[-1])
+    places = np.array([np.zeros(3), *(frames[k][:3, 3] for k in chain)])
+    axes = np.array([frames[k][:3, :3] @ arm.joints[k].axis for k in linkage.driven])
+    axes[1] = axes[2] if axes[1] @ axes[2] > 0.0 else -axes[2]
+    if abs(axes[3] @ axes[0]) > np.cos(ANGLE):
+        axes[3] = axes[0] if axes[3] @ axes[0] > 0.0 else -axes[0]
+    last = frames[fourth]
+    found = AxesGeometry(
+        _tidy(np.diff(places, axis=0)),
+        _tidy(axes),
+        np.linalg.inv(placed(last[:3, 3])) @ last @ arm.tip_frame,
+        why=PALLETIZER,
+        slides=(False,) * FOUR,
+        levels=linkage.levels,
+        hand=_tidy(last[:3, 3] - places[-1]),
+    )
+    found = replace(found, flange=_upright(found.flange, found.axes[3]))
+    random = np.random.default_rng(SEED).uniform(-np.pi, np.pi, (STATES, FOUR))
+    apart = (found.frames(random)[-1] @ found.flange - arm.forward(random))[..., :3, 3]
+    return replace(found, deviation=float(np.linalg.norm(apart, axis=1).max()))
 
 
 def _in_parallel(geometry: AxesGeometry) -> AxesGeometry:
@@ -246,8 +311,11 @@ def _missing(arm: ArmDescription) -> str:
         told.append(f"poses of {count} coordinates: a job asks for six, the arm has {count}")
     if names := [j.name for j in arm.joints if j.slides]:
         told.append(f"drives and links that slide, in mm ({', '.join(names)})")
-    if names := [j.name for j in arm.joints if j.follows is not None]:
-        told.append(f"a linkage in controller and plant ({', '.join(names)})")
+    if any(j.follows is not None for j in arm.joints):
+        try:
+            linkage_of(arm)
+        except NoLinkage as error:
+            told.append(f"the linkage of a palletizer: {error}")
     return "missing: " + "; ".join(told)
 
 

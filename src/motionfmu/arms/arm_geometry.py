@@ -10,11 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
+from motionfmu.arms.joint_axes import ANGLE, MEET, JointAxes, joint_axes
+from motionfmu.arms.linkage import NoLinkage, linkage_of
 
 SIX = 6
-# Directions are parallel or at right angles up to this [rad], for files have angles such as 1.57,
-# and lines meet up to this [m]. How far the lengths then are from the file is measured and told.
-ANGLE, MEET = 2e-3, 1e-4
 SHORTEST = 1e-3  # [m] the least upper arm and forearm that the controller takes
 STATES = 200  # random joint angles at which the lengths are compared with the chain
 ROUNDING = 1e-6  # [m] a deviation that is told
@@ -57,6 +56,11 @@ class OpwGeometry:
         """
         a1, a2, b, c1, c2, c3, c4 = self.lengths
         return np.array([[0, 0, c1], [a1, b, 0], [0, 0, c2], [a2, 0, 0], [0, 0, c3], [0, 0, c4]])
+
+    @property
+    def places(self) -> Array:
+        """Of the joints in the base of the lengths, (6, 3) [m]."""
+        return np.asarray(np.cumsum(self.origins, axis=0))
 
     @property
     def straight(self) -> Array:
@@ -105,44 +109,7 @@ class NoOpwGeometry(ValueError):
     """A chain of joints has other kinematics, and the text says why."""
 
 
-@dataclass(frozen=True)
-class _JointAxes:
-    """Axes of the joints with all angles 0: points and directions in the base, (joints, 3)."""
-
-    points: Array
-    along: Array
-
-    def angle(self, i: int, j: int) -> float:
-        """Between two axes, numbered from 1, 0 to 90 deg [rad]."""
-        cross = np.linalg.norm(np.cross(self.along[i - 1], self.along[j - 1]))
-        return math.atan2(float(cross), abs(float(self.along[i - 1] @ self.along[j - 1])))
-
-    def apart(self, i: int, j: int) -> float:
-        """Distance of two axes [m]."""
-        p, q = self.points[i - 1], self.points[j - 1]
-        u, v = self.along[i - 1], self.along[j - 1]
-        if self.angle(i, j) < ANGLE:
-            return float(np.linalg.norm(np.cross(q - p, u)))
-        n = np.cross(u, v)
-        return abs(float((q - p) @ n)) / float(np.linalg.norm(n))
-
-    def parallel(self, i: int, j: int) -> bool:
-        return self.angle(i, j) < ANGLE
-
-    def upright(self, i: int, j: int) -> bool:
-        return self.angle(i, j) > math.pi / 2 - ANGLE
-
-
-def _lines(arm: ArmDescription) -> _JointAxes:
-    frames = arm.frames(np.zeros(len(arm.driven)))
-    places = [f[:3, 3] for f in frames]
-    return _JointAxes(
-        np.array(places),
-        np.array([f[:3, :3] @ j.axis for f, j in zip(frames, arm.joints, strict=True)]),
-    )
-
-
-# CCN 19: one question for each kind of arm, in the order in which they exclude each other.
+# CCN 20: one question for each kind of arm, in the order in which they exclude each other.
 def kind_of(arm: ArmDescription) -> str:
     """Say what kind of arm a chain of joints is.
 
@@ -156,8 +123,10 @@ def kind_of(arm: ArmDescription) -> str:
         Such as ``a SCARA``, by its joints and where their axes lie.
     """
     slides = "".join("P" if j.slides else "R" for j in arm.joints)
-    lines = _lines(arm)
+    lines = joint_axes(arm)
     if any(j.follows is not None for j in arm.joints):
+        if is_palletizer(arm):
+            return PALLETIZER
         names = ", ".join(j.name for j in arm.joints if j.follows is not None)
         return f"an arm with a parallelogram ({names} follow other joints)"
     if slides == "RRRRRRR":
@@ -169,7 +138,7 @@ def kind_of(arm: ArmDescription) -> str:
     if is_scara(arm):
         return SCARA
     if slides == "RRRR" and lines.upright(1, 2) and lines.parallel(2, 3):
-        return "a palletizer"
+        return "an arm of four joints whose tool no linkage keeps level"
     if slides == "R" * SIX and lines.parallel(2, 3):
         if lines.parallel(3, 4):
             return "an arm with three parallel axes"
@@ -177,7 +146,16 @@ def kind_of(arm: ArmDescription) -> str:
     return f"a chain of {len(slides)} joints ({slides})"
 
 
-SCARA = "a SCARA"
+SCARA, PALLETIZER = "a SCARA", "a palletizer"
+
+
+def is_palletizer(arm: ArmDescription) -> bool:
+    """Whether a linkage keeps the hand of four turning joints level."""
+    try:
+        linkage_of(arm)
+    except NoLinkage:
+        return False
+    return True
 
 
 def is_scara(arm: ArmDescription) -> bool:
@@ -185,7 +163,7 @@ def is_scara(arm: ArmDescription) -> bool:
     lines = [j.slides for j in arm.joints]
     if len(lines) != 4 or sum(lines) != 1 or any(j.follows for j in arm.joints):
         return False
-    axes = _lines(arm)
+    axes = joint_axes(arm)
     return all(axes.parallel(1, k) for k in (2, 3, 4))
 
 
@@ -219,7 +197,7 @@ def opw_geometry(arm: ArmDescription) -> OpwGeometry:
     kind = kind_of(arm)
     if not turns_six(arm):
         raise NoOpwGeometry(kind)
-    lines = _lines(arm)
+    lines = joint_axes(arm)
     if told := "; ".join(_in_the_way(lines)):
         raise NoOpwGeometry(f"{kind}; {told}")
     found = _measured(arm, lines, kind)
@@ -229,7 +207,7 @@ def opw_geometry(arm: ArmDescription) -> OpwGeometry:
     return OpwGeometry(found.lengths, found.signs, found.offsets, found.base, found.flange, worst)
 
 
-def _in_the_way(lines: _JointAxes) -> list[str]:
+def _in_the_way(lines: JointAxes) -> list[str]:
     told = []
     if not lines.parallel(2, 3):
         told.append(f"axes 2 and 3 are {_degrees(lines.angle(2, 3))} from parallel")
@@ -253,7 +231,7 @@ def _degrees(angle: float) -> str:
     return f"{math.degrees(angle):.4g}°"
 
 
-def _crossing(lines: _JointAxes) -> Array:
+def _crossing(lines: JointAxes) -> Array:
     """The point nearest to axes 4, 5, 6 in the sense of least squares."""
     a, b = np.zeros((3, 3)), np.zeros(3)
     for k in (3, 4, 5):
@@ -263,7 +241,7 @@ def _crossing(lines: _JointAxes) -> Array:
 
 
 # CCN 19: the arm is measured from its base to its tip; each step needs the frame of the one before.
-def _measured(arm: ArmDescription, lines: _JointAxes, kind: str) -> OpwGeometry:
+def _measured(arm: ArmDescription, lines: JointAxes, kind: str) -> OpwGeometry:
     """Lengths of an arm whose axes lie as they must, with the pose at joint angles 0 as datum."""
     points, along = lines.points, lines.along
     up_sign = -1 if along[0, 2] < -ANGLE else 1

@@ -12,9 +12,12 @@
 
 DH is T = Rz(theta + q) Tz(d) Tx(a) Rx(alpha), modified DH (Craig) is T = Rx(alpha) Tx(a)
 Rz(theta + q) Tz(d), of a prismatic joint with d + q. OPW has its lengths in a table [opw] instead.
+A joint with follows = "joint_2" has no q of its own: it is multiplier (-1) times that of a joint
+before it. So a linkage keeps the hand of a palletizer level.
 """
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
@@ -52,6 +55,8 @@ class _JointRow(_TableKeys):
     d: float = 0.0  # [mm] length along z
     theta: float = 0.0  # [deg] turn about z at angle 0
     sign: Literal[1, -1] = 1  # of the joint's angle
+    follows: str | None = None  # name of the joint whose angle it has, multiplied
+    multiplier: float = -1.0  # of that angle
     low: float | None = None  # [deg, mm] least angle or way
     high: float | None = None  # [deg, mm] largest angle or way
     speed: float | None = Field(default=None, gt=0.0)  # [deg/s, mm/s] largest
@@ -64,7 +69,8 @@ class _JointRow(_TableKeys):
 
     @model_validator(mode="after")
     def _ranged(self) -> "_JointRow":
-        if self.kind != "continuous" and (self.low is None or self.high is None):
+        free = self.follows is None and self.kind != "continuous"
+        if free and (self.low is None or self.high is None):
             raise ValueError("low and high are missing")
         if self.low is not None and self.high is not None and self.low >= self.high:
             raise ValueError(f"low = {self.low:g} is not below high = {self.high:g}")
@@ -96,6 +102,22 @@ class _TableFile(_TableKeys):
     tool: Six = (0.0,) * 6  # of the tip in the last one
     opw: _OpwRow | None = None
     joint: list[_JointRow] = Field(min_length=1)
+
+    @model_validator(mode="after")
+    def _tied(self) -> "_TableFile":
+        leaders: list[str] = []
+        for number, row in enumerate(self.joint, 1):
+            name = row.name or f"joint_{number}"
+            if row.follows is None:
+                leaders.append(name)
+            elif self.opw is not None:
+                raise ValueError(f"{name}: joints of opw follow no other")
+            elif row.follows not in leaders:
+                known = ", ".join(leaders) or "none"
+                raise ValueError(
+                    f"{name}: follows {row.follows!r}: no free joint before it ({known})"
+                )
+        return self
 
     @model_validator(mode="after")
     def _consistent(self) -> "_TableFile":
@@ -138,7 +160,11 @@ def _dh_arm(table: _TableFile) -> ArmDescription:
             origin, after = before @ turned, out @ along
         else:  # a and alpha of this row come before the joint, about the same x
             origin, after = before @ along @ turned @ out, np.eye(4)
-        joints.append(_joint(row, number, origin, joined(link.name, [(link, after)])))
+        joint = _joint(row, number, origin, joined(link.name, [(link, after)]))
+        if row.follows is not None:
+            leader = [j.name for j in joints].index(row.follows)
+            joint = replace(joint, follows=(leader, row.multiplier, 0.0))
+        joints.append(joint)
         before = after
     tip = before @ _frame(table.tool)
     return ArmDescription(table.name, RigidLink("base_link"), tuple(joints), "tool0", tip)

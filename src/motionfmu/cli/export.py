@@ -103,7 +103,7 @@ def _arm(path: Path, target: Path | None, urdf: bool, given: Mapping[str, Any]) 
         file.write_text(text, encoding="utf-8")
     except OSError as error:
         raise InputError(f"{file}: {error.strerror}") from None
-    print(f"{file}: {arm.name}, {len(arm.joints)} joints, {arm.mass:.4g} kg, tip {arm.tip}")
+    print(f"{file}: {arm.name}, {len(arm.driven)} joints, {arm.mass:.4g} kg, tip {arm.tip}")
     where = "a URDF" if urdf else "MJCF"
     print(f"not in {where}: highest accelerations, payload, motors, stiffness of the gears")
 

@@ -10,7 +10,8 @@ from motionfmu.scenarios.system import Resolver
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 OFFSETS, SIGNS, PEN = "joint_offset", "joint_sign", "tool_length"
 BY, ORIGIN, DIRECTION = "arm_by", "axis_origin", "axis_direction"
-COUNT, SLIDES = "joints", "joint_slides"
+COUNT, SLIDES, LEVEL, HAND = "joints", "joint_slides", "joint_level", "hand_offset"
+PALLETIZED = 3  # place of the joint that is on a hand
 
 Three = tuple[float, ...]
 
@@ -25,8 +26,8 @@ class Arm:
     signs: tuple[float, ...] = (1.0,) * 6
     pen: float = 0.0  # length of the tool along z of the flange [mm]
     # Instead of lengths, with all joints 0: origin of each from the one before [mm], its axis,
-    # whether it slides
-    axes: tuple[tuple[Three, Three, bool], ...] = ()
+    # whether it slides; how many joints before it do not tilt its link, where it is on a hand [mm]
+    axes: tuple[tuple[Three, Three, bool, int, Three], ...] = ()
 
 
 def arm_of(
@@ -40,8 +41,7 @@ def arm_of(
     component = joints.partition(".")[0]
     ports = resolver.ports[component]
     if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
-        names = (ORIGIN, DIRECTION, SLIDES, COUNT)
-        return Arm((), axes=axes_in_mm(*(parameter(f"{component}.{n}") for n in names)))
+        return Arm((), axes=axes_in_mm(lambda name: parameter(f"{component}.{name}")))
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -57,17 +57,20 @@ def arm_of(
 
 
 def axes_in_mm(
-    origin: Sequence[float],
-    direction: Sequence[float],
-    slides: Sequence[float] = (0,) * 6,
-    count: Sequence[float] = (6,),
-) -> tuple[tuple[Three, Three, bool], ...]:
-    """Origins [m], one behind the other, directions, whether they slide: in mm, of length 1."""
+    parameter: Callable[[str], Sequence[float]],
+) -> tuple[tuple[Three, Three, bool, int, Three], ...]:
+    """Rows of `Arm.axes` of parameters in m: origins in mm, directions of length 1."""
+    count = int(parameter(COUNT)[0])
 
-    def rows(numbers: Sequence[float], factor: float) -> list[Three]:
-        ends = range(0, 3 * int(count[0]), 3)
-        return [tuple(factor * float(x) for x in numbers[k : k + 3]) for k in ends]
+    def rows(name: str, factor: float) -> list[Three]:
+        numbers = parameter(name)
+        return [
+            tuple(factor * float(x) for x in numbers[k : k + 3]) for k in range(0, 3 * count, 3)
+        ]
 
-    units = [tuple(x / math.hypot(*d) for x in d) for d in rows(direction, 1.0)]
-    slide = [bool(s) for s in slides[: len(units)]]
-    return tuple(zip(rows(origin, 1e3), units, slide, strict=True))
+    units = [tuple(x / math.hypot(*d) for x in d) for d in rows(DIRECTION, 1.0)]
+    slides = [bool(s) for s in parameter(SLIDES)[:count]]
+    levels = [int(n) for n in parameter(LEVEL)[:count]]
+    held = tuple(1e3 * float(x) for x in parameter(HAND))
+    hands = [held if k == PALLETIZED else (0.0,) * 3 for k in range(count)]
+    return tuple(zip(rows(ORIGIN, 1e3), units, slides, levels, hands, strict=True))

@@ -260,7 +260,8 @@ static void levels(void)
 {
     static const struct {
         int rig, joint, level;
-    } ELSEWHERE[] = { { 0, 3, 2 }, { 8, 3, 1 }, { 10, 3, 1 }, { 10, 3, 3 } };
+    } ELSEWHERE[] = { { 0, 3, 2 },  { 8, 3, 1 },  { 10, 3, 1 }, { 10, 3, 3 },
+                      { 10, 2, 2 }, { 10, 1, 1 }, { 0, 2, 1 } };
 
     for (int n = 0; n < (int)(sizeof ELSEWHERE / sizeof ELSEWHERE[0]); n++) {
         struct chain c = rig_chain(&RIGS[ELSEWHERE[n].rig]);

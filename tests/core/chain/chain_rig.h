@@ -18,6 +18,7 @@ struct rig {
     unsigned slides;                /* a bit each */
     int level;                      /* of the last joint */
     double flange[3];               /* [m] */
+    int fore;                       /* level of joint 3 of a palletizer */
 };
 
 #define X { 1, 0, 0 }
@@ -250,6 +251,17 @@ static const struct rig RIGS[] = {
       0,
       0,
       { .2, 0, .1 } },
+    { "palletizer driven from the base",
+      4,
+      CHAIN_NONE,
+      CHAIN_WRIST_PARALLEL,
+      false,
+      { { 0, 0, .7425 }, { .26, 0, 0 }, { 0, 0, .945 }, { 1.025, 0, 0 } },
+      { Z, Y, { 0, -1, 0 }, { 0, 0, -1 } },
+      0,
+      2,
+      { .22, 0, -.2825 },
+      1 },
 };
 enum { RIG_COUNT = sizeof RIGS / sizeof RIGS[0] };
 
@@ -268,6 +280,7 @@ static inline struct chain rig_chain(const struct rig *r)
         c.joint[i].slides = r->slides >> i & 1;
     }
     c.joint[r->joints - 1].level = r->level;
+    c.joint[2].level = r->fore ? r->fore : c.joint[2].level;
     return c;
 }
 

@@ -1,4 +1,4 @@
-/* Arms of four joints, a SCARA, a palletizer whose linkage keeps the tool level, a gantry: lines,
+/* Arms of four joints, a SCARA, palletizers whose linkage keeps the tool level, a gantry: lines,
  * arcs, moves of joints, jogs at random, by formulas of their own. Every joint keeps speed,
  * acceleration and range in every cycle, the tip its way; places that are not there stay 0; an
  * attitude that the arm has not is refused with its tilt. */
@@ -105,6 +105,21 @@ static bool palletizer_joints(const double at[3], double turn, double q[FOUR])
     return true;
 }
 
+/* The same with a forearm that a rod turns from the base: joint 3 is its own tilt, upwards. */
+static void driven_tip(const double q[FOUR], double at[3], double *turn)
+{
+    const double serial[FOUR] = { q[0], q[1], -q[2] - q[1], q[3] };
+    palletizer_tip(serial, at, turn);
+}
+
+static bool driven_joints(const double at[3], double turn, double q[FOUR])
+{
+    q[2] = -q[2] - q[1];
+    const bool there = palletizer_joints(at, turn, q);
+    q[2] = -q[2] - q[1];
+    return there;
+}
+
 static void gantry_tip(const double q[FOUR], double at[3], double *turn)
 {
     for (int i = 0; i < 3; i++) {
@@ -152,6 +167,19 @@ static const struct arm ARMS[] = {
       { 6, 5, 6, 25 },
       palletizer_tip,
       palletizer_joints },
+    { "palletizer driven from the base",
+      { .joints = FOUR,
+        .joint = { { .origin = { 0, 0, .5 }, .axis = { 0, 0, 1 } },
+                   { .origin = { .26, 0, .3 }, .axis = { 0, 1, 0 } },
+                   { .origin = { 0, 0, .9 }, .axis = { 0, -1, 0 }, .level = 1 },
+                   { .origin = { 1.1, 0, 0 }, .axis = { 0, 0, 1 }, .level = 2 } },
+        .flange = { { 0, 0, -.2 }, { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } } },
+      { -3, -.3, -.7, -6.28 },
+      { 3, .6, .5, 6.28 },
+      { 2.4, 2.0, 2.2, 6 },
+      { 6, 5, 6, 25 },
+      driven_tip,
+      driven_joints },
     { "gantry",
       { .joints = FOUR,
         .joint = { { .origin = { 0, 0, .2 }, .axis = { 1, 0, 0 }, .slides = true },

@@ -115,6 +115,12 @@ int main(void)
     s.joint_sign[2] = -1;
     wrong_together("joint_sign", "1 is wanted, as axis_direction has the sign");
     with_axes();
+    s.joint_level[3] = 2;
+    wrong_together("joint_level", "no palletizer of four joints");
+    with_axes();
+    s.hand_offset[1] = 0.1;
+    wrong_together("hand_offset", "no hand that joint_level[4] = 2 keeps level");
+    with_axes();
     s.singular = ROBOT_WRIST;
     wrong_together("singular", "not of an arm by its axes");
     s.joint_sign[3] = 0;

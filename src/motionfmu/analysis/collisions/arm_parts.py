@@ -1,7 +1,7 @@
 """The parts of an arm as round bars between its joints."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any
 
@@ -32,6 +32,10 @@ class ArmParts:
         Of base, links and tool [mm].
     slides : (6,) ndarray of bool
         Joints that slide along their axes.
+    levels : (6,) ndarray of int
+        So many joints before each do not tilt its link.
+    hand : (3,) ndarray
+        Joint 4 from its pivot, on the hand that is level [mm].
     """
 
     origins: Array
@@ -41,6 +45,8 @@ class ArmParts:
     offsets: Array
     radii: Array
     slides: NDArray[np.bool_]
+    levels: NDArray[np.int64] = field(default_factory=lambda: np.zeros(6, np.int64))
+    hand: Array = field(default_factory=lambda: np.zeros(3))
 
     @classmethod
     def of(
@@ -60,7 +66,10 @@ class ArmParts:
         ArmParts
         """
         if settings["arm_by"] == 1:
+            levels = np.asarray(settings["joint_level"], np.int64)
+            hand = 1e3 * np.asarray(settings["hand_offset"], float)
             origins = 1e3 * np.cumsum(np.reshape(settings["axis_origin"], (6, 3)), axis=0)
+            origins[3:] += hand
             axes = np.reshape(settings["axis_direction"], (6, 3)).astype(float)
             flange = origins[5] + np.asarray(settings["flange"], float)[:3]
             signs, offsets = np.ones(6), np.zeros(6)
@@ -77,12 +86,13 @@ class ArmParts:
             flange = wrist + np.array([0.0, 0.0, c4])
             signs = np.asarray(settings["joint_sign"], float)
             offsets = np.asarray(settings["joint_offset"], float)
-            slides = np.zeros(6, bool)
+            slides, levels, hand = np.zeros(6, bool), np.zeros(6, np.int64), np.zeros(3)
         axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
         length = float(np.linalg.norm(np.diff([*origins, flange], axis=0), axis=1).sum())
         given = radii or {}
         sizes = [given.get(n, s * length) for n, s in zip(NAMES, _SHARES, strict=True)]
-        return cls(origins, axes, flange, signs, offsets, np.array(sizes), slides)
+        radius = np.array(sizes)
+        return cls(origins, axes, flange, signs, offsets, radius, slides, levels, hand)
 
     def points(self, joints: Array, tip: Array) -> Array:
         """Ends of the parts, (n, 9, 3) [mm].
@@ -104,11 +114,17 @@ class ArmParts:
         place = np.broadcast_to(self.origins[0], (len(joints), 3))
         found = [np.zeros((len(joints), 3))]
         ways = np.diff([*self.origins, self.flange], axis=0)
+        turns = [turn]
         for k in range(6):
+            if self.levels[k]:  # its way so far went along the link before, the hand's does not
+                level = turns[k - self.levels[k]]
+                hand = self.hand if k == 3 else np.zeros(3)
+                place, turn = place + (level - turn) @ hand, level
             if self.slides[k]:
                 place = place + joints[:, k, None] * (turn @ self.axes[k])
             else:
                 turn = turn @ _about(self.axes[k], angles[:, k])
+            turns.append(turn)
             found.append(place)
             place = place + turn @ ways[k]
         return np.stack([*found, place, tip], axis=1)

@@ -43,14 +43,17 @@ function rotAbout(u, q) {
   return across.map((row, i) => row.map((x, j) => (i === j ? c : 0) + s * x + (1 - c) * u[i] * u[j]));
 }
 
-// Place and axis of each joint of an arm told by its axes: each turns all that lies behind it, or slides with it.
+// Place and axis of each joint of an arm told by its axes: each turns all that lies behind it, or slides with it,
+// but so many joints before a link that a linkage keeps level do not tilt it; its joint is on a hand.
 function axesPose(arm, q) {
-  let at = [0, 0, 0], frame = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
-  return arm.axes.map(([origin, direction, slides], i) => {
-    at = add(at, times(frame, origin));
-    const axis = times(frame, direction);
+  let at = [0, 0, 0];
+  const frames = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]]];
+  return arm.axes.map(([origin, direction, slides, level = 0, hand = [0, 0, 0]], i) => {
+    const before = frames[i - level];
+    at = add(add(at, times(frames[i], origin)), times(before, hand));
+    const axis = times(before, direction);
     if (slides) at = add(at, axis, 1000 * q[i]);
-    else frame = product(frame, rotAbout(direction, q[i]));
+    frames.push(slides ? before : product(before, rotAbout(direction, q[i])));
     return { at, axis };
   });
 }

@@ -44,9 +44,7 @@ def _si(joints: NDArray[np.float64], settings: Mapping[str, Any]) -> NDArray[np.
 def arm_in_mm(settings: Mapping[str, Any]) -> Arm:
     """The arm of a virtual robot's settings, which has its tool in the program."""
     if settings["arm_by"] == 1:
-        origin, direction = settings["axis_origin"], settings["axis_direction"]
-        slides, count = settings["joint_slides"], [settings["joints"]]
-        return Arm((), axes=axes_in_mm(origin, direction, slides, count))
+        return Arm((), axes=axes_in_mm(lambda name: np.ravel(settings[name]).tolist()))
     lengths = tuple(1e3 * float(settings[n]) for n in LENGTHS)
     offsets, signs = (np.asarray(settings[n], float) for n in ("joint_offset", "joint_sign"))
     return Arm(lengths, tuple(np.radians(offsets).tolist()), tuple(signs.tolist()))
