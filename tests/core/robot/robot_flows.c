@@ -147,8 +147,8 @@ static double sag(const double (*w)[3])
     return sqrt(most) / 8.0;
 }
 
-/* Largest share of the zones, besides what a curve may leave its path by and the sag of the chords.
- * Ways are looked at from the one before's on, until one is nearer than the largest share so far. */
+/* Largest share of the zones, besides what a curve may leave its path by and the chords' sag.
+ * Ways are looked at from the last one on, until one is nearer than the largest share so far. */
 static double most_off(const struct robot_config *c)
 {
     static const double FIT = 1e-4;
