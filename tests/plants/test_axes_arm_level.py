@@ -12,6 +12,8 @@ import pinocchio
 import pytest
 from robot_arm import EXACT, ByAxes, axes_of, bodies_of, body, joint_line
 
+pytestmark = pytest.mark.more  # to make the equations of an arm takes a while
+
 SEED = 36
 U = np.zeros(9)
 STATES = 250  # of each of four
