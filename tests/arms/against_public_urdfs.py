@@ -1,10 +1,11 @@
 """Public URDFs by hand: what the import says of each, held against pinocchio and MuJoCo.
 
-    PYTHONPATH=tests/helpers python tests/arms/against_public_urdfs.py FOLDER [--run]
+    PYTHONPATH=tests/helpers python tests/arms/against_public_urdfs.py FOLDER [--run] [--tip LINK]
 
 For each URDF in FOLDER: tip and torques at 1000 random states against pinocchio, the URDF and the
 MJCF written and read back, the kind of arm. With --run also the machine that is made of it: all its
-branches by the controller's kinematics, and its example, a joint move and a line.
+branches by the controller's kinematics, and its example, a joint move and a line. Of seven joints
+the third is held, as the import does.
 """
 
 import argparse
@@ -22,6 +23,7 @@ from motionfmu.arms import (
     NoOpwGeometry,
     OpwGeometry,
     driven_geometry,
+    held,
     mjcf_text,
     urdf_arm,
     urdf_text,
@@ -33,9 +35,9 @@ from motionfmu.virtual.robot import Kinematics
 STATES = 1000
 
 
-def checked(file: Path, rng: np.random.Generator) -> ArmDescription:
+def checked(file: Path, tip: str | None, rng: np.random.Generator) -> ArmDescription:
     """The arm of a file, after all comparisons; prints their largest differences."""
-    arm = urdf_arm(file)
+    arm = urdf_arm(file, tip)
     text = file.read_text(encoding="utf-8")
     place, torque = worst_differences(text, arm, STATES, rng)
     again = urdf_text_arm(urdf_text(arm), "again.urdf", arm.tip)
@@ -61,13 +63,17 @@ def driven(arm: ArmDescription, file: Path, rng: np.random.Generator) -> None:
         count = len(arm.driven)
         q = np.zeros((STATES, 6))
         q[:, :count] = np.degrees(rng.uniform(-3.0, 3.0, (STATES, count)))
-        branches = solver.inverse(solver.forward(q))
+        near = q + rng.uniform(-0.3, 0.3, q.shape)  # looked for from there without a closed form
+        branches = solver.inverse(solver.forward(q), near)
         there = ~np.isnan(branches).any(axis=-1)
         wanted = np.broadcast_to(solver.forward(q)[:, None], (*there.shape, 4, 4))
         off = solver.forward(branches[there]) - wanted[there]
         apart = float(np.abs(off[..., :3, 3]).max()) / 1e3
         nearest = np.abs((branches - q[:, None] + 180.0) % 360.0 - 180.0).max(axis=-1)
-        assert apart < 1e-9 and np.nanmin(nearest, axis=1).max() < 1e-4, file
+        reached = there.any(axis=1).mean()  # iteration leaves out what it cannot prove
+        found = (nearest < 1e-4).any(axis=1).mean()  # the rest has other joints for its place
+        print(f"  {reached:.1%} of places reached, {found:.1%} by the joints given")
+        assert apart < 1e-9 and min(reached, found) > 0.98, file
         assert made.example is not None, file
         result = machine.run(made.example)
         joints = result["soft.joint_command"][:, :count]
@@ -87,12 +93,13 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
     parser.add_argument("--run", action="store_true")
+    parser.add_argument("--tip", help="of all of them, where several chains end")
     options = parser.parse_args()
     rng = np.random.default_rng(1)
     for file in sorted(options.folder.glob("*.urdf")):
         print(file.name)
         try:
-            arm = checked(file, rng)
+            arm = held(checked(file, options.tip, rng))
             found = driven_geometry(arm)
         except (InputError, NoOpwGeometry) as error:
             print(f"  {error}")
@@ -103,7 +110,10 @@ def main() -> None:
         else:
             print(f"  by its axes: {found.why}")
         if options.run:
-            driven(arm, file, rng)
+            try:
+                driven(arm, file, rng)
+            except InputError as error:
+                print(f"  {error}")
 
 
 if __name__ == "__main__":
