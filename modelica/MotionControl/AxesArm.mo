@@ -12,7 +12,7 @@ model AxesArm
   parameter Real hand_mass(unit = "kg", min = 0) = 0 "Mass of that hand";
   parameter Real hand_center[3](each unit = "m") = {0, 0, 0} "Its centre from there";
   parameter Real hand_inertia[3](each unit = "kg.m2", each min = 0) = {0, 0, 0}
-    "Its moments of inertia xx, yy, zz about the centre";
+    "Moments of inertia xx, yy, zz of that hand about its centre";
   parameter Real hand_product[3](each unit = "kg.m2") = {0, 0, 0}
     "The other elements of its tensor: xy, yz, zx";
   parameter Real axis_origin[6,3](each unit = "m") = {{0, 0, 0.445}, {0.15, 0, 0}, {0, 0, 0.7},

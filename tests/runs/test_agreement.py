@@ -200,7 +200,7 @@ def test_defaults_of_all_fmus_agree_on_the_arm() -> None:
             said.setdefault(quantity, []).append(values)
     # A controller by lengths has its axes at 0; an arm by its axes no lengths.
     arm = {q: v for q, v in said.items() if q.startswith("arm.") and ".axis_" not in q}
-    assert len(arm) == 13 and all(len(v) in (2, 3) for v in arm.values())
+    assert len(arm) == 15 and all(len(v) in (2, 3) for v in arm.values())
     assert len(arm["arm.start"]) == 3
     for quantity, (one, *others) in arm.items():
         for other in others:

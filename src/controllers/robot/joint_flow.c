@@ -158,12 +158,28 @@ static double off_ways(const struct manipulator *arm, const struct segment *p, d
     return nearest;
 }
 
+/* How far the chords of the two ways that meet in a vertex leave them: an eighth of the largest
+ * second difference of their places. [mm] */
+static double sag(double way[2 * WAYS + 1][3])
+{
+    double most = 0.0;
+
+    for (int k = 1; k < 2 * WAYS; k++) {
+        double sum = 0.0;
+        for (int i = 0; i < 3 && k != WAYS; i++) {
+            const double d = way[k + 1][i] - 2.0 * way[k][i] + way[k - 1][i];
+            sum += d * d;
+        }
+        most = el_max(most, sum);
+    }
+    return 0.125 * sqrt(most);
+}
+
 /* Whether the tip is within `off` of the ways that a corner replaces, and the joints within their
  * limits, or no further out than these ways. */
 static bool within(const struct joint_flow *f, const struct manipulator *arm, int64_t vertex,
                    double half, double off, const struct corner *c)
 {
-    const double limit = USED * off * USED * off;
     double way[2 * WAYS + 1][3], most = 0.0;
     int worst = 1;
 
@@ -173,6 +189,7 @@ static bool within(const struct joint_flow *f, const struct manipulator *arm, in
         const double u = find(f, &n, fabs(d), d < 0.0 ? -1 : 1);
         tip_of(arm, &piece_at(f, n)->curve, u, way[k]);
     }
+    const double left = el_max(0.0, USED * off - sag(way)), limit = left * left;
     for (int k = 1; k < PLACES; k++) {
         const double d = off_ways(arm, &c->curve, (double)k / PLACES, way);
         if (d > most) {

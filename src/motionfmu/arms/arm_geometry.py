@@ -128,7 +128,8 @@ def kind_of(arm: ArmDescription) -> str:
         if is_palletizer(arm):
             return PALLETIZER
         names = ", ".join(j.name for j in arm.joints if j.follows is not None)
-        return f"an arm with a parallelogram ({names} follow other joints)"
+        follow = "follow other joints" if ", " in names else "follows another joint"
+        return f"an arm with a parallelogram ({names} {follow})"
     if slides == "RRRRRRR":
         return "an arm of seven joints"
     if slides.startswith("PPP"):

@@ -34,19 +34,23 @@ def _commands(asked: str = "") -> "typer.Typer":
     alone = asked in known and asked not in SEVERAL
     for name in [asked] if alone else known:
         importlib.import_module(f"{__name__}.{name}")
-    if asked == "--help":
-        _name_only(app)
-    return app
+    return _names_only(app) if asked == "--help" else app
 
 
-def _name_only(app: "typer.Typer") -> None:
-    """Leave names and first sentences: options that nobody asks for are a fifth of a start."""
-    for command in app.registered_commands:
+def _names_only(app: "typer.Typer") -> "typer.Typer":
+    """The application with names and first sentences: options are a fifth of a start."""
+    import copy
+
+    bare = copy.copy(app)
+    bare.registered_commands = [copy.copy(c) for c in app.registered_commands]
+    for command in bare.registered_commands:
         if (real := command.callback) is not None:
             command.callback = _bare(real)
-    for group in app.registered_groups:
+    bare.registered_groups = [copy.copy(g) for g in app.registered_groups]
+    for group in bare.registered_groups:
         if group.typer_instance is not None:
-            _name_only(group.typer_instance)
+            group.typer_instance = _names_only(group.typer_instance)
+    return bare
 
 
 def _bare(command: "Callable[..., Any]") -> "Callable[..., Any]":
