@@ -177,7 +177,7 @@ def test_links_without_mass_have_it_in_their_middle(file: Path, tmp_path: Path) 
         ('name="waist" type="revolute"', 'name="waist" type="prismatic"',
          "missing: drives and links that slide, in mm (waist)"),
         ('<limit lower="-3.4"', '<mimic joint="shoulder"/><limit lower="-3.4"',
-         "(bend follows another joint); missing: poses of 5 coordinates: a job asks for six, the "
+         "(following joints: bend); missing: poses of 5 coordinates: a job asks for six, the "
          "arm has 5; the linkage of a palletizer: a palletizer has four joints that turn, and"),
     ],
 )  # fmt: skip

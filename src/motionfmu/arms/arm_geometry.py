@@ -128,8 +128,7 @@ def kind_of(arm: ArmDescription) -> str:
         if is_palletizer(arm):
             return PALLETIZER
         names = ", ".join(j.name for j in arm.joints if j.follows is not None)
-        follow = "follow other joints" if ", " in names else "follows another joint"
-        return f"an arm with a parallelogram ({names} {follow})"
+        return f"an arm with a parallelogram (following joints: {names})"
     if slides == "RRRRRRR":
         return "an arm of seven joints"
     if slides.startswith("PPP"):
