@@ -34,10 +34,13 @@ bool encoder_unplugged(struct encoder *e, double phase, int64_t clock);
 
 /* Count the edges up to and including the clock `until`, at most that of the latest sample; that
  * clock must have been reached before the next sample. Returns events (encoder_count.h). */
+static inline int encoder_run(struct encoder *e, int64_t until);
+
+/* What encoder_run does where edges may be left, or a filter sees them late. */
 int encoder_run_on(struct encoder *e, int64_t until);
+
 static inline int encoder_run(struct encoder *e, int64_t until)
 {
-    /* without a filter nothing is left to do behind the last edge */
     return e->config.filter == 0 && e->pins.quarter == e->pins.end ? 0 : encoder_run_on(e, until);
 }
 

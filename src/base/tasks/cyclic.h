@@ -98,7 +98,7 @@ struct cyclic_report {
     uint32_t changes;                     /* of the statistics so far */
 };
 
-/* Bring a report up to date; the first one begins with all members 0. */
+/* Bring a report up to date. All members of a new report are 0. */
 void cyclic_tell(const struct cyclic *s, struct cyclic_report *r);
 
 #endif

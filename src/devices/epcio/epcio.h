@@ -93,8 +93,8 @@ struct epcio {
     int32_t frames_refused;
     struct epcio_refusal refusal; /* reason of the latest refusal */
     struct encoder encoder[EPCIO_ENCODERS];
-    int32_t counter[EPCIO_ENCODERS]; /* the encoders that count: not those of axes not active */
-    int counters;                    /* their number */
+    int32_t counter[EPCIO_ENCODERS]; /* the encoders that count: of active axes, and 7 to 9 */
+    int counters;                    /* how many count */
     struct latch latch[EPCIO_ENCODERS];
     struct latch_moments moments; /* latch triggers since the latest instant */
     struct ploop loop[EPCIO_LOOPS];

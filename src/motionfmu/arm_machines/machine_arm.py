@@ -172,7 +172,7 @@ def _arm(name: str, geometry: ArmGeometry, values: Mapping[str, Array]) -> ArmDe
 
 
 def _tensor(moments: Array, products: Array) -> Array:
-    """Of inertia, from xx, yy, zz and xy, yz, zx."""
+    """The inertia tensor of moments xx, yy, zz and products xy, yz, zx."""
     (xx, yy, zz), (xy, yz, zx) = moments, products
     return np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
 

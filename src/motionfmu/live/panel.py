@@ -19,7 +19,7 @@ class _PanelTable(BaseModel):
 class Key(_PanelTable):
     """A key: pressed for a moment, or a switch that stays."""
 
-    label: str  # what stands on it
+    label: str  # text on the key
     kind: Literal["press", "switch"]  # whether it stays
     seconds: float = Field(0.01, gt=0.0, le=10.0)  # that a press is down, simulated
 
@@ -27,7 +27,7 @@ class Key(_PanelTable):
 class Dial(_PanelTable):
     """A number that an operator turns, between the variable's limits or its own."""
 
-    label: str  # what stands below it
+    label: str  # text below the dial
     low: float | None = None  # least value
     high: float | None = None  # largest value
 
@@ -35,7 +35,7 @@ class Dial(_PanelTable):
 class Lamp(_PanelTable):
     """A truth that is shown."""
 
-    label: str  # what stands beside it
+    label: str  # text beside the lamp
 
 
 class Jog(_PanelTable):
@@ -68,10 +68,10 @@ class Mdi(_PanelTable):
     line: str  # input: the line as typed
     number: str  # input: a new number takes the line
     taken: str  # output: number of the latest line taken, or refused
-    room: str | None = None  # output: [bytes] free for lines
-    lines: str | None = None  # read so far
-    done: str | None = None  # of these, with their motion ended
-    fault: str | None = None  # output: number of what is wrong with it
+    room: str | None = None  # output: how many bytes are free for lines
+    lines: str | None = None  # output: how many lines were read so far
+    done: str | None = None  # output: how many of these have ended their motion
+    fault: str | None = None  # output: number of what is wrong with a line
     refused: str | None = None  # output: how many lines were refused
 
 

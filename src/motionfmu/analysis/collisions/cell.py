@@ -87,7 +87,7 @@ class _CellKeys(BaseModel):
 
 class _BodyRow(_CellKeys):
     name: str = Field(min_length=1)  # what messages call it
-    box: Three | None = None  # [mm] lengths along x, y, z
+    box: Three | None = None  # [mm] lengths of a box along x, y, z
     at: Six = (0.0,) * 6  # [mm, deg] X Y Z A B C of its centre, in the arm's base
     bar: tuple[Three, Three] | None = None  # [mm] ends of a bar with round ends
     radius: float | None = Field(default=None, gt=0.0)  # [mm] of the bar
