@@ -117,6 +117,8 @@ static int read_pins(struct fmu *f)
     uint32_t drives = 0;
     for (int i = 0; i < FPGA_AXES; i++)
         drives |= (uint32_t)v->drive_ready[i] << i | (uint32_t)(v->drive_alarm[i] != 0) << (8 + i);
+    drives |= (uint32_t)v->external_ready << FPGA_AXES
+              | (uint32_t)(v->external_alarm != 0) << (8 + FPGA_AXES);
     fpga_set_drives(&m->card, drives, v->emergency_stop);
     return 0;
 }
@@ -166,7 +168,10 @@ static void publish(struct fmu *f)
         v->servo_on[i] = c->servo >> i & 1;
     for (int i = 0; i < FPGA_CHANNELS; i++)
         v->dout_clock[i] = (double)c->output_clock[i];
-    LINK_CARRY(v->pulse_rate, c->rate)
+    v->external_servo_on = c->servo >> FPGA_AXES & 1;
+    for (int i = 0; i < FPGA_AXES; i++)
+        v->pulse_rate[i] = c->rate[i];
+    v->external_rate = c->rate[FPGA_AXES];
     LINK_CARRY(v->ao, c->ao)
     v->dout = link_wrap(c->outputs);
 }
