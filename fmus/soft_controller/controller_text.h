@@ -80,7 +80,9 @@ static int read_points(struct fmu *f, struct controller_blob *b)
     struct robot_job_report r;
     int64_t length;
 
-    robot_job_points_clear(&b->points);
+    const enum robot_job_outside outside = (enum robot_job_outside)b->config.robot.external.kind;
+
+    robot_job_points_clear(&b->points, outside);
     if (!name[0]) {
         return 0;
     }
@@ -88,7 +90,7 @@ static int read_points(struct fmu *f, struct controller_blob *b)
     if (!text) {
         return -1;
     }
-    int code = robot_job_points_read(&b->points, text, length, &r);
+    int code = robot_job_points_read(&b->points, outside, text, length, &r);
     code = code ? refuse_text(f, name, text, &r) : 0;
     free(text);
     return code;

@@ -60,6 +60,8 @@ static const struct field reading_fields[] = {
     READ_ROW(pulses, "pulses"),
     READ_ROW(joint, "deg"),
     READ_ROW(pose, "mm, deg"),
+    READ(external, "mm, deg"),
+    READ(external_command, "mm, deg"),
     READ_ROW(joint_command, "deg"),
     READ_ROW(pose_command, "mm, deg"),
     READ(configuration, ""),
@@ -244,16 +246,18 @@ static int read_jobs(struct robot_program *p, const char *first, int64_t length,
     return 1;
 }
 
-/* Read a program (an empty text is none) in one of the languages, and its points. */
-int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
-                       bool gcode, binding_file file, char message[MESSAGE])
+/* Read a program (an empty text is none) in one of the languages, and its points, for a robot. */
+int binding_robot_read(struct robot_program *p, const struct robot_station *s,
+                       const char *const text[2], const int64_t length[2], bool gcode,
+                       binding_file file, char message[MESSAGE])
 {
+    const enum robot_job_outside outside = (enum robot_job_outside)s->config.robot.external.kind;
     struct robot_job_report r;
 
     memset(p, 0, sizeof *p);
-    robot_job_points_clear(&p->points);
+    robot_job_points_clear(&p->points, outside);
     p->orders.points = &p->points;
-    if (robot_job_points_read(&p->points, text[1], length[1], &r) < 0) {
+    if (robot_job_points_read(&p->points, outside, text[1], length[1], &r) < 0) {
         char found[ROBOT_JOB_MESSAGE_MAX];
         robot_job_message(&r, text[1], found);
         snprintf(message, MESSAGE, "points: %.400s", found);

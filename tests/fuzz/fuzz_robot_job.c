@@ -43,7 +43,8 @@ static void write_points(void)
         p.tool = p.tool > 0 ? 0 : p.tool;
         p.user = p.user > 0 ? 0 : p.user;
         HOLDS(robot_job_point_write(i, &p, text) == 0);
-        HOLDS(robot_job_points_read(&again, text, (int64_t)strlen(text), &r) == 0);
+        HOLDS(robot_job_points_read(&again, ROBOT_JOB_NO_AXIS, text, (int64_t)strlen(text), &r)
+              == 0);
         for (int k = 0; k < 6; k++) {
             HOLDS(fabs(again.point[i].value[k] - p.value[k]) <= 0.5e-6 + 1e-10);
         }
@@ -148,9 +149,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     HOLDS(first && second);
     memcpy(first, data, head);
     memcpy(second, data + rest, (size_t)length);
-    if (robot_job_points_read(&points, first, (int64_t)head, &r)) {
+    if (robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, first, (int64_t)head, &r)) {
         check_report(&r, first, (int64_t)head);
-        robot_job_points_clear(&points);
+        robot_job_points_clear(&points, ROBOT_JOB_NO_AXIS);
     } else {
         write_points();
     }

@@ -12,7 +12,10 @@ void controller_start(struct controller *s, const struct controller_config *c)
     s->memory = 1;
     s->asked = -1;
     s->replaying = -1;
+    robot_place(&s->robot, &c->robot, c->zero_external);
     memcpy(s->joint, c->zero, sizeof s->joint);
+    s->external = c->zero_external;
+    s->external_origin = (double)llround(c->zero_external * c->robot.external.scale);
     for (int i = 0; i < OPW_JOINTS; i++) {
         s->origin[i] = (double)llround(c->zero[i] * c->robot.scale[i]);
     }
@@ -29,10 +32,13 @@ static void look_at_moves(struct controller *s)
 /* Write a cycle of the arm into the slots of a memory, as pulses. */
 static void make_slots(struct controller *s, const struct controller_config *c)
 {
-    int32_t of[OPW_JOINTS][FPGA_SLOTS];
-    bool moves[OPW_JOINTS], any = false;
+    int32_t of[OPW_JOINTS][FPGA_SLOTS], beside[FPGA_SLOTS];
+    bool moves[OPW_JOINTS];
 
     memset(s->words, 0, (size_t)c->slots * FPGA_SLOT_WORDS * sizeof s->words[0]);
+    const bool travels =
+        slots_pulses(s->external, s->robot.external, c->robot.external.scale, c->slots, beside);
+    bool any = travels;
     for (int i = 0; i < OPW_JOINTS; i++) {
         moves[i] = slots_pulses(s->joint[i], s->robot.joint[i], c->robot.scale[i], c->slots, of[i]);
         any |= moves[i];
@@ -42,9 +48,11 @@ static void make_slots(struct controller *s, const struct controller_config *c)
         for (int i = 0; i < OPW_JOINTS; i++) {
             pulses[i] = moves[i] ? of[i][n] : 0;
         }
+        pulses[FPGA_AXES] = travels ? beside[n] : 0;
         fpga_slot_pack(&s->words[n * FPGA_SLOT_WORDS], pulses, c->format);
     }
     memcpy(s->joint, s->robot.joint, sizeof s->joint);
+    s->external = s->robot.external;
 }
 
 /* Measure the latency of lines whose memory has begun to play. */
@@ -101,13 +109,20 @@ static void arm_here(const void *asked, struct robot_job_point here[2])
     const double *joint = s->robot.joint;
 
     arm.tool = s->robot.tool;
-    const struct pose pose = manipulator_pose(&arm, joint);
+    struct pose pose = manipulator_pose(&arm, joint);
+    external_to_world(&c->robot.external, s->robot.external, pose.at);
     const int branch = manipulator_branch(&arm, joint);
     here[0] = here[1] = robot_job_point_open();
     here[0].kind = ROBOT_JOB_PULSES;
     here[0].tool = here[1].tool = tool_of(s, c, t);
     for (int i = 0; i < OPW_JOINTS; i++) {
         here[0].value[i] = joint[i] * c->orders.pulses[i];
+    }
+    if (c->robot.external.kind != EXTERNAL_NONE) {
+        const double place = s->robot.external;
+        here[0].beside = here[1].beside = true;
+        here[0].external = place * c->robot.external.scale;
+        here[1].external = place / external_unit(&c->robot.external);
     }
     here[1].kind = ROBOT_JOB_POSE;
     here[1].user = 0;
@@ -241,6 +256,10 @@ static void look_at_stop(struct controller *s, const struct controller_config *c
             s->joint[i] = (s->origin[i] + card->pulse_count[i]) / c->robot.scale[i];
         }
         robot_start(&s->robot, &c->robot, s->joint);
+        if (c->robot.external.kind != EXTERNAL_NONE) {
+            s->external = (s->external_origin + card->external_count) / c->robot.external.scale;
+            robot_place(&s->robot, &c->robot, s->external);
+        }
         s->reached = s->given;
     }
     s->stopped = card->stopped;
@@ -366,7 +385,9 @@ void controller_rehearse(struct controller *s, const struct controller_config *c
             continue;
         }
         double end[OPW_JOINTS];
+        const double beside = robot_end_external(&s->robot);
         robot_end(&s->robot, end);
         robot_start(&s->robot, &c->robot, end);
+        robot_place(&s->robot, &c->robot, beside);
     }
 }

@@ -145,8 +145,9 @@ struct robot_job_instruction {
                   * SUB, GETE of positions: the other position */
     struct robot_job_by to_by, via_by; /* of positions */
     int32_t increment;                 /* of a move: its frame, or ROBOT_JOB_NOT_BY */
-    int32_t until;                     /* input that ends a move, from 0; -1: none */
-    bool until_on;                     /* by coming on, not by going off */
+    int32_t beside; /* of a move: position of the axis outside the arm; -1: none */
+    int32_t until;  /* input that ends a move, from 0; -1: none */
+    bool until_on;  /* by coming on, not by going off */
     enum robot_job_path path;
     bool goes_on; /* of a SPLINE: the next instruction is the one it goes on with */
     enum robot_job_speed tag;
@@ -173,8 +174,11 @@ struct robot_job_callee {
     int32_t text, line, column, offset, length;
 };
 
-/* A position that stands in a job: C00000 is the job's own, P00000 that of all jobs. */
+/* A position that stands in a job: C00000 is the job's own, P00000 that of all jobs. Those of axes
+ * outside the arm, BC00000, EC00000 and BP00000, EX00000, have one place, in point.external. */
 struct robot_job_position {
+    enum robot_job_outside outside;
+    bool more;   /* there are further axes outside, which are not at 0 */
     int32_t job; /* -1: of all */
     int32_t number;
     struct robot_job_point point;

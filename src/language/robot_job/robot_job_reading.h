@@ -103,6 +103,16 @@ int robot_job_positions_line(struct robot_job_reading *in);
 /* Number of a position of this job, 'C', or of all jobs, 'P'; -1: there is none. */
 int32_t robot_job_positions_find(const struct robot_job_reading *in, char letter, int32_t number);
 
+/* The axes outside the arm whose position a word is, BC00000; *own: of this job, *number: behind
+ * the letters. */
+enum robot_job_outside robot_job_positions_outside(const struct robot_job_scan *s,
+                                                   struct robot_job_span w, bool *own,
+                                                   int32_t *number);
+
+/* Take such a position for a move: the axis it is of has to be there. */
+int robot_job_positions_beside(struct robot_job_reading *in, struct robot_job_span w,
+                               struct robot_job_instruction *c);
+
 /* robot_job_places: positions that change. Take P001, P[B000], or C00001 of this job: 1, 0 if
  * something else stands here, or -1. */
 int robot_job_place_take(struct robot_job_reading *in, int32_t *number, struct robot_job_by *by);

@@ -194,6 +194,7 @@ static enum robot_job_fault move(struct robot_job_run *run, const struct robot_j
         r->tool = run->hand;
         r->shift = -1;
     }
+    r->beside = c->beside;
     r->until = c->until;
     r->until_on = c->until_on;
     run->hand = r->tool;

@@ -106,6 +106,7 @@ struct robot_job_request {
     /* MOVE */
     enum robot_job_path path;
     int32_t point, via;       /* numbers; via of CIRCLE only */
+    int32_t beside;           /* position of the axis outside the arm; -1: that of the point */
     int32_t next, next_user;  /* of SPLINE: the point it goes on to, -1: it ends; its user frame */
     enum robot_job_speed tag; /* VJ, V or VR */
     double speed;

@@ -144,6 +144,7 @@ struct robot_job_instruction *robot_job_reading_add(struct robot_job_reading *in
                                          .level = ROBOT_JOB_ANY,
                                          .time = -1,
                                          .increment = ROBOT_JOB_NOT_BY,
+                                         .beside = -1,
                                          .until = -1,
                                          .inside = robot_job_block_loop_inside(in) };
     return c;

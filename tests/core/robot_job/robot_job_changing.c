@@ -237,7 +237,9 @@ static void later_text(void)
                       second[] = "//NAME B\n//POS\nP500=1,2,3,4,5,6\n//INST\nEND\n";
     struct robot_job_inputs in = { 0 };
     struct robot_job_request r;
-    CHECK_EQ(robot_job_points_read(&points, POINTS, (int64_t)strlen(POINTS), &report), 0);
+    CHECK_EQ(robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, POINTS, (int64_t)strlen(POINTS),
+                                   &report),
+             0);
     robot_job_begin_reading(&program);
     CHECK_EQ(robot_job_read_text(&program, &points, first, (int64_t)strlen(first), &report), 0);
     program.callees = 0;
