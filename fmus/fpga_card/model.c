@@ -117,8 +117,6 @@ static int read_pins(struct fmu *f)
     uint32_t drives = 0;
     for (int i = 0; i < FPGA_AXES; i++)
         drives |= (uint32_t)v->drive_ready[i] << i | (uint32_t)(v->drive_alarm[i] != 0) << (8 + i);
-    drives |= (uint32_t)v->external_ready << FPGA_AXES
-              | (uint32_t)(v->external_alarm != 0) << (8 + FPGA_AXES);
     fpga_set_drives(&m->card, drives, v->emergency_stop);
     return 0;
 }

@@ -94,7 +94,7 @@ enum fpga_format {
 /* The state of the card. */
 #define FPGA_STATUS(X) \
     X(int32_t, inputs, )                 /* digital inputs as exchanged last */ \
-    X(int32_t, drives, )                 /* bits 0 - 6 ready, 8 - 14 alarm */ \
+    X(int32_t, drives, )                 /* bits 0 - 5 ready, 8 - 13 alarm */ \
     X(int32_t, memory, )                 /* pulse memory that plays: 0, 1; -1 none */ \
     X(int32_t, full, )                   /* bit m: memory m is marked full and waits */ \
     X(int32_t, slot, )                   /* slot that plays, of that memory */ \

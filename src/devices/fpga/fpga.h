@@ -115,7 +115,7 @@ struct fpga {
     struct fpga_inputs inputs;
     double ai[FPGA_ANALOG];              /* [V] analog inputs, quantised */
     uint32_t drive_pins, drives;         /* of the drives, at the pins; as exchanged last: bits
-                                          * 0 - 6 ready, 8 - 14 alarm */
+                                          * 0 - 5 ready, 8 - 13 alarm */
     uint32_t host_outputs, outputs;      /* digital outputs, as the host wants; at the pins */
     int64_t output_clock[FPGA_CHANNELS]; /* [clock] of the latest change of each output */
     double ao[FPGA_ANALOG];              /* [V] analog outputs, quantised */
@@ -174,7 +174,7 @@ uint32_t fpga_inputs_changed(const struct fpga *f, uint32_t levels);
  * changes at its clock or before. */
 void fpga_change_input(struct fpga *f, int channel, int64_t clock);
 
-/* Analog inputs [V], 16 bits for +-10 V; drives, bits 0 - 6 ready, 8 - 14 alarm; emergency stop.
+/* Analog inputs [V], 16 bits for +-10 V; drives, bits 0 - 5 ready, 8 - 13 alarm; emergency stop.
  * They act at the next exchange. */
 void fpga_set_ai(struct fpga *f, const double volts[FPGA_ANALOG]);
 void fpga_set_drives(struct fpga *f, uint32_t drives, bool emergency_stop);
