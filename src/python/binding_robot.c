@@ -28,6 +28,7 @@ struct robot_sample {
     double joint[OPW_JOINTS], rate[OPW_JOINTS]; /* [deg], [deg/s] commanded */
     double place[3], speed,
         feed;          /* [mm] of the tip, [mm/s] along its path, asked for; 0 of joints */
+    double base[3];    /* [mm] where a track has the arm's base */
     double factors[3]; /* from singular: [mm], 1, 1 */
     int32_t line;      /* that moves, */
     int32_t at;        /* and that a job reads next; 0: none, it is a part program */
@@ -62,6 +63,7 @@ static const struct field reading_fields[] = {
     READ_ROW(pose, "mm, deg"),
     READ(external, "mm, deg"),
     READ(external_command, "mm, deg"),
+    READ_ROW(base_command, "mm"),
     READ_ROW(joint_command, "deg"),
     READ_ROW(pose_command, "mm, deg"),
     READ(configuration, ""),
@@ -163,6 +165,7 @@ static const struct field sample_fields[] = {
     SAMPLE_ROW(joint, "deg"),
     SAMPLE_ROW(rate, "deg/s"),
     SAMPLE_ROW(place, "mm"),
+    SAMPLE_ROW(base, "mm"),
     SAMPLE(speed, "mm/s"),
     SAMPLE(feed, "mm/s"),
     SAMPLE_ROW(factors, "mm, 1, 1"),
@@ -345,6 +348,7 @@ static void sample(struct robot_station *s, const struct robot_program *p, struc
         x->rate[i] = r->rate[i] / unit;
     }
     memcpy(x->place, r->pose.at, sizeof x->place);
+    external_to_world(&s->config.robot.external, r->external, x->base);
     x->speed = r->speed;
     x->feed = limited.feed;
     robot_factors(r, &s->config.robot, x->factors);

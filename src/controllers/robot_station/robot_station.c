@@ -129,6 +129,7 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     due += (double)llround(controller->external * e->scale) != count;
     r->external = external / external_unit(e);
     r->external_command = controller->external / external_unit(e);
+    external_to_world(e, controller->external, r->base_command);
     arm.tool = controller->robot.tool;
     struct pose pose = manipulator_pose(&arm, joint);
     external_to_world(e, external, pose.at);
