@@ -55,10 +55,7 @@ class Approach:
 def distances(
     parts: ArmParts, cell: Cell, joints: Array, tip: Array, base: Array | float = 0.0
 ) -> Iterator[tuple[str, str, Array]]:
-    """Two that can touch and their distance (n,) [mm], for joints (n, 6) [deg], tips (n, 3).
-
-    A track has the arm's base at `base` (n, 3).
-    """
+    """Two that can touch, their distance (n,) [mm]; joints (n, 6) [deg], tips and bases (n, 3)."""
     standing = np.broadcast_to(base, tip.shape)
     points, radii = parts.points(joints, tip - standing) + standing[:, None], parts.radii
     bars = [(points[:, k], points[:, k + 1]) for k in range(len(NAMES))]
