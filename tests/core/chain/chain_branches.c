@@ -236,7 +236,7 @@ static const struct rig GEN3 = {
 
 /* An arm that nearly has a form comes to the joints of a pose beside singular places, too, where
  * the branches of its form are too far away: from joints within `off` of them, or, of a `share`,
- * from any; the held joint is the one asked for. Each branch is the same if it is asked for alone. */
+ * from any; the held joint is the one asked for. Each branch is the same asked for alone. */
 static void nearly(const struct rig *r, double off, double share)
 {
     const struct chain_form f = rig_form(r);
