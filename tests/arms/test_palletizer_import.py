@@ -7,7 +7,6 @@ import mujoco
 import numpy as np
 import pytest
 from random_arms import PinocchioChain
-from test_arm_import import told
 from typer.testing import CliRunner
 
 from motionfmu import run
@@ -75,14 +74,6 @@ def file(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     place = tmp_path_factory.mktemp("palletizer") / f"{request.param}.urdf"
     place.write_text(urdf(KINDS[request.param]), encoding="utf-8")
     return place
-
-
-@pytest.fixture(scope="module")
-def folder(file: Path) -> Path:
-    """The machine made of it, and beside it what was told."""
-    made = file.parent / "machine"
-    (made.parent / "told").write_text(told("import", file, "-o", made), encoding="utf-8")
-    return made
 
 
 def test_poses_are_pinocchio_s(file: Path) -> None:
