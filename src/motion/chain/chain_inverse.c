@@ -943,6 +943,9 @@ int chain_branch(const struct chain_form *f, const double joint[CHAIN_JOINTS])
 {
     double factor[3];
 
+    if (f->flags == 0) {
+        return 0;
+    }
     chain_factors(f, joint, factor);
     return ((factor[0] < 0.0 ? CHAIN_BACK : 0) | (factor[1] < 0.0 ? CHAIN_ELBOW : 0)
             | (factor[2] < 0.0 ? CHAIN_FLIP : 0))
