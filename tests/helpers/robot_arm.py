@@ -85,6 +85,12 @@ class ByAxes(Arm):
     class_name = "AxesArm"
 
 
+class LevelLinks(ByAxes):
+    """The same with links and a hand that a linkage keeps level."""
+
+    class_name = "LevelArm"
+
+
 def axes_of(a: Arm) -> tuple[np.ndarray, np.ndarray]:
     """Origins of the joints, each from the one before, and axes; frames as at inner 0."""
     if isinstance(a, ByAxes):

@@ -100,6 +100,29 @@ def test_it_is_told_before_the_run_and_once(tmp_path: Path) -> None:
     assert plain.index(told) < plain.index("found asked")
 
 
+def test_what_an_arm_cannot_have_is_told() -> None:
+    """A palletizer's controller before an arm whose links no linkage keeps level."""
+    line = load(LINE).document.body
+    tables = {
+        "stop": 0.01,
+        "step": 5e-5,
+        "leave": [*line.leave],
+        "component": {**line.component, "arm": "axes_arm"},
+        "connect": dict(line.connect),
+        "set": {"drives.mode": 1, "drives.pulses_per_turn": 2500, "soft.arm_by": 1},
+        "record": {"signals": ["arm.tool_position"]},
+    }
+    plain = scenario(tables, folder=LINE)
+    assert not [w for w in plain.disagreements({}) if "level" in w or "hand" in w]
+    given = {"soft.joint_level": [0, 0, 0, 2, 0, 0], "soft.hand_offset": [0.2, 0, -0.1]}
+    told = [w for w in plain.disagreements(given) if "level" in w or "hand" in w]
+    assert told == [
+        "soft.joint_level[4] = 2 but arm.joint_level[4] = 0: both mean arm.joint_level",
+        "soft.hand_offset[1] = 0.2 m but arm.hand_offset[1] = 0 m and 1 more of its elements:"
+        " both mean arm.hand_offset",
+    ]
+
+
 def test_robots_side_by_side_are_compared_with_their_own() -> None:
     """Two chains in a scenario: each arm with the controller whose wires reach it."""
     line = load(LINE).document.body
@@ -146,12 +169,13 @@ def system(wires: str, **said: str) -> SimpleNamespace:
     )
 
 
-# FMU by its letter: what its x is; i knows nothing of it.
+# FMU by its letter: what its x is; i knows nothing of it, f alone has 1.5 m.
 PORTS = {
     "p": SimpleNamespace(causality="parameter", count=1, shape=(), unit="m", start=[1.0]),
     "q": SimpleNamespace(causality="parameter", count=1, shape=(), unit="mm", start=[1000.0]),
     "r": SimpleNamespace(causality="parameter", count=2, shape=(2,), unit="m", start=[1.0]),
     "s": SimpleNamespace(causality="parameter", count=2, shape=(2,), unit="mm", start=[1000.0]),
+    "f": SimpleNamespace(),
     "i": SimpleNamespace(causality="parameter", count=1, shape=(), unit="", start=[7.0]),
 }
 
@@ -170,6 +194,13 @@ PORTS = {
         (system("p1>q1 q1>s1", s1="1000,5"), ["q1.x has 1 elements, s1.x has 2: both mean t.x"]),
         (system("p1>p2", p2="5"), []),
         (system("p1>i1 p2>i2", p2="5"), []),
+        # A value that is no variable, in SI.
+        (system("f1>q1", q1="1500"), []),
+        (system("f1>f2"), []),
+        (
+            system("s1>f1"),
+            ["s1.x[1] = 1000 mm but f1.x[1] = 1500 mm and 1 more of its elements: both mean t.x"],
+        ),
         # One value is that of each element.
         (system("r1>s1"), []),
         (system("r1>s1", s1="1000,3"), ["r1.x[2] = 1 m but s1.x[2] = 3 mm: both mean t.x"]),
@@ -180,7 +211,8 @@ PORTS = {
     ],
 )
 def test_who_is_compared_with_whom(wired, told: list[str], monkeypatch) -> None:
-    monkeypatch.setattr(agreement, "quantities", lambda fmu: {"t.x": "x"} if fmu != "i" else {})
+    stated = {"i": {}, "f": {"t.x": 1.5}}
+    monkeypatch.setattr(agreement, "_stated", lambda fmu: stated.get(fmu, {"t.x": "x"}))
     monkeypatch.setattr(agreement.fmus, "ports", lambda fmu: {"x": PORTS[fmu]})
     monkeypatch.setattr(agreement, "start_values", lambda port: port.start)
     assert agreement.warnings(wired) == told
@@ -200,8 +232,8 @@ def test_defaults_of_all_fmus_agree_on_the_arm() -> None:
             said.setdefault(quantity, []).append(values)
     # A controller by lengths has its axes at 0; an arm by its axes no lengths.
     arm = {q: v for q, v in said.items() if q.startswith("arm.") and ".axis_" not in q}
-    assert len(arm) == 15 and all(len(v) in (2, 3) for v in arm.values())
-    assert len(arm["arm.start"]) == 3
+    assert len(arm) == 15 and all(2 <= len(v) <= 4 for v in arm.values())
+    assert len(arm["arm.start"]) == 4
     for quantity, (one, *others) in arm.items():
         for other in others:
             assert one == pytest.approx(other, rel=1e-12, abs=1e-12), quantity

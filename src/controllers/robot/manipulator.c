@@ -101,9 +101,13 @@ struct pose manipulator_pose(const struct manipulator *m, const double joint[OPW
 
 int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINTS])
 {
-    double factor[3];
+    double q[CHAIN_JOINTS];
 
-    return manipulator_factors(m, joint, factor);
+    if (!m->by_axes) {
+        return opw_branch(&m->opw, joint);
+    }
+    whole(joint, q);
+    return chain_branch(&m->axes, q);
 }
 
 int manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],

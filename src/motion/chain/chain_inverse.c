@@ -901,7 +901,7 @@ int chain_branch(const struct chain_form *f, const double joint[CHAIN_JOINTS])
 {
     double factor[3];
 
-    return chain_factors(f, joint, factor);
+    return f->flags == 0 ? 0 : chain_factors(f, joint, factor);
 }
 
 double chain_arm_angle(const struct chain_form *f, const double joint[CHAIN_JOINTS])

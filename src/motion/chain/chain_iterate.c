@@ -66,9 +66,10 @@ static struct search search_of(const struct chain *c, int held, double size)
     return s;
 }
 
-/* Solve m x = b by elimination. False: m is singular. */
-static bool solve(int n, double m[CHAIN_JOINTS][CHAIN_JOINTS], double b[CHAIN_JOINTS][ROWS])
+/* Inverse of m in its place, by Gauss and Jordan with pivots of columns. False: m is singular. */
+static bool inverted(int n, double m[CHAIN_JOINTS][CHAIN_JOINTS])
 {
+    int from[CHAIN_JOINTS];
     double largest = 0.0;
 
     for (int k = 0; k < n; k++) {
@@ -76,55 +77,57 @@ static bool solve(int n, double m[CHAIN_JOINTS][CHAIN_JOINTS], double b[CHAIN_JO
         for (int i = k + 1; i < n; i++) {
             best = fabs(m[i][k]) > fabs(m[best][k]) ? i : best;
         }
-        largest = el_max(largest, fabs(m[best][k]));
-        if (!(fabs(m[best][k]) > PIVOT * largest)) {
+        const double pivot = m[best][k];
+        largest = el_max(largest, fabs(pivot));
+        if (!(fabs(pivot) > PIVOT * largest)) {
             return false;
         }
-        for (int i = 0; i < n; i++) {
-            const double x = m[k][i];
-            m[k][i] = m[best][i];
-            m[best][i] = x;
+        from[k] = best;
+        for (int j = 0; j < n; j++) {
+            const double x = m[best][j];
+            m[best][j] = m[k][j];
+            m[k][j] = x * (1.0 / pivot);
         }
-        for (int i = 0; i < ROWS; i++) {
-            const double x = b[k][i];
-            b[k][i] = b[best][i];
-            b[best][i] = x;
-        }
+        m[k][k] = 1.0 / pivot;
         for (int i = 0; i < n; i++) {
-            const double factor = i == k ? 0.0 : m[i][k] / m[k][k];
-            for (int j = k; j < n; j++) {
-                m[i][j] -= factor * m[k][j];
+            const double factor = m[i][k];
+            if (i == k) {
+                continue;
             }
-            for (int j = 0; j < ROWS; j++) {
-                b[i][j] -= factor * b[k][j];
+            m[i][k] = 0.0;
+            for (int j = 0; j < n; j++) {
+                m[i][j] -= factor * m[k][j];
             }
         }
     }
-    for (int k = 0; k < n; k++) {
-        for (int j = 0; j < ROWS; j++) {
-            b[k][j] /= m[k][k];
+    for (int k = n - 1; k >= 0; k--) { /* rows in another order are columns of the inverse so */
+        for (int i = 0; i < n; i++) {
+            const double x = m[i][k];
+            m[i][k] = m[i][from[k]];
+            m[i][from[k]] = x;
         }
     }
     return true;
 }
 
 /* The residual and its derivatives. With Q = R R*^T the turning's is what is skew in Q, and its
- * derivative (tr Q - Q) / 2 times the turning of the flange. */
+ * derivative (tr Q - Q) / 2 times the turning of the flange. Without a pose: of that of the joints
+ * themselves. */
 static void look(const struct search *s, const struct chain_pose *pose,
                  const double joint[CHAIN_JOINTS], struct view *v)
 {
-    double column[CHAIN_JOINTS][6], q[3][3];
+    double column[CHAIN_JOINTS][6], q[3][3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
     struct chain_pose at;
 
     chain_jacobian(s->c, joint, &at, column);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; pose && i < 3; i++) {
         for (int k = 0; k < 3; k++) {
             q[i][k] = vector3_dot(at.turn[i], pose->turn[k]);
         }
     }
     const double trace = q[0][0] + q[1][1] + q[2][2];
     for (int i = 0; i < 3; i++) {
-        v->f[i] = (at.at[i] - pose->at[i]) / s->size;
+        v->f[i] = pose ? (at.at[i] - pose->at[i]) / s->size : 0.0;
         v->f[i + 3] = 0.5 * (q[(i + 2) % 3][(i + 1) % 3] - q[(i + 1) % 3][(i + 2) % 3]);
     }
     v->most = sqrt(vector3_dot(v->f, v->f) + vector3_dot(v->f + 3, v->f + 3));
@@ -149,9 +152,6 @@ static bool invert(const struct search *s, struct view *v)
     double m[CHAIN_JOINTS][CHAIN_JOINTS];
 
     for (int i = 0; i < s->count; i++) {
-        for (int k = 0; k < ROWS; k++) {
-            v->inverse[i][k] = s->count == ROWS ? i == k : v->slope[k][i];
-        }
         for (int k = 0; k < s->count; k++) {
             double sum = s->count == ROWS ? v->slope[i][k] : 0.0;
             for (int r = 0; r < ROWS && s->count < ROWS; r++) {
@@ -160,7 +160,19 @@ static bool invert(const struct search *s, struct view *v)
             m[i][k] = sum;
         }
     }
-    return solve(s->count, m, v->inverse);
+    if (!inverted(s->count, m)) {
+        return false;
+    }
+    for (int i = 0; i < s->count; i++) {
+        for (int k = 0; k < ROWS; k++) {
+            double sum = s->count == ROWS ? m[i][k] : 0.0;
+            for (int r = 0; r < s->count && s->count < ROWS; r++) {
+                sum += m[i][r] * v->slope[k][r];
+            }
+            v->inverse[i][k] = sum;
+        }
+    }
+    return true;
 }
 
 /* Sums over all pairs of joints of what bounds the second derivatives of place (in sizes) and
@@ -191,13 +203,11 @@ static void bends(const struct search *s, const double joint[CHAIN_JOINTS], doub
     sum[1] = (double)turning * turning;
 }
 
-/* The first step and the bound of how the residual bends. */
-static bool judge(const struct search *s, const struct chain_pose *pose,
-                  const double joint[CHAIN_JOINTS], struct view *v)
+/* The first step and the bound of how the residual bends, of a view that has been looked at. */
+static bool judge_view(const struct search *s, const double joint[CHAIN_JOINTS], struct view *v)
 {
     double sum[2];
 
-    look(s, pose, joint, v);
     if (!(v->most < INFINITY) || !invert(s, v)) {
         return false;
     }
@@ -210,6 +220,13 @@ static bool judge(const struct search *s, const struct chain_pose *pose,
         v->bend = el_max(v->bend, vector3_length(a) * sum[0] + vector3_length(a + 3) * sum[1]);
     }
     return true;
+}
+
+static bool judge(const struct search *s, const struct chain_pose *pose,
+                  const double joint[CHAIN_JOINTS], struct view *v)
+{
+    look(s, pose, joint, v);
+    return judge_view(s, joint, v);
 }
 
 static void go(const struct search *s, const double step[CHAIN_JOINTS], double part,
@@ -234,7 +251,8 @@ static bool converge(const struct search *s, const struct chain_pose *pose,
         memcpy(best, joint, sizeof best);
         proof = proof || v->bend * v->first <= PROVED;
         go(s, v->step, 1.0, joint);
-        if (!judge(s, pose, joint, v)) {
+        look(s, pose, joint, v);
+        if (v->most < least && !judge_view(s, joint, v)) {
             break;
         }
     }
@@ -368,12 +386,11 @@ double chain_iterate_gain(const struct chain *c, int held, double size,
                           const double joint[CHAIN_JOINTS])
 {
     const struct search s = search_of(c, held, size);
-    struct chain_pose at;
     struct view v;
     double most = 0.0;
 
-    chain_forward(c, joint, &at);
-    if (!judge(&s, &at, joint, &v)) {
+    look(&s, NULL, joint, &v);
+    if (!invert(&s, &v)) {
         return INFINITY;
     }
     for (int i = 0; i < s.count; i++) {

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.arm_machines.arm_values import ArmValues, TakenValue, arm_values
-from motionfmu.arm_machines.machine_arm import BY_AXES, BY_LENGTHS, arm_machine
+from motionfmu.arm_machines.machine_arm import BY_AXES, BY_LENGTHS, LEVEL, arm_machine
 from motionfmu.arms.arm_axes import ArmGeometry, AxesGeometry, driven_geometry
 from motionfmu.arms.arm_description import ArmDescription, ArmJoint
 from motionfmu.arms.arm_geometry import ROUNDING, NoOpwGeometry
@@ -72,7 +72,7 @@ def make_machine(arm: ArmDescription, folder: Path, source: str) -> MadeMachine:
     notes = (*arm.notes, *_notes(geometry))
     tables = {k: v for k, v in like.tables.items() if k not in _OF_A_RUN}
     if isinstance(geometry, AxesGeometry):
-        plants = {BY_LENGTHS: BY_AXES}
+        plants = {BY_LENGTHS: LEVEL if geometry.levels else BY_AXES}
         tables["component"] = {n: plants.get(f, f) for n, f in tables["component"].items()}
         slides = geometry.sliding
         tables["axis"] = [

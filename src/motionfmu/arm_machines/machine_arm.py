@@ -26,7 +26,7 @@ from motionfmu.scenarios.values import settings, start_values
 
 Array = NDArray[np.float64]
 CONTROLLER, DRIVES = "soft_controller", "servo_drives"
-PLANT, BY_LENGTHS, BY_AXES = "plant", "robot_arm", "axes_arm"
+PLANT, BY_LENGTHS, BY_AXES, LEVEL = "plant", "robot_arm", "axes_arm", "level_arm"
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 
 
@@ -91,7 +91,7 @@ def arm_machine(machine: Machine, set: Mapping[str, Any] | None = None) -> ArmMa
     """
     plan = machine.plan()
     names = {fmu: name for name, fmu in plan.document.body.component.items()}
-    plant = BY_AXES if BY_AXES in names else BY_LENGTHS
+    plant = next((fmu for fmu in (BY_AXES, LEVEL) if fmu in names), BY_LENGTHS)
     for fmu in (plant, CONTROLLER, DRIVES):
         if fmu not in names:
             raise InputError(f"{machine.file}: no {fmu} among its components: it has no arm")
@@ -122,7 +122,7 @@ def _geometry(values: Mapping[str, Array]) -> ArmGeometry:
         axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
         slides = tuple(bool(s) for s in values[f"{PLANT}.joint_slides"][:count])
         origins = values[f"{PLANT}.axis_origin"][:count]
-        levels = tuple(int(n) for n in values[f"{PLANT}.joint_level"][:count])
+        levels = tuple(int(n) for n in values.get(f"{PLANT}.joint_level", ())[:count])
         if not any(levels):
             return AxesGeometry(origins, axes, tip, slides=slides)
         hand = values[f"{PLANT}.hand_offset"]

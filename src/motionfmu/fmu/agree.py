@@ -10,11 +10,12 @@ from motionfmu.fmu.describe import Variable
 SAYS = ("parameter", "output")
 
 
-def read(table: Any, variables: Sequence[Variable]) -> list[tuple[str, str]]:
-    """Quantities and variables of the tables ``[agree.THING]`` of an fmu.toml.
+def read(table: Any, variables: Sequence[Variable]) -> list[tuple[str, str | float]]:
+    """Quantities of the tables ``[agree.THING]`` of an fmu.toml: a variable, or a value [SI].
 
     ``[agree.arm]`` with ``start = "start_joint"`` says that this FMU takes its parameter
-    start_joint as the quantity arm.start. An output would state the quantity over time.
+    start_joint as the quantity arm.start, ``level = 0`` that it has no other level than 0.
+    An output would state the quantity over time.
     An InputError has a line for each fault.
     """
     if not isinstance(table, dict):
@@ -26,7 +27,8 @@ def read(table: Any, variables: Sequence[Variable]) -> list[tuple[str, str]]:
             faults.lines.append(f"agree {thing}: {shown(row)}: variables by quantity wanted")
             continue
         for quantity, name in row.items():
-            if name not in numbers:
+            fixed = isinstance(name, int | float) and not isinstance(name, bool)
+            if not fixed and name not in numbers:
                 told = f"agree {thing}: {quantity} = {shown(name)}: no such numeric parameter"
                 told += " or output"
                 faults.lines.append(told + suggestion(str(name), numbers))

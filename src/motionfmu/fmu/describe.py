@@ -118,7 +118,7 @@ class Description:
     variables: tuple[Variable, ...] = field(default=())
     terminals: tuple[Terminal, ...] = field(default=())
     # quantities that other FMUs of a system describe, too, such as arm.a1, and their parameters
-    agree: tuple[tuple[str, str], ...] = ()
+    agree: tuple[tuple[str, str | float], ...] = ()
 
     @property
     def step(self) -> float:

@@ -41,7 +41,8 @@ def arm_of(
     component = joints.partition(".")[0]
     ports = resolver.ports[component]
     if ORIGIN in ports and (BY not in ports or parameter(f"{component}.{BY}")[0] == 1):
-        return Arm((), axes=axes_in_mm(lambda name: parameter(f"{component}.{name}")))
+        level = LEVEL in ports
+        return Arm((), axes=axes_in_mm(lambda name: parameter(f"{component}.{name}"), level))
     if not all(n in ports and ports[n].causality == "parameter" for n in LENGTHS):
         return None
 
@@ -57,9 +58,12 @@ def arm_of(
 
 
 def axes_in_mm(
-    parameter: Callable[[str], Sequence[float]],
+    parameter: Callable[[str], Sequence[float]], level: bool = True
 ) -> tuple[tuple[Three, Three, bool, int, Three], ...]:
-    """Rows of `Arm.axes` of parameters in m: origins in mm, directions of length 1."""
+    """Rows of `Arm.axes` of parameters in m: origins in mm, directions of length 1.
+
+    Without level its component has no levels and no hand.
+    """
     count = int(parameter(COUNT)[0])
 
     def rows(name: str, factor: float) -> list[Three]:
@@ -70,7 +74,7 @@ def axes_in_mm(
 
     units = [tuple(x / math.hypot(*d) for x in d) for d in rows(DIRECTION, 1.0)]
     slides = [bool(s) for s in parameter(SLIDES)[:count]]
-    levels = [int(n) for n in parameter(LEVEL)[:count]]
-    held = tuple(1e3 * float(x) for x in parameter(HAND))
+    levels = [int(n) for n in parameter(LEVEL)[:count]] if level else [0] * count
+    held = tuple(1e3 * float(x) for x in parameter(HAND)) if level else (0.0,) * 3
     hands = [held if k == PALLETIZED else (0.0,) * 3 for k in range(count)]
     return tuple(zip(rows(ORIGIN, 1e3), units, slides, levels, hands, strict=True))

@@ -1,4 +1,4 @@
-"""Links that a linkage keeps level in the arm by its axes, against pinocchio's tree with pivots.
+"""Links that a linkage keeps level, against pinocchio's tree with pivots.
 
 The tree has a pivot before such a link, that of joint 4 with the hand on it; a matrix says how all
 its joints follow those of the arm, and the torques of the tree are brought to these by its
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pinocchio
 import pytest
-from robot_arm import EXACT, ByAxes, axes_of, bodies_of, body, joint_line
+from robot_arm import EXACT, LevelLinks, axes_of, bodies_of, body, joint_line
 
 pytestmark = pytest.mark.more  # to make the equations of an arm takes a while
 
@@ -22,12 +22,14 @@ STATES = 250  # of each of four
 LEVELS = [((0, 2), 4, 1), ((1, 2), 4, -1), ((0, 1), 5, -1), ((1, 0), 6, 1)]
 
 
-def level_arm(rng: np.random.Generator, levels: tuple[int, int], count: int, way: int) -> ByAxes:
+def level_arm(
+    rng: np.random.Generator, levels: tuple[int, int], count: int, way: int
+) -> LevelLinks:
     """Axes anywhere but for those of joints 2 and 3, whole tensors, a tool beside the flange."""
     axes = rng.normal(size=(6, 3)) * rng.uniform(0.1, 9.0, (6, 1))
     axes[2] = way * rng.uniform(0.1, 9.0) * axes[1]
     second = rng.uniform(0.01, 0.2, (6, 3))
-    return ByAxes(
+    return LevelLinks(
         **EXACT,
         joints=count,
         joint_level=[0, 0, *levels, 0, 0],
@@ -52,7 +54,7 @@ def level_arm(rng: np.random.Generator, levels: tuple[int, int], count: int, way
 class Tree:
     """The links with pivots as a tree of pinocchio, and how its joints follow the arm's."""
 
-    def __init__(self, a: ByAxes) -> None:
+    def __init__(self, a: LevelLinks) -> None:
         origins, axes = axes_of(a)
         count, level = int(a.parameter("joints")), a.parameter("joint_level").astype(int)
         joints, before, rows = [], "l0", []
@@ -97,7 +99,7 @@ class Tree:
         mass = self.share.T @ (half + np.triu(half, 1).T) @ self.share
         return np.linalg.solve(mass, torque - self.inverse(q, v, np.zeros(len(q))))
 
-    def tool(self, a: ByAxes, q: Any) -> pinocchio.SE3:
+    def tool(self, a: LevelLinks, q: Any) -> pinocchio.SE3:
         """Frame of the tool's tip."""
         pinocchio.framesForwardKinematics(self.model, self.data, self._turned(q))
         A, B, C = np.radians(a.parameter("tool_turn"))
