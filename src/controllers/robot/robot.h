@@ -214,7 +214,7 @@ void robot_release(struct robot *r);
 /* Where the arm is: pose of the tip, joints, branch, whole turns. */
 void robot_teach(const struct robot *r, const struct robot_config *c, struct robot_target *t);
 
-/* Factors (opw_factors) of the joints now. */
-void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3]);
+/* Factors (manipulator_factors) of the joints now. Returns their branch. */
+int robot_factors(const struct robot *r, const struct robot_config *c, double factor[3]);
 
 #endif

@@ -922,14 +922,22 @@ static void other_factors(const struct task *t, const double q[CHAIN_JOINTS], do
     }
 }
 
-void chain_factors(const struct chain_form *f, const double joint[CHAIN_JOINTS], double factor[3])
+/* The flags of an arm's branch by the signs of its factors. */
+static int flags_of(const struct chain_form *f, const double factor[3])
+{
+    return ((factor[0] < 0.0 ? CHAIN_BACK : 0) | (factor[1] < 0.0 ? CHAIN_ELBOW : 0)
+            | (factor[2] < 0.0 ? CHAIN_FLIP : 0))
+           & (int)f->flags;
+}
+
+int chain_factors(const struct chain_form *f, const double joint[CHAIN_JOINTS], double factor[3])
 {
     struct task t;
 
     factor[0] = factor[1] = factor[2] = 1.0;
     if (f->kind == CHAIN_ITERATED) {
         factor[1] = 1.0 / chain_iterate_gain(&f->chain, f->held, f->size, joint);
-        return;
+        return flags_of(f, factor);
     }
     begin(f, joint, f->held >= 0 ? joint[f->held] : 0.0, &t); /* t.near: in the lines' order */
     if (f->kind >= CHAIN_WRIST_PARALLEL && f->kind <= CHAIN_WRIST_COLUMN) {
@@ -937,19 +945,14 @@ void chain_factors(const struct chain_form *f, const double joint[CHAIN_JOINTS],
     } else {
         other_factors(&t, t.near, factor);
     }
+    return flags_of(f, factor);
 }
 
 int chain_branch(const struct chain_form *f, const double joint[CHAIN_JOINTS])
 {
     double factor[3];
 
-    if (f->flags == 0) {
-        return 0;
-    }
-    chain_factors(f, joint, factor);
-    return ((factor[0] < 0.0 ? CHAIN_BACK : 0) | (factor[1] < 0.0 ? CHAIN_ELBOW : 0)
-            | (factor[2] < 0.0 ? CHAIN_FLIP : 0))
-           & (int)f->flags;
+    return f->flags == 0 ? 0 : chain_factors(f, joint, factor);
 }
 
 double chain_arm_angle(const struct chain_form *f, const double joint[CHAIN_JOINTS])
