@@ -146,8 +146,8 @@ def test_every_example_is_in_the_readme(name: str) -> None:
     assert files == set(re.findall(r"\]\(([\w.]+)\)", (folder / "README.md").read_text()))
 
 
-def test_the_readme_example_runs() -> None:
-    text = (ROOT / "README.md").read_text()
+def test_the_example_of_the_tour_runs() -> None:
+    text = (ROOT / "docs/tour.md").read_text()
     code = re.search(r"```python\n(from motionfmu\.virtual\.mcc .*?)```", text, re.S)
     assert code and output(sys.executable, "-c", code[1]).split()[:2] == ["[20000", "5000"]
 

@@ -25,6 +25,7 @@ SECTIONS = (
     ("src/motionfmu/", "package", "Manual", "What the package does, folder by folder."),
     ("src/", "cores", "C cores", "What the FMUs compute with, free of FMI."),
     ("modelica/", "cores", "", ""),
+    ("docs/tour.md", "package", "", ""),
     ("docs/theory/", "theory", "Theory", "Each claim names its code and the test that holds it."),
     (
         "docs/tutorials/",
