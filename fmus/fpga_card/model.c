@@ -11,6 +11,7 @@ struct model {
     struct fpga_taken taken;
     int64_t warned;         /* number of refusals that were warned of */
     int64_t dry;            /* number of underruns at the latest warning */
+    int64_t switched;       /* number of changes of outputs that are shown */
     double ai[FPGA_ANALOG]; /* [V] as read last */
 };
 
@@ -85,13 +86,23 @@ static int check_host(struct fmu *f)
 static int read_host(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
+    const struct fpga_taken *m = &f->s.m.taken;
     struct fpga_host host;
     if (check_host(f))
         return -1;
+    host.write_seq = v->host_write_seq;
+    host.out_seq = v->host_out_seq;
+    host.ao_seq = v->host_ao_seq;
 #define READ(type, name, elements) LINK_CARRY(host.name, v->host_##name)
-    FPGA_WRITE(READ)
-    FPGA_OUT(READ)
-    FPGA_AO(READ)
+    if (host.write_seq != m->write_seq) { /* of mailboxes only new ones are looked at */
+        FPGA_WRITE(READ)
+    }
+    if (host.out_seq != m->out_seq) {
+        FPGA_OUT(READ)
+    }
+    if (host.ao_seq != m->ao_seq) {
+        FPGA_AO(READ)
+    }
     FPGA_LEVELS(READ)
     fpga_take(&f->s.m.taken, &f->s.m.card, &host);
     return 0;
@@ -164,8 +175,9 @@ static void publish(struct fmu *f)
     FPGA_STATUS(SHOW)
     for (int i = 0; i < FPGA_AXES; i++)
         v->servo_on[i] = c->servo >> i & 1;
-    for (int i = 0; i < FPGA_CHANNELS; i++)
+    for (int i = 0; i < FPGA_CHANNELS && f->s.m.switched != c->switched; i++)
         v->dout_clock[i] = (double)c->output_clock[i];
+    f->s.m.switched = c->switched;
     v->external_servo_on = c->servo >> FPGA_AXES & 1;
     for (int i = 0; i < FPGA_AXES; i++)
         v->pulse_rate[i] = c->rate[i];

@@ -11,6 +11,8 @@ struct model {
     int64_t instant;    /* [ns] next instant of that grid */
     int32_t connection; /* number of the connection as read last */
     int32_t seq;        /* sequence number of the command taken last */
+    int64_t events;     /* events of the kernel, */
+    int64_t worked;     /* [ns] and time that it was not idle, as shown last */
 };
 
 #define MODEL_BLOB
@@ -52,7 +54,7 @@ static void publish_axes(struct vars *v, const struct netcard *c)
     for (int i = 0; i < CARD_AXES; i++) {
         v->pulse_count[i] = whole(counts[i]);
         v->pulse_rate[i] = player_velocity(&c->player, i);
-        v->position[i] = whole(netcard_position(c, i));
+        v->position[i] = whole(counts[i] - c->zero[i]);
         v->enable[i] = c->power && c->state != NET_FAULT;
         v->error_clear[i] = c->power && c->now < c->clear_until;
     }
@@ -64,11 +66,20 @@ static void publish_axes(struct vars *v, const struct netcard *c)
     v->rate = player_rate(&c->player);
 }
 
-static void publish_times(struct vars *v, const struct netcard *c)
+/* Times of tasks and interrupts change only while the processor is not idle. */
+static void publish_times(struct vars *v, struct model *m)
 {
+    const struct netcard *c = &m->card;
     const struct kernel *k = &c->kernel;
+    const int64_t worked = k->processor.clock - kernel_idle(k);
     int64_t interrupts = 0;
 
+    v->idle = (double)kernel_idle(k) * 1e-9;
+    if (k->events == m->events && worked == m->worked) {
+        return;
+    }
+    m->events = k->events;
+    m->worked = worked;
     for (int i = 0; i < NETCARD_TASKS; i++) {
         v->task_busy[i] = (double)kernel_busy(k, i) * 1e-9;
     }
@@ -78,7 +89,6 @@ static void publish_times(struct vars *v, const struct netcard *c)
     }
     v->interrupt_busy = (double)interrupts * 1e-9;
     v->kernel_busy = (double)kernel_overhead(k) * 1e-9;
-    v->idle = (double)kernel_idle(k) * 1e-9;
     v->task = k->current;
 }
 
@@ -88,7 +98,7 @@ static void publish(struct fmu *f)
     struct vars *v = &f->s.v;
 
     publish_axes(v, c);
-    publish_times(v, c);
+    publish_times(v, &f->s.m);
     v->connect = netcard_wants_connection(c);
     v->link_up = c->power && session_up(&c->session);
     v->link_losses = c->session.losses;
@@ -121,6 +131,7 @@ static int model_start(struct fmu *f)
         return -1;
     }
     m->period = llround(clocks) * FMU_TICK_NS;
+    m->events = -1; /* nothing has been shown */
     const enum net_code code = netcard_start(&m->card, &config, b->byte, b->bytes);
     if (code == NET_TOO_LONG) {
         return fmu_fail(f, "job: %s is too long for a slot of the flash", f->s.v.job);

@@ -160,21 +160,6 @@ static int read_all_jobs(struct fmu *f, struct controller_blob *b, char **text)
                                               : 0;
 }
 
-/* A spline that cannot be driven is refused before anything moves. */
-static int refuse_splines(struct fmu *f, const struct controller_blob *b)
-{
-    const struct robot_job_program *p = &b->job;
-
-    for (int32_t i = 0, job = 0; i < p->count; i++) {
-        job += job + 1 < p->jobs && p->job[job + 1].start <= i;
-        if (p->instruction[i].path == ROBOT_JOB_SPLINE) {
-            return fmu_fail(f, "%s: line %d: MOVS needs moves that flow: soft.flow = true",
-                            b->file[p->job[job].text], (int)p->instruction[i].line);
-        }
-    }
-    return 0;
-}
-
 static int read_jobs(struct fmu *f, struct controller_blob *b)
 {
     const char *job = f->s.v.job;
@@ -190,7 +175,6 @@ static int read_jobs(struct fmu *f, struct controller_blob *b)
                    ? fmu_fail(f, "job = \"%s\": no such job in %s", job, f->s.v.program)
                    : 0;
     }
-    code = code == 0 && !f->s.v.flow ? refuse_splines(f, b) : code;
     b->has_job = code == 0;
     return code;
 }

@@ -102,8 +102,7 @@ static void publish_arm(struct vars *v, struct controller *s, const struct contr
     memcpy(v->joint_rate, r->rate, sizeof v->joint_rate);
     v->external_command = r->external;
     v->external_command_rate = r->external_rate;
-    v->configuration = manipulator_branch(&c->robot.arm, r->joint);
-    robot_factors(r, &c->robot, v->factors);
+    v->configuration = robot_factors(r, &c->robot, v->factors);
     const struct limited limited = controller_limited(s, c, panel);
     v->limited_by = limited.by;
     v->limited_axis = limited.axis;
@@ -115,16 +114,21 @@ static void publish_arm(struct vars *v, struct controller *s, const struct contr
 static void publish_card(struct vars *v, struct controller *s, const struct controller_config *c)
 {
     struct fpga_host host;
-    const bool write = s->posts;
+    const bool write = s->posts, ao = write && s->posts_ao, out = s->outbox.count > 0;
 
 #define TAKE(type, name, elements) LINK_CARRY(host.name, v->card_##name)
 #define SHOW(type, name, elements) LINK_CARRY(v->card_##name, host.name)
-    FPGA_OUT(TAKE)
-    FPGA_AO(TAKE)
+    if (out) { /* an old entry stays behind the last new one */
+        FPGA_OUT(TAKE)
+    }
     FPGA_LEVELS(TAKE)
     controller_post(s, c, &host);
-    FPGA_OUT(SHOW)
-    FPGA_AO(SHOW)
+    if (out) {
+        FPGA_OUT(SHOW)
+    }
+    if (ao) {
+        FPGA_AO(SHOW)
+    }
     FPGA_LEVELS(SHOW)
     if (write) {
         FPGA_WRITE(SHOW)

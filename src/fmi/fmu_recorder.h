@@ -1,6 +1,6 @@
 /* fmu_recorder - records the signals of a run in a folder of .npy files, one per signal:
  * `<name>.npy` and `time.npy` [s], of shape (rows,) or (rows, count). Rows are collected in blocks
- * of memory and written a block at a time. The folder appears complete at the end, where there was
+ * of memory, into which the caller puts them, and written a block at a time. The folder appears complete at the end, where there was
  * none, an empty one or an older recording. Or the rows stay in the caller's memory, and there
  * is no folder. Functions that return an int return 0, or -1 with the reason in recorder.why. */
 #ifndef FMU_RECORDER_H
@@ -14,22 +14,20 @@
 
 /* A signal to be recorded. */
 struct recorder_column {
-    const char *name;  /* also that of its file */
-    const void *value; /* address of its values when a row is recorded */
-    char kind;         /* 'd' double, 'i' int32_t, 'b' bool */
-    int32_t count;     /* number of values; 1: the shape is (rows,) */
+    const char *name; /* also that of its file */
+    char kind;        /* 'd' double, 'i' int32_t, 'b' bool */
+    int32_t count;    /* number of values; 1: the shape is (rows,) */
 };
 
-/* A column with its block of rows and its file. */
+/* A column with its file. */
 struct recorder_stream {
-    const char *value; /* as in the column */
-    char *block;       /* rows that are not in the file yet */
-    int column;        /* index of the column; -1: time */
+    int column; /* index of the column; -1: time */
     FILE *file;
     int64_t ahead; /* [byte] place in the file up to which room on the disk is reserved */
 };
 
-/* Columns whose rows have the same size: their blocks are full at the same time. */
+/* Columns whose rows have the same size: their blocks are full at the same time. Groups stand in the
+ * order of that size. */
 struct recorder_group {
     struct recorder_stream *streams;
     int count;
@@ -43,6 +41,7 @@ struct recorder {
     const struct recorder_column *columns; /* the caller's, while it is open */
     struct recorder_stream *streams;       /* those of all columns and of time */
     struct recorder_group *groups;
+    char **block;           /* of time and of each column: rows that are not in the file yet */
     char *blocks;           /* memory of all blocks; NULL: they are the caller's, for a whole run */
     int count, group_count; /* number of streams; of groups */
     double time, period;    /* [s] time of the row; from row to row */
@@ -71,7 +70,7 @@ static inline size_t recorder_size(char kind)
 
 static inline struct recorder_column recorder_column_of(const struct recorder *r, int column)
 {
-    return column < 0 ? (struct recorder_column){ "time", &r->time, 'd', 1 } : r->columns[column];
+    return column < 0 ? (struct recorder_column){ "time", 'd', 1 } : r->columns[column];
 }
 
 static inline int recorder_fail(struct recorder *r, const char *name, const char *error)
@@ -100,6 +99,7 @@ static inline void recorder_close(struct recorder *r)
     recorder_folder_drop(&r->folder);
     free(r->streams);
     free(r->groups);
+    free(r->block);
     free(r->blocks);
     free(r);
 }
@@ -137,8 +137,7 @@ static inline size_t recorder_group_streams(struct recorder *r)
 {
     size_t bytes = 0;
     for (int k = 0; k < r->count; k++) {
-        const struct recorder_stream s = { recorder_column_of(r, k - 1).value, NULL, k - 1, NULL,
-                                           0 };
+        const struct recorder_stream s = { .column = k - 1 };
         const size_t width = recorder_width(r, &s);
         int place = k;
         for (; place > 0 && recorder_width(r, &r->streams[place - 1]) > width; place--) {
@@ -165,7 +164,7 @@ static inline bool recorder_layout(struct recorder *r)
     char *at = r->blocks = malloc(recorder_group_streams(r));
     for (struct recorder_group *g = r->groups; at && g < r->groups + r->group_count; g++) {
         for (int k = 0; k < g->count; k++) {
-            g->streams[k].block = at;
+            r->block[g->streams[k].column + 1] = at;
             at += (size_t)g->room * g->width + RECORDER_LINE;
         }
     }
@@ -184,8 +183,9 @@ static inline struct recorder *recorder_new(const struct recorder_column *column
     r->period = period;
     r->streams = calloc((size_t)count + 1, sizeof *r->streams);
     r->groups = calloc((size_t)count + 1, sizeof *r->groups);
+    r->block = calloc((size_t)count + 1, sizeof *r->block);
     r->count = r->streams ? count + 1 : 0;
-    if (!r->streams || !r->groups) {
+    if (!r->streams || !r->groups || !r->block) {
         recorder_close(r);
         return NULL;
     }
@@ -204,10 +204,8 @@ static inline struct recorder *recorder_in_memory(const struct recorder_column *
     recorder_group_streams(r);
     for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
         g->room = rows + 1;
-        for (int k = 0; k < g->count; k++) {
-            g->streams[k].block = place[g->streams[k].column + 1];
-        }
     }
+    memcpy(r->block, place, (size_t)r->count * sizeof *place);
     return r;
 }
 
@@ -281,13 +279,14 @@ static inline int recorder_flush(struct recorder *r, struct recorder_group *g)
     const int64_t next = RECORDER_HEAD + (r->row - r->base) * (int64_t)g->width;
     for (int k = 0; k < g->count; k++) {
         struct recorder_stream *s = &g->streams[k];
-        const bool empty = recorder_empty(s->block, size);
+        const char *block = r->block[s->column + 1];
+        const bool empty = recorder_empty(block, size);
         if (r->row - g->first == g->room) {
             recorder_make_room(s, next - (int64_t)size, size, empty);
         }
         errno = 0;
         const bool good =
-            empty ? recorder_seek(s->file, next) == 0 : fwrite(s->block, 1, size, s->file) == size;
+            empty ? recorder_seek(s->file, next) == 0 : fwrite(block, 1, size, s->file) == size;
         if (!good) {
             return recorder_fail(r, recorder_column_of(r, s->column).name,
                                  strerror(errno ? errno : EIO));
@@ -319,46 +318,23 @@ static inline int recorder_flush_full(struct recorder *r)
     return 0;
 }
 
-/* Record one row with the present values of all columns. */
+/* A row is recorded in three steps: recorder_row sets `time`; the caller copies the values of each
+ * group's columns, time among them, to recorder_place in their blocks; recorder_row_end counts the
+ * row. */
 static inline int recorder_row(struct recorder *r)
 {
-    if (r->why[0]) {
-        return -1;
-    }
     r->time = (double)r->row * r->period;
-    for (struct recorder_group *g = r->groups; g < r->groups + r->group_count; g++) {
-        const struct recorder_stream *const s = g->streams;
-        const int count = g->count;
-        const size_t at = (size_t)(r->row - g->first) * g->width;
-/* A copy of a constant size is a few instructions instead of a call. */
-#if defined(__GNUC__) && !defined(__clang__)
-#define RECORDER_UNROLLED _Pragma("GCC unroll 8")
-#else
-#define RECORDER_UNROLLED
-#endif
-#define RECORDER_COPY(size) \
-    case size: \
-        RECORDER_UNROLLED \
-        for (int k = 0; k < count; k++) { \
-            memcpy(s[k].block + at, s[k].value, (size)); \
-        } \
-        break
-        switch (g->width) {
-            RECORDER_COPY(1);  /* a Boolean */
-            RECORDER_COPY(4);  /* an integer */
-            RECORDER_COPY(6);  /* six Booleans */
-            RECORDER_COPY(8);  /* a number */
-            RECORDER_COPY(24); /* three numbers, six integers */
-            RECORDER_COPY(32); /* four numbers */
-            RECORDER_COPY(48); /* six numbers */
-        default:
-            for (int k = 0; k < count; k++) {
-                memcpy(s[k].block + at, s[k].value, g->width);
-            }
-        }
-#undef RECORDER_COPY
-#undef RECORDER_UNROLLED
-    }
+    return r->why[0] ? -1 : 0;
+}
+
+/* Place of the next row in the blocks of a group [byte]. */
+static inline size_t recorder_place(const struct recorder *r, const struct recorder_group *g)
+{
+    return (size_t)(r->row - g->first) * g->width;
+}
+
+static inline int recorder_row_end(struct recorder *r)
+{
     return ++r->row < r->full ? 0 : recorder_flush_full(r);
 }
 
@@ -381,7 +357,7 @@ static inline int recorder_jump(struct recorder *r, int64_t row)
             return recorder_flush(r, g);
         }
         for (int k = 0; k < g->count; k++) {
-            memset(g->streams[k].block + (size_t)(r->row - g->first) * g->width, 0,
+            memset(r->block[g->streams[k].column + 1] + recorder_place(r, g), 0,
                    (size_t)(row - r->row) * g->width);
         }
     }

@@ -42,15 +42,6 @@ struct system_wire {
     size_t at; /* [byte] place of the input in the part's struct vars */
 };
 
-/* A recorded signal: name, place in struct model [byte], kind and count of struct
- * recorder_column. */
-struct system_column {
-    const char *name;
-    size_t at;
-    char kind;
-    int32_t count;
-};
-
 /* Declare a part that is linked in; its name is not exported. */
 #if defined(__GNUC__)
 #define SYSTEM_PART(name) __attribute__((visibility("hidden"))) extern const struct fmu_part name
@@ -63,6 +54,9 @@ struct system_column {
         _Static_assert(sizeof(to) == sizeof(from), "one type, one size"); \
         memcpy(&(to), &(from), sizeof(to)); \
     } while (0)
+
+/* Copy a recorded value into its column's row; that of time is column -1. */
+#define SYSTEM_KEEP(column, value) memcpy(block[(column) + 1] + at, &(value), sizeof(value))
 
 /* Step a part of several runs, those that have not failed: at once if it can, else one by one. */
 #define SYSTEM_TOGETHER(part, member) \

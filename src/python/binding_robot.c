@@ -555,9 +555,8 @@ void binding_robot_factors(const struct manipulator *m, int64_t n, const double 
 
     for (int64_t k = 0; k < n; k++) {
         joints_of(m, joint[k], q);
-        manipulator_factors(m, q, factor[k]);
+        branch[k] = manipulator_factors(m, q, factor[k]);
         factor[k][0] /= MM;
-        branch[k] = manipulator_branch(m, q);
     }
 }
 

@@ -52,6 +52,13 @@ def test_gains_of_a_scenario_are_kept_for_the_next_command(tmp_path) -> None:
     assert "motionfmu.analysis.contour.names" in second and not second & unused
 
 
+def test_a_list_loads_its_own_module_and_no_pydantic(tmp_path) -> None:
+    found = loaded(tmp_path, "list")
+    assert "pydantic" not in found
+    own = {"motionfmu.cli." + name for name in ("common", "console_text", "list")}
+    assert {name for name in found if name.startswith("motionfmu.cli.")} == own
+
+
 def test_a_command_loads_no_other(tmp_path) -> None:
     for line, own in (("info mcc", {"info"}), ("card plan --help", {"card", "card_plan"})):
         found = loaded(tmp_path, *line.split())

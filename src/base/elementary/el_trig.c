@@ -170,15 +170,14 @@ double el_cos(double x)
 struct el_turn el_sincos(double x)
 {
     struct el_turn t;
+    bool sine = false, cosine = false; /* they are settled */
     if (is_quick(x)) {
         const struct rest r = rest_of(x);
-        const bool first = settled(sine_at(&r, r.k), &t.sine);
-        if (settled(sine_at(&r, r.k + 64), &t.cosine) && first) {
-            return t;
-        }
+        sine = settled(sine_at(&r, r.k), &t.sine);
+        cosine = settled(sine_at(&r, r.k + 64), &t.cosine);
     }
-    t.sine = slow(x, 0);
-    t.cosine = slow(x, 1);
+    t.sine = sine ? t.sine : slow(x, 0);
+    t.cosine = cosine ? t.cosine : slow(x, 1);
     return t;
 }
 
@@ -240,8 +239,10 @@ EL_AVX2 void el_turns_avx2(int n, const double *restrict angle, double *restrict
         const four_bits open = quick_four(x, &s, &c);
         memcpy(sine + i, &s, sizeof s);
         memcpy(cosine + i, &c, sizeof c);
-        if (open[0] | open[1] | open[2] | open[3]) {
-            el_turns_each(4, angle + i, sine + i, cosine + i);
+        for (int k = i; (open[0] | open[1] | open[2] | open[3]) && k < i + 4; k++) {
+            if (open[k - i]) {
+                el_turns_each(1, angle + k, sine + k, cosine + k);
+            }
         }
     }
     el_turns_each(n - i, angle + i, sine + i, cosine + i);

@@ -54,7 +54,7 @@ static void switch_to(struct kernel *k, int task)
     }
     k->current = task == KERNEL_IDLE ? -1 : task;
     if (task != KERNEL_IDLE) {
-        k->processor.task[task].ready = true;
+        k->processor.ready |= (uint32_t)1 << task;
         kernel_note(k, KERNEL_RUNS, task, 0);
         spend(k, k->config.switch_time);
     }
@@ -92,7 +92,6 @@ enum kernel_status kernel_start(struct kernel *k, const struct kernel_config *co
     processor_start(&k->processor, PROCESSOR_TASKS);
     for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
         k->processor.task[KERNEL_TASKS + i].priority = INTERRUPT_BASE - config->level[i];
-        k->pending[i] = INT64_MAX;
     }
     k->processor.task[SELF].priority = INT32_MAX;
     for (int i = 0; i < KERNEL_QUEUES; i++) {
@@ -122,8 +121,9 @@ enum kernel_status kernel_pend(struct kernel *k, int interrupt, int64_t clock)
     if (interrupt < 0 || interrupt >= KERNEL_INTERRUPTS) {
         return KERNEL_RANGE;
     }
-    if (k->pending[interrupt] == INT64_MAX) {
-        k->pending[interrupt] = clock;
+    if (!(k->pending >> interrupt & 1)) {
+        k->pending |= 1u << interrupt;
+        k->pends[interrupt] = clock;
     }
     return KERNEL_OK;
 }
@@ -142,22 +142,15 @@ bool kernel_pay(struct kernel *k)
     return k->owed;
 }
 
-static bool in_interrupt(const struct kernel *k)
-{
-    const int first = processor_first(&k->processor);
-    return first >= KERNEL_TASKS && first < SELF;
-}
-
 /* The interrupt to begin now: pending, and more urgent than the one that is served; -1 none. */
-static int due_interrupt(const struct kernel *k)
+static int due_interrupt(const struct kernel *k, int served)
 {
-    const int served = processor_first(&k->processor);
     const int32_t floor = served >= KERNEL_TASKS ? k->processor.task[served].priority : 0;
     int best = -1;
 
-    for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
+    for (int i = 0; k->pending >> i != 0; i++) {
         const int32_t priority = k->processor.task[KERNEL_TASKS + i].priority;
-        if (k->pending[i] <= k->processor.clock && priority > floor
+        if (k->pending >> i & 1 && k->pends[i] <= k->processor.clock && priority > floor
             && (best < 0 || priority > k->processor.task[KERNEL_TASKS + best].priority)) {
             best = i;
         }
@@ -167,7 +160,7 @@ static int due_interrupt(const struct kernel *k)
 
 static void begin_interrupt(struct kernel *k, int interrupt)
 {
-    k->pending[interrupt] = INT64_MAX;
+    k->pending &= ~(1u << interrupt);
     k->woken[interrupt] = false;
     processor_wake(&k->processor, KERNEL_TASKS + interrupt, 0);
     kernel_note(k, KERNEL_INTERRUPT, interrupt, 0);
@@ -217,7 +210,7 @@ static void choose(struct kernel *k)
  * tick. Returns false if nothing is due. */
 static bool begin(struct kernel *k)
 {
-    if (k->processor.task[SELF].ready) {
+    if (processor_ready(&k->processor, SELF)) {
         return false;
     }
     if (k->first >= 0) { /* interrupts are masked until the first task runs */
@@ -225,12 +218,13 @@ static bool begin(struct kernel *k)
         k->first = -1;
         return true;
     }
-    const int interrupt = due_interrupt(k);
+    const int first = processor_first(&k->processor);
+    const int interrupt = due_interrupt(k, first);
     if (interrupt >= 0) {
         begin_interrupt(k, interrupt);
         return true;
     }
-    if (in_interrupt(k)) {
+    if (first >= KERNEL_TASKS) { /* an interrupt is served */
         return false;
     }
     if (k->chooses) {
@@ -241,7 +235,7 @@ static bool begin(struct kernel *k)
         tick(k);
         return true;
     }
-    if (k->current < 0 && kernel_equals(k, 0) > 1) {
+    if (k->current < 0 && k->ready != 1u << KERNEL_IDLE && kernel_equals(k, 0) > 1) {
         kernel_yield(k);
         return true;
     }
@@ -254,8 +248,10 @@ static int64_t horizon(const struct kernel *k, int64_t until)
     const int64_t clock = k->processor.clock;
     int64_t to = k->next_tick > clock && k->next_tick < until ? k->next_tick : until;
 
-    for (int i = 0; i < KERNEL_INTERRUPTS; i++) {
-        to = k->pending[i] > clock && k->pending[i] < to ? k->pending[i] : to;
+    for (int i = 0; k->pending >> i != 0; i++) {
+        if (k->pending >> i & 1 && k->pends[i] > clock && k->pends[i] < to) {
+            to = k->pends[i];
+        }
     }
     return to;
 }

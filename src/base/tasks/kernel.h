@@ -100,7 +100,6 @@ enum kernel_call {
 enum kernel_notified { KERNEL_NOT_WAITING, KERNEL_WAITING, KERNEL_NOTIFIED };
 
 struct kernel_task {
-    bool ready;
     bool chosen;      /* the kernel has chosen it last among the ready tasks of its priority */
     int64_t turn;     /* place in the ring of ready tasks of its priority, ascending */
     int32_t priority; /* the one in force, perhaps lent by a task that waits for its mutex */
@@ -155,10 +154,12 @@ struct kernel {
     struct kernel_config config;
     struct processor processor;
     struct kernel_task task[KERNEL_TASKS + 1]; /* the last is the idle task */
+    uint32_t ready;                            /* tasks that are ready, a bit each */
     struct kernel_queue queue[KERNEL_QUEUES];
-    int64_t pending[KERNEL_INTERRUPTS]; /* [clock] from which it is pending; INT64_MAX: it is not */
-    bool woken[KERNEL_INTERRUPTS];      /* it has woken a task more urgent than the current one */
-    int32_t received;                   /* value that an interrupt has received last */
+    uint32_t pending;                 /* interrupts that are pending, a bit each, */
+    int64_t pends[KERNEL_INTERRUPTS]; /* [clock] and from when on */
+    bool woken[KERNEL_INTERRUPTS];    /* it has woken a task more urgent than the current one */
+    int32_t received;                 /* value that an interrupt has received last */
     bool chooses;      /* the kernel chooses a task as soon as no interrupt is served */
     bool owed;         /* a task more urgent than the current one is ready: choose at the tick */
     int64_t turns;     /* number of `turn`, `order` and `place` values given out */

@@ -5,7 +5,7 @@ static int hand(const struct kernel *k, int32_t priority)
 {
     for (int i = 0; i <= KERNEL_IDLE; i++) {
         const struct kernel_task *t = &k->task[i];
-        if (t->ready && t->chosen && t->priority == priority) {
+        if (kernel_is_ready(k, i) && t->chosen && t->priority == priority) {
             return i;
         }
     }
@@ -21,10 +21,10 @@ void kernel_ready(struct kernel *k, int task)
     if (before >= 0) {
         t->turn = k->task[before].turn;
         for (int i = 0; i <= KERNEL_IDLE; i++) {
-            k->task[i].turn += k->task[i].ready && k->task[i].turn >= t->turn;
+            k->task[i].turn += kernel_is_ready(k, i) && k->task[i].turn >= t->turn;
         }
     }
-    t->ready = true;
+    k->ready |= 1u << task;
     t->chosen = false;
 }
 
@@ -35,7 +35,7 @@ void kernel_unready(struct kernel *k, int task)
 
     for (int i = 0; t->chosen && i <= KERNEL_IDLE; i++) { /* the one before is chosen */
         struct kernel_task *o = &k->task[i];
-        if (o->ready && o->priority == t->priority && o->turn < t->turn
+        if (kernel_is_ready(k, i) && o->priority == t->priority && o->turn < t->turn
             && (!before || o->turn > before->turn)) {
             before = o;
         }
@@ -43,7 +43,8 @@ void kernel_unready(struct kernel *k, int task)
     if (before) {
         before->chosen = true;
     }
-    t->ready = t->chosen = false;
+    k->ready &= ~(1u << task);
+    t->chosen = false;
 }
 
 int kernel_equals(const struct kernel *k, int32_t priority)
@@ -51,7 +52,7 @@ int kernel_equals(const struct kernel *k, int32_t priority)
     int n = 0;
 
     for (int i = 0; i <= KERNEL_IDLE; i++) {
-        n += k->task[i].ready && k->task[i].priority == priority;
+        n += kernel_is_ready(k, i) && k->task[i].priority == priority;
     }
     return n;
 }
@@ -63,12 +64,12 @@ int kernel_choose(struct kernel *k)
 
     for (int i = 0; i <= KERNEL_IDLE; i++) {
         const struct kernel_task *t = &k->task[i];
-        priority = t->ready && t->priority > priority ? t->priority : priority;
+        priority = kernel_is_ready(k, i) && t->priority > priority ? t->priority : priority;
     }
     const int before = hand(k, priority);
     for (int i = 0; i <= KERNEL_IDLE; i++) {
         const struct kernel_task *t = &k->task[i];
-        if (!t->ready || t->priority != priority) {
+        if (!kernel_is_ready(k, i) || t->priority != priority) {
             continue;
         }
         first = first < 0 || t->turn < k->task[first].turn ? i : first;
@@ -138,7 +139,7 @@ bool kernel_wake(struct kernel *k, int task)
 {
     struct kernel_task *t = &k->task[task];
 
-    if (t->ready) {
+    if (kernel_is_ready(k, task)) {
         kernel_unready(k, task);
     }
     t->waits = false;
@@ -150,7 +151,7 @@ bool kernel_wake(struct kernel *k, int task)
 void kernel_change(struct kernel *k, int task, int32_t priority)
 {
     struct kernel_task *t = &k->task[task];
-    const bool ready = t->ready;
+    const bool ready = kernel_is_ready(k, task);
 
     if (ready) {
         kernel_unready(k, task);

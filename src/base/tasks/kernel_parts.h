@@ -45,6 +45,11 @@ bool kernel_wake(struct kernel *k, int task);
 /* Set a task's priority in force. */
 void kernel_change(struct kernel *k, int task, int32_t priority);
 
+static inline bool kernel_is_ready(const struct kernel *k, int task)
+{
+    return k->ready >> task & 1;
+}
+
 /* Index of the current task in `task`; here the idle task has one, too. */
 static inline int kernel_current(const struct kernel *k)
 {

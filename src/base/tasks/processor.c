@@ -13,9 +13,9 @@ int processor_first(const struct processor *p)
 {
     int best = -1;
 
-    for (int i = 0; i < p->tasks; i++) {
+    for (int i = 0; p->ready >> i != 0; i++) {
         const struct processor_task *t = &p->task[i], *b = &p->task[best < 0 ? i : best];
-        if (t->ready
+        if (processor_ready(p, i)
             && (best < 0 || t->priority > b->priority
                 || (t->priority == b->priority && t->turn < b->turn))) {
             best = i;

@@ -16,10 +16,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { PROCESSOR_TASKS = 28 };
+enum { PROCESSOR_TASKS = 28 }; /* at most 32: they are bits of a mask */
 
 struct processor_task {
-    bool ready;
     int32_t priority; /* the highest number first */
     int64_t turn;     /* among equal priorities the lowest number first */
     int64_t left;     /* [clocks] for which it still needs the processor */
@@ -27,7 +26,8 @@ struct processor_task {
 };
 
 struct processor {
-    int tasks; /* number of tasks */
+    int tasks;      /* number of tasks */
+    uint32_t ready; /* tasks that are ready, a bit each */
     struct processor_task task[PROCESSOR_TASKS];
     int64_t clock; /* present time */
     int64_t idle;  /* [clocks] for which no task had the processor */
@@ -43,14 +43,14 @@ static inline void processor_wake(struct processor *p, int task, int64_t turn)
 {
     struct processor_task *t = &p->task[task];
 
-    t->ready = true;
+    p->ready |= (uint32_t)1 << task;
     t->turn = turn;
     t->left = 0;
 }
 
 static inline void processor_block(struct processor *p, int task)
 {
-    p->task[task].ready = false;
+    p->ready &= ~((uint32_t)1 << task);
 }
 
 /* A task needs the processor for so many clocks. */
@@ -59,11 +59,16 @@ static inline void processor_compute(struct processor *p, int task, int64_t time
     p->task[task].left = time;
 }
 
+static inline bool processor_ready(const struct processor *p, int task)
+{
+    return p->ready >> task & 1;
+}
+
 /* The running task, if it is ready and its time is over; else -1. */
 static inline int processor_over(const struct processor *p)
 {
     const int r = p->running;
-    return r >= 0 && p->task[r].ready && p->task[r].left == 0 ? r : -1;
+    return r >= 0 && processor_ready(p, r) && p->task[r].left == 0 ? r : -1;
 }
 
 /* The most urgent task that is ready; -1 none. */

@@ -18,7 +18,7 @@ uint32_t card_inputs_vectors(const struct card_inputs *c)
 {
     uint32_t vectors = 0;
 
-    for (int i = 0; i < CARD_INPUTS; i++) {
+    for (int i = 0; c->pending >> i != 0; i++) {
         vectors |= (c->pending >> i & 1) << card_inputs_vector(i);
     }
     return vectors;
@@ -41,9 +41,6 @@ void card_inputs_start(struct card_inputs *c, const struct card_inputs_config *c
     memset(c, 0, sizeof *c);
     c->config = *config;
     c->levels = c->taken = levels & LINES;
-    for (int i = 0; i < CARD_INPUTS; i++) {
-        c->deaf[i] = -1;
-    }
 }
 
 /* An edge at a line that hears. A line with a deaf time hears both edges, as its level must be
@@ -66,10 +63,10 @@ uint32_t card_inputs_set(struct card_inputs *c, uint32_t levels, int64_t now)
 
     card_inputs_advance(c, now);
     c->levels = levels & LINES;
-    for (int i = 0; i < CARD_INPUTS; i++) {
+    for (int i = 0; changed >> i != 0; i++) {
         if (changed >> i & 1) {
             c->edges++;
-            if (c->deaf[i] >= 0) {
+            if (c->deaf >> i & 1) {
                 c->ignored++;
             } else {
                 edge(c, i);
@@ -83,9 +80,9 @@ int64_t card_inputs_next(const struct card_inputs *c)
 {
     int64_t next = INT64_MAX;
 
-    for (int i = 0; i < CARD_INPUTS; i++) {
-        if (c->deaf[i] >= 0 && c->deaf[i] < next) {
-            next = c->deaf[i];
+    for (int i = 0; c->deaf >> i != 0; i++) {
+        if (c->deaf >> i & 1 && c->hears[i] < next) {
+            next = c->hears[i];
         }
     }
     return next;
@@ -93,9 +90,9 @@ int64_t card_inputs_next(const struct card_inputs *c)
 
 uint32_t card_inputs_advance(struct card_inputs *c, int64_t now)
 {
-    for (int i = 0; i < CARD_INPUTS; i++) {
-        if (c->deaf[i] >= 0 && c->deaf[i] <= now) {
-            c->deaf[i] = -1;
+    for (int i = 0; c->deaf >> i != 0; i++) {
+        if (c->deaf >> i & 1 && c->hears[i] <= now) {
+            c->deaf &= ~bit(i);
             if (((c->waiting | (c->levels ^ c->taken)) >> i & 1) != 0) {
                 c->pending |= bit(i);
                 c->ended |= bit(i);
@@ -118,7 +115,8 @@ static enum card_action take(struct card_inputs *c, int line, int64_t now)
     c->ended &= ~bit(line);
     c->taken ^= changed ? bit(line) : 0;
     if (changed || spike) {
-        c->deaf[line] = now + in->debounce;
+        c->deaf |= bit(line);
+        c->hears[line] = now + in->debounce;
     }
     if (!changed && waited) {
         return in->action;

@@ -38,7 +38,8 @@ struct card_inputs {
     uint32_t pending;             /* lines with an edge that waits for its routine */
     uint32_t waiting;             /* lines whose action waits for the end of the deaf time */
     uint32_t ended;               /* lines whose deaf time is over and that were not served since */
-    int64_t deaf[CARD_INPUTS];    /* [ns] time until which the line is deaf; -1: it hears */
+    uint32_t deaf;                /* lines that do not hear, */
+    int64_t hears[CARD_INPUTS];   /* [ns] and the time from which each hears again */
     int64_t edges, lost, ignored; /* all edges; lost while one was pending; ignored while deaf */
 };
 

@@ -5,9 +5,6 @@
 void card_outputs_start(struct card_outputs *c)
 {
     memset(c, 0, sizeof *c);
-    for (int i = 0; i < CARD_OUTPUTS; i++) {
-        c->pulse_end[i] = INT64_MAX;
-    }
 }
 
 static bool good(const struct mc_po *po)
@@ -47,7 +44,7 @@ bool card_outputs_flag_pins(struct card_outputs *c, uint32_t pins, const struct 
 
 uint32_t card_outputs_serve(struct card_outputs *c, int64_t now)
 {
-    uint32_t served = 0, high = 0;
+    uint32_t served = 0, high = 0, pulses = 0;
 
     card_outputs_advance(c, now);
     for (int pin = 0; pin < CARD_OUTPUTS; pin++) {
@@ -55,12 +52,13 @@ uint32_t card_outputs_serve(struct card_outputs *c, int64_t now)
         if (c->flag[pin]) {
             served |= (uint32_t)1 << pin;
             high |= (uint32_t)po->active << pin;
-            c->pulse_end[pin] =
-                po->mode == MC_PO_PULSE ? now + 1000 * (int64_t)po->width_us : INT64_MAX;
+            c->pulse_end[pin] = now + 1000 * (int64_t)po->width_us;
+            pulses |= (uint32_t)(po->mode == MC_PO_PULSE) << pin;
             c->flag[pin] = false;
         }
     }
     c->levels = (c->levels & ~served) | high;
+    c->pulses = (c->pulses & ~served) | pulses;
     c->stores += served != 0;
     return served;
 }
@@ -69,17 +67,17 @@ int64_t card_outputs_next(const struct card_outputs *c)
 {
     int64_t next = INT64_MAX;
 
-    for (int i = 0; i < CARD_OUTPUTS; i++) {
-        next = c->pulse_end[i] < next ? c->pulse_end[i] : next;
+    for (int i = 0; c->pulses >> i != 0; i++) {
+        next = c->pulses >> i & 1 && c->pulse_end[i] < next ? c->pulse_end[i] : next;
     }
     return next;
 }
 
 void card_outputs_advance(struct card_outputs *c, int64_t now)
 {
-    for (int i = 0; i < CARD_OUTPUTS; i++) {
-        if (c->pulse_end[i] <= now) {
-            c->pulse_end[i] = INT64_MAX;
+    for (int i = 0; c->pulses >> i != 0; i++) {
+        if (c->pulses >> i & 1 && c->pulse_end[i] <= now) {
+            c->pulses &= ~((uint32_t)1 << i);
             c->levels ^= (uint32_t)1 << i;
         }
     }

@@ -32,7 +32,8 @@ struct card_outputs {
     struct mc_po po[CARD_OUTPUTS];   /* variable of each pin */
     bool flag[CARD_OUTPUTS];         /* pins still to be served, the document's MC_PO_Pins */
     uint32_t levels;                 /* levels of the outputs, a bit each */
-    int64_t pulse_end[CARD_OUTPUTS]; /* [ns] end of the pulse; INT64_MAX: no pulse */
+    uint32_t pulses;                 /* outputs whose level is a pulse, a bit each, */
+    int64_t pulse_end[CARD_OUTPUTS]; /* [ns] and the end of each */
     int64_t stores;                  /* how often the routine has written levels */
     int64_t merged;                  /* variables written again before they were served */
 };

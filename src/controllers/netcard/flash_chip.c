@@ -108,11 +108,19 @@ int64_t flash_program(struct flash_chip *f, int32_t page, const uint8_t bytes[FL
     return begin(f, FLASH_PROGRAM, page * FLASH_PAGE, FLASH_PAGE, &f->config.program, now);
 }
 
+/* An erase of a sector begins. */
+static void wear(struct flash_chip *f, int32_t sector)
+{
+    f->wear[sector]++;
+    if (f->wear[sector] > f->most_wear)
+        f->most_wear = f->wear[sector];
+}
+
 int64_t flash_erase_sector(struct flash_chip *f, int32_t sector, int64_t now)
 {
     if (!ready(f, sector, FLASH_SECTORS, now))
         return 0;
-    f->wear[sector]++;
+    wear(f, sector);
     f->sector_erases++;
     return begin(f, FLASH_ERASE, sector * FLASH_SECTOR, FLASH_SECTOR, &f->config.sector, now);
 }
@@ -122,7 +130,7 @@ int64_t flash_erase_block(struct flash_chip *f, int32_t block, int64_t now)
     if (!ready(f, block, FLASH_BLOCKS, now))
         return 0;
     for (int k = 0; k < FLASH_BLOCK_SECTORS; k++)
-        f->wear[block * FLASH_BLOCK_SECTORS + k]++;
+        wear(f, block * FLASH_BLOCK_SECTORS + k);
     f->block_erases++;
     return begin(f, FLASH_ERASE, block * FLASH_BLOCK, FLASH_BLOCK, &f->config.block, now);
 }
@@ -170,8 +178,5 @@ void flash_cut(struct flash_chip *f, int64_t now)
 
 uint32_t flash_wear(const struct flash_chip *f)
 {
-    uint32_t most = 0;
-    for (int k = 0; k < FLASH_SECTORS; k++)
-        most = f->wear[k] > most ? f->wear[k] : most;
-    return most;
+    return f->most_wear;
 }

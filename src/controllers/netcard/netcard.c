@@ -207,7 +207,7 @@ static void guard(struct netcard *c)
     const struct netcard_axes *a = &c->axes;
     const bool job = c->state == NET_RUNNING || c->state == NET_PAUSING || c->state == NET_STOPPING;
 
-    if (c->state == NET_FAULT) {
+    if (c->state == NET_FAULT || !(a->plus | a->minus | a->alarm | a->stop)) {
         return;
     }
     if (a->stop || a->alarm) {
@@ -238,11 +238,11 @@ void card_advance_player(struct netcard *c)
     const bool counts = (c->phase == JOB_PLAYING && !c->approach) || c->phase == JOB_CUT;
 
     player_advance(&c->player, card_clock(c));
-    const struct player_told t = player_take(&c->player);
     if (counts && c->player.fifo.stock < c->least) {
         c->least = c->player.fifo.stock;
     }
-    if (t.what) {
+    if (c->player.told.what) {
+        const struct player_told t = player_take(&c->player);
         c->told.what |= t.what;
         c->told.events |= t.events;
         if (t.what & PLAYER_ENDED) {
@@ -256,7 +256,7 @@ void card_advance_player(struct netcard *c)
  * twice. */
 static void pend_vectors(struct netcard *c, uint32_t vectors)
 {
-    for (int i = 0; i < CARD_VECTORS; i++) {
+    for (int i = 0; vectors >> i != 0; i++) {
         if (vectors >> i & 1) {
             card_pend(c, i);
         }
@@ -368,6 +368,9 @@ static void latch(struct netcard *c, uint32_t origin)
 {
     int64_t counts[FRAME_AXES];
 
+    if (origin == c->axes.origin) {
+        return;
+    }
     player_counts(&c->player, card_clock(c), counts);
     for (int i = 0; i < CARD_AXES; i++) {
         const enum card_trigger t = (enum card_trigger)c->settings.origin_trigger[i];

@@ -110,17 +110,16 @@ int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINT
     return chain_branch(&m->axes, q);
 }
 
-void manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],
-                         double factor[3])
+int manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],
+                        double factor[3])
 {
     double q[CHAIN_JOINTS];
 
-    if (m->by_axes) {
-        whole(joint, q);
-        chain_factors(&m->axes, q, factor);
-    } else {
-        opw_factors(&m->opw, joint, factor);
+    if (!m->by_axes) {
+        return opw_factors(&m->opw, joint, factor);
     }
+    whole(joint, q);
+    return chain_factors(&m->axes, q, factor);
 }
 
 int manipulator_open(const struct manipulator *m)

@@ -107,9 +107,10 @@ int manipulator_outside(const struct manipulator *m, const double from[OPW_JOINT
  * are the same. */
 int manipulator_branch(const struct manipulator *m, const double joint[OPW_JOINTS]);
 
-/* How far from singular: shoulder [m], elbow, wrist (opw.h, chain_inverse.h). */
-void manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],
-                         double factor[3]);
+/* How far from singular: shoulder [m], elbow, wrist (opw.h, chain_inverse.h). Returns
+ * manipulator_branch. */
+int manipulator_factors(const struct manipulator *m, const double joint[OPW_JOINTS],
+                        double factor[3]);
 
 /* The joint, from 0, that is free where axes of the wrist are in line. */
 int manipulator_open(const struct manipulator *m);

@@ -55,11 +55,12 @@ static void wrist(const double th[OPW_JOINTS], double m[3][3])
 }
 
 /* Wrist centre in the plane of the arm: x from axis 1, z above axis 2. [m] With k the distance from
- * elbow to wrist centre and p the angle of that line from upright:
+ * elbow to wrist centre, `lean` its angle from the forearm's axis and p that from upright:
  *     x = a1 + c2 sin th2 + k sin p     z = c2 cos th2 + k cos p */
-static void centre(const struct opw *o, const double th[OPW_JOINTS], double *x, double *z)
+static void centre(const struct opw *o, const double th[OPW_JOINTS], double lean, double *x,
+                   double *z)
 {
-    const double k = el_hypot(o->a2, o->c3), p = th[1] + th[2] + el_atan2(o->a2, o->c3);
+    const double k = el_hypot(o->a2, o->c3), p = th[1] + th[2] + lean;
     const struct el_turn lower = el_sincos(th[1]), upper = el_sincos(p);
     *x = o->c2 * lower.sine + k * upper.sine + o->a1;
     *z = o->c2 * lower.cosine + k * upper.cosine;
@@ -73,7 +74,7 @@ void opw_forward(const struct opw *o, const double joint[OPW_JOINTS], struct opw
     forearm(th[0], th[1] + th[2], arm);
     wrist(th, hand);
     product((const double(*)[3])arm, (const double(*)[3])hand, pose->turn);
-    centre(o, th, &x, &z);
+    centre(o, th, el_atan2(o->a2, o->c3), &x, &z);
     const struct el_turn base = el_sincos(th[0]);
     const double c = base.cosine, s = base.sine;
     pose->at[0] = x * c - o->b * s + o->c4 * pose->turn[0][2];
@@ -217,21 +218,22 @@ double opw_elbow(const struct opw *o, const double joint[OPW_JOINTS])
     return el_sin(o->sign[2] * joint[2] - o->offset[2] + el_atan2(o->a2, o->c3));
 }
 
-void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3])
+int opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3])
 {
+    const double lean = el_atan2(o->a2, o->c3);
     double th[OPW_JOINTS], z;
 
     inner(o, joint, th);
-    centre(o, th, &factor[0], &z);
-    factor[1] = opw_elbow(o, joint);
+    centre(o, th, lean, &factor[0], &z);
+    factor[1] = el_sin(th[2] + lean);
     factor[2] = el_sin(th[4]);
+    return (factor[0] < 0.0 ? OPW_BACK : 0) | (factor[1] < 0.0 ? OPW_ELBOW : 0)
+           | (factor[2] < 0.0 ? OPW_FLIP : 0);
 }
 
 int opw_branch(const struct opw *o, const double joint[OPW_JOINTS])
 {
     double factor[3];
 
-    opw_factors(o, joint, factor);
-    return (factor[0] < 0.0 ? OPW_BACK : 0) | (factor[1] < 0.0 ? OPW_ELBOW : 0)
-           | (factor[2] < 0.0 ? OPW_FLIP : 0);
+    return opw_factors(o, joint, factor);
 }

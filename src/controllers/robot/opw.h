@@ -63,8 +63,8 @@ int opw_branch(const struct opw *o, const double joint[OPW_JOINTS]);
 
 /* How far from singular: wrist centre from axis 1, signed [m]; sine of the elbow from stretched;
  * sine of joint 5. The determinant of the flange's velocities by the joints' is, but for its sign,
- * c2 hypot(a2, c3) times their product. [m^3] */
-void opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3]);
+ * c2 hypot(a2, c3) times their product. [m^3] Returns opw_branch, the signs of the factors. */
+int opw_factors(const struct opw *o, const double joint[OPW_JOINTS], double factor[3]);
 
 /* The second factor, the elbow's, alone. */
 double opw_elbow(const struct opw *o, const double joint[OPW_JOINTS]);

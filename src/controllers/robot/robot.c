@@ -392,7 +392,7 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
     }
 }
 
-void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3])
+int robot_factors(const struct robot *r, const struct robot_config *c, double factor[3])
 {
-    manipulator_factors(&c->arm, r->joint, factor);
+    return manipulator_factors(&c->arm, r->joint, factor);
 }

@@ -31,7 +31,7 @@ struct robot_config {
     double acc;               /* [mm/s^2] of it, along and across */
     double spin;              /* [rad/s] highest of the tool's turning */
     double smooth;            /* [s] in which an acceleration comes up; 0 at once */
-    bool flow;                /* moves but those by the wrist become one curve of the joints */
+    bool flow;                /* all moves but those by the wrist flow, not splines alone */
     double cycle;             /* [s] */
     double slot;              /* [s] of the pulses */
     double slot_pulses;       /* highest number of pulses in a slot */
@@ -55,7 +55,7 @@ enum robot_kind {
     ROBOT_LINE,
     ROBOT_CIRCLE, /* through via.at to the target */
     ROBOT_ARC,    /* about a centre; target.pose gives the attitude at its end only */
-    ROBOT_SPLINE  /* of a row of poses as one smooth curve (tool_spline.h); if moves flow */
+    ROBOT_SPLINE  /* of a row of poses as one smooth curve (tool_spline.h); it flows */
 };
 
 enum robot_singular {
@@ -100,7 +100,6 @@ enum robot_status {
     ROBOT_OFF_PLANE,    /* an arc's start is not in the plane of its centre across its normal */
     ROBOT_NO_UNIT,      /* an arc's normal is no unit vector */
     ROBOT_NO_SPLINE,    /* two poses in a row are the same */
-    ROBOT_NO_FLOW,      /* a spline, where moves do not flow */
     ROBOT_TILTED,       /* the arm's joints do not turn the tool to such an attitude */
     ROBOT_NO_JOINT,     /* the arm has no such joint, 6: no external axis */
     ROBOT_BESIDE        /* a track goes with joints and lines alone */
@@ -215,7 +214,7 @@ void robot_release(struct robot *r);
 /* Where the arm is: pose of the tip, joints, branch, whole turns. */
 void robot_teach(const struct robot *r, const struct robot_config *c, struct robot_target *t);
 
-/* Factors (opw_factors) of the joints now. */
-void robot_factors(const struct robot *r, const struct robot_config *c, double factor[3]);
+/* Factors (manipulator_factors) of the joints now. Returns their branch. */
+int robot_factors(const struct robot *r, const struct robot_config *c, double factor[3]);
 
 #endif

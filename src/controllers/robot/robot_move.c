@@ -618,9 +618,6 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     if (!robot_ready(r)) {
         return ROBOT_BUSY;
     }
-    if (move->kind == ROBOT_SPLINE && !c->flow) {
-        return ROBOT_NO_FLOW;
-    }
     if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;
     }

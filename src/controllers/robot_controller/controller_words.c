@@ -7,7 +7,7 @@
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
-/* CCN 17: a case for each status. */
+/* CCN 16: a case for each status. */
 static const char *name_of(enum robot_status status)
 {
     switch (status) {
@@ -23,7 +23,6 @@ static const char *name_of(enum robot_status status)
     case ROBOT_OFF_PLANE:    return "the start is not in the plane of the arc's centre";
     case ROBOT_NO_UNIT:      return "the normal of the arc is no unit vector";
     case ROBOT_NO_SPLINE:    return "two points of a spline in a row are the same";
-    case ROBOT_NO_FLOW:      return "a spline needs moves that flow: soft.flow = true";
     case ROBOT_TILTED:       return "the arm has no joint that turns the tool so";
     case ROBOT_NO_JOINT:     return "no such joint";
     case ROBOT_BESIDE:       return "a track moves with joints and lines alone";

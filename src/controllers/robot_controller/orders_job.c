@@ -13,6 +13,15 @@ static struct pose frame_pose(const struct robot_job_frame *f)
     return pose_of(f->value, f->value + 3);
 }
 
+void orders_job_joints(const struct robot_job_point *p, const struct orders_config *c,
+                       double joint[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / c->pulses[i]
+                                               : p->value[i] * (c->slides[i] ? MM : DEGREE);
+    }
+}
+
 /* A point becomes a target. What its configuration leaves open is what is nearest, or on a path
  * what the path leads to. */
 static void target_of(struct robot_target *t, const struct robot_job_point *p,
@@ -22,9 +31,8 @@ static void target_of(struct robot_target *t, const struct robot_job_point *p,
     const int32_t said[3] = { p->shoulder, p->elbow, p->wrist };
 
     t->by_joints = p->kind != ROBOT_JOB_POSE;
+    orders_job_joints(p, c, t->joint);
     for (int i = 0; i < OPW_JOINTS; i++) {
-        t->joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / c->pulses[i]
-                                                  : p->value[i] * (c->slides[i] ? MM : DEGREE);
         t->turn[i] = ROBOT_ANY_TURN;
     }
     const struct pose frame = frame_pose(user), there = pose_of(p->value, p->value + 3);
@@ -39,14 +47,18 @@ static void target_of(struct robot_target *t, const struct robot_job_point *p,
     }
 }
 
+double orders_job_outside(const struct robot_job_point *p, const struct external *e)
+{
+    return p->kind == ROBOT_JOB_PULSES ? p->external / e->scale : p->external * external_unit(e);
+}
+
 /* The axis outside the arm goes to the place of a point, if that has one. */
 static void beside(struct robot_target *t, const struct robot_job_point *p,
                    const struct external *e)
 {
     if (p->beside) {
         t->beside = e->kind;
-        t->external =
-            p->kind == ROBOT_JOB_PULSES ? p->external / e->scale : p->external * external_unit(e);
+        t->external = orders_job_outside(p, e);
     }
 }
 

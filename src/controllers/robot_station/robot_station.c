@@ -135,9 +135,8 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     external_to_world(e, external, pose.at);
     robot_station_pose(&pose, r->pose);
     robot_station_pose(&controller->robot.pose, r->pose_command);
-    manipulator_factors(&arm, joint, r->factors);
+    r->configuration = manipulator_factors(&arm, joint, r->factors);
     r->factors[0] *= 1e3;
-    r->configuration = manipulator_branch(&arm, joint);
     r->status = controller_status(controller, &s->panel);
     r->line = controller->robot.line > 0
                   ? controller->move_line[controller->robot.line % CONTROLLER_MOVES]

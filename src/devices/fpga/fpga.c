@@ -87,6 +87,7 @@ static void exchange_outputs(struct fpga *f)
     const uint32_t follow = f->config.follow_mask;
     const uint32_t outputs = (f->host_outputs & ~follow) | (f->inputs.image & follow);
     uint32_t changed = outputs ^ f->outputs;
+    f->switched += changed != 0;
     for (int i = 0; changed; i++, changed >>= 1) {
         if (changed & 1)
             f->output_clock[i] = f->clock;

@@ -118,6 +118,7 @@ struct fpga {
                                           * 0 - 5 ready, 8 - 13 alarm */
     uint32_t host_outputs, outputs;      /* digital outputs, as the host wants; at the pins */
     int64_t output_clock[FPGA_CHANNELS]; /* [clock] of the latest change of each output */
+    int64_t switched;                    /* number of times that outputs changed */
     double ao[FPGA_ANALOG];              /* [V] analog outputs, quantised */
     uint32_t host_servo, servo;          /* servo-on, as the host wants; at the pins; bit an axis */
 

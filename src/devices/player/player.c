@@ -26,6 +26,12 @@ static int64_t clock_of(const struct player *p, int64_t phase)
     return p->base + (phase - p->phase + p->rate - 1) / p->rate;
 }
 
+/* Work out the clock of the period's end anew. */
+static void find_end(struct player *p)
+{
+    p->end = p->begun && p->rate > 0 ? clock_of(p, period_phase(p)) : INT64_MAX;
+}
+
 /* Pulses that an axis has put out in the frame in progress up to a phase, signed. */
 static int64_t pulses_to(const struct player *p, int axis, int64_t phase)
 {
@@ -74,6 +80,7 @@ static void stand(struct player *p)
     p->begun = p->playing = p->fresh = p->ramping = p->braking = false;
     p->rate = p->target = 0;
     p->phase = 0;
+    p->end = INT64_MAX;
 }
 
 static bool good_config(const struct player_config *c)
@@ -92,6 +99,7 @@ bool player_start(struct player *p, const struct player_config *config)
     memset(p, 0, sizeof *p);
     p->config = *config;
     p->job.period = 2;
+    p->end = INT64_MAX;
     frame_fifo_reset(&p->fifo, config->depth);
     for (int i = 0; i < FRAME_AXES; i++) {
         p->last[i] = -1;
@@ -210,6 +218,7 @@ static void begin_period(struct player *p)
         p->dry++;
         tell(p, first_dry ? PLAYER_DRY : 0);
     }
+    find_end(p);
 }
 
 /* Largest speeds of what is in the FIFO: in a frame of c pulses, which are rounded, an axis goes
@@ -283,6 +292,7 @@ static void step_rate(struct player *p)
         p->ramping = false;
         tell(p, p->target ? PLAYER_FULL_SPEED : PLAYER_REST);
     }
+    find_end(p);
 }
 
 void player_set_target(struct player *p, int32_t target)
@@ -353,23 +363,17 @@ bool player_power(struct player *p, const struct player_config *config)
     return true;
 }
 
-/* Clock of the period's end; INT64_MAX if no period is in progress or the rate is 0. */
-static int64_t boundary(const struct player *p)
-{
-    return p->begun && p->rate > 0 ? clock_of(p, period_phase(p)) : INT64_MAX;
-}
-
 int64_t player_next(const struct player *p)
 {
-    const int64_t end = boundary(p), step = p->ramping ? p->ramp_step : INT64_MAX;
-    return end < step ? end : step;
+    const int64_t step = p->ramping ? p->ramp_step : INT64_MAX;
+    return p->end < step ? p->end : step;
 }
 
 void player_advance(struct player *p, int64_t clock)
 {
     for (int64_t next; (next = player_next(p)) <= clock;) {
         p->clock = next;
-        if (boundary(p) == next) {
+        if (p->end == next) {
             end_period(p);
         } else {
             step_rate(p);

@@ -96,6 +96,7 @@ struct player {
     int64_t base;               /* [clock] from which the phase grows, behind dead clocks */
     int64_t phase;              /* [ticks/PLAYER_FULL_RATE] of the period, at base */
     int32_t rate;               /* 0 .. PLAYER_FULL_RATE */
+    int64_t end;                /* [clock] of the period's end; INT64_MAX: none, or the rate is 0 */
     int64_t before[FRAME_AXES]; /* [pulses] of all frames before this one */
     int64_t last[FRAME_AXES];   /* [clock] of the latest pulse up to base; -1 none yet */
     bool backward[FRAME_AXES];  /* direction, from `turned` on */

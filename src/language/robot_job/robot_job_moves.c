@@ -272,9 +272,8 @@ static int base_or_user(struct robot_job_reading *in, struct robot_job_span at, 
     return in->points->user[*user].defined ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
 }
 
-/* Take the frame of an increment: TF as well. */
-static int frame_tag(struct robot_job_reading *in, struct robot_job_span w,
-                     struct robot_job_instruction *c)
+int robot_job_move_frame(struct robot_job_reading *in, struct robot_job_span w,
+                         struct robot_job_instruction *c)
 {
     if (robot_job_scan_is(&in->s, w, "TF")) {
         c->increment = ROBOT_JOB_BY_TOOL;
@@ -295,7 +294,7 @@ static int tags(struct robot_job_reading *in, struct robot_job_instruction *c)
         }
         int status = 0;
         if (c->increment != ROBOT_JOB_NOT_BY) {
-            status = frame_tag(in, w, c);
+            status = robot_job_move_frame(in, w, c);
         }
         if (status < 0 || (status == 0 && take_tag(in, w, c))) {
             return -1;

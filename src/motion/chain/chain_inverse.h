@@ -37,8 +37,9 @@ int chain_nearest(const struct chain_form *f, uint32_t branches,
                   double joint[CHAIN_JOINTS]);
 
 /* How far from singular: shoulder, elbow, wrist; 1 of one that the arm's form has not. Of an arm
- * that is iterated: the reciprocal of the largest rate of a joint at a unit rate of the flange. */
-void chain_factors(const struct chain_form *f, const double joint[CHAIN_JOINTS], double factor[3]);
+ * that is iterated: the reciprocal of the largest rate of a joint at a unit rate of the flange.
+ * Returns chain_branch. */
+int chain_factors(const struct chain_form *f, const double joint[CHAIN_JOINTS], double factor[3]);
 
 /* The branch that joints belong to: a sum of enum chain_flag. */
 int chain_branch(const struct chain_form *f, const double joint[CHAIN_JOINTS]);

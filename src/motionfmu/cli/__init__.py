@@ -31,8 +31,8 @@ def _commands(asked: str = "") -> "typer.Typer":
     from motionfmu.cli.common import app
 
     known = [module.name for module in pkgutil.iter_modules(__path__)]
-    alone = asked in known and asked not in SEVERAL
-    for name in [asked] if alone else known:
+    own = [name for name in (asked, f"{asked}_") if name in known and name not in SEVERAL]
+    for name in own or known:
         importlib.import_module(f"{__name__}.{name}")
     return _names_only(app) if asked == "--help" else app
 

@@ -24,7 +24,19 @@ if TYPE_CHECKING:
     from motionfmu.run import Result, Scenario
 
 
-class Group(TyperGroup):
+class Flags:
+    """Flags that are not given are False: typer loads pydantic to look at a None."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Arguments and options of the command."""
+        params: list[Any] = super().get_params(ctx)  # type: ignore[misc]
+        for param in params:
+            if getattr(param, "is_flag", False) and param.default is None:
+                param.default = False
+        return params
+
+
+class Group(Flags, TyperGroup):
     """Commands whose help is listed whole, not cut to a line."""
 
     def format_commands(self, ctx: Any, formatter: Any) -> None:
@@ -96,7 +108,7 @@ def _habits() -> list[Any]:
     return list(typer.main.get_command(one).params)
 
 
-class Command(TyperCommand):
+class Command(Flags, TyperCommand):
     """A command with the habits of all: -q and -v, and --open if it writes a result folder."""
 
     def __init__(self, *args: Any, params: list[Any] | None = None, **more: Any) -> None:

@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Sequence
 
 GREEN, YELLOW, RED, DIM = "32", "33", "1;31", "2"
+BESIDE = 36  # columns that a text needs to stand beside a row; else below it
 LEAST = 20  # least columns of the last cell of a row
 
 
@@ -35,3 +36,34 @@ def table(head: Sequence[str], rows: Sequence[tuple[Sequence[str], str]]) -> str
         lines += [f"{first}{last[0]}".rstrip(), *(" " * left + more for more in last[1:])]
     lines[0] = styled(lines[0], DIM)
     return "\n".join(lines)
+
+
+def print_rows(rows: Sequence[tuple[Sequence[str], str]], indent: str = "  ") -> None:
+    """Print cells in columns and a text beside them, or below them where there is no room."""
+    widths = [max(map(len, column)) for column in zip(*(cells for cells, _ in rows), strict=True)]
+    left = len(indent) + sum(w + 2 for w in widths)
+    beside = width() - left >= BESIDE
+    hang = " " * left if beside else indent + "    "
+    for cells, text in rows:
+        row = "  ".join(c.ljust(w) for c, w in zip(cells, widths, strict=True))
+        row = f"{indent}{row}"
+        if beside:
+            print(wrapped(text, f"{row}  " if cells else indent, hang))
+        else:
+            print(row.rstrip())
+            if text:
+                print(wrapped(text, hang, hang))
+
+
+def wrapped(text: str, first: str, hang: str) -> str:
+    """A text in lines of the console's width; the first and the others begin with these."""
+    if not text:
+        return first.rstrip()
+    return textwrap.fill(
+        text,
+        width(),
+        initial_indent=first,
+        subsequent_indent=hang,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )

@@ -9,7 +9,8 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.cli.common import app
-from motionfmu.cli.info import first_line, print_rows
+from motionfmu.cli.console_text import print_rows
+from motionfmu.cli.list import first_line
 
 
 @app.command()

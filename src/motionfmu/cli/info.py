@@ -2,7 +2,6 @@
 
 import fnmatch
 import math
-import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -13,7 +12,7 @@ from motionfmu.base.errors import InputError, suggestion
 from motionfmu.base.extras import Missing
 from motionfmu.base.units import spelled
 from motionfmu.cli.common import app
-from motionfmu.cli.console_text import width
+from motionfmu.cli.console_text import print_rows, wrapped
 
 if TYPE_CHECKING:
     from motionfmu.run import Scenario
@@ -26,37 +25,7 @@ HEADINGS = {
     "output": "outputs",
     "local": "locals",
 }
-BESIDE = 36  # columns that a text needs to stand beside a row; else below it
 START_MAX = 16  # columns of a start value
-
-
-@app.command("list")
-def list_all() -> None:
-    """List the FMUs, and the scenarios of ./scenarios, else those that come with the package."""
-    from motionfmu.scenarios import fmus, package_files
-
-    if names := fmus.fmu_names():
-        print("FMUs")
-        print_rows([((name,), fmus.about(name)) for name in names])
-    else:
-        print(f"FMUs: none is built in {fmus.folder()}; make build builds them")
-    here = Path("scenarios").glob(f"*/{package_files.SCENARIO}")
-    found = {str(file.parent): file.parent for file in sorted(here)} or package_files.scenarios()
-    if found:
-        print("Scenarios")
-        print_rows([((name,), first_line(folder)) for name, folder in found.items()])
-    else:
-        print("Scenarios: none in ./scenarios; motionfmu new scenario NAME makes one")
-
-
-def first_line(folder: Path) -> str:
-    """What a scenario shows or a machine is, right or wrong; of another project its title."""
-    from motionfmu.scenarios.package_files import MACHINE, SCENARIO
-
-    told = (folder / name for name in (SCENARIO, MACHINE))
-    file = next((f for f in told if f.is_file()), folder / "README.md")
-    with file.open(encoding="utf-8", errors="replace") as stream:
-        return stream.readline(1000).strip().lstrip("# ")
 
 
 @app.command()
@@ -81,7 +50,7 @@ def info(
             print(fmus.description_text(what, fmi), end="")
             return
         ports = fmus.ports(what)
-        print(_wrapped(fmus.about(what), f"{what}: ", "  "))
+        print(wrapped(fmus.about(what), f"{what}: ", "  "))
         _variables([ports[name] for name in _chosen(ports, patterns)])
         return
     if xml:
@@ -107,36 +76,6 @@ def _chosen(names: Iterable[str], patterns: Sequence[str] | None) -> list[str]:
         if not fnmatch.filter(names, pattern):
             raise InputError(f"no variable {pattern!r}{suggestion(pattern, names)}")
     return [n for n in names if not patterns or any(fnmatch.fnmatch(n, p) for p in patterns)]
-
-
-def print_rows(rows: Sequence[tuple[Sequence[str], str]], indent: str = "  ") -> None:
-    """Print cells in columns and a text beside them, or below them where there is no room."""
-    widths = [max(map(len, column)) for column in zip(*(cells for cells, _ in rows), strict=True)]
-    left = len(indent) + sum(w + 2 for w in widths)
-    beside = width() - left >= BESIDE
-    hang = " " * left if beside else indent + "    "
-    for cells, text in rows:
-        row = "  ".join(c.ljust(w) for c, w in zip(cells, widths, strict=True))
-        row = f"{indent}{row}"
-        if beside:
-            print(_wrapped(text, f"{row}  " if cells else indent, hang))
-        else:
-            print(row.rstrip())
-            if text:
-                print(_wrapped(text, hang, hang))
-
-
-def _wrapped(text: str, first: str, hang: str) -> str:
-    if not text:
-        return first.rstrip()
-    return textwrap.fill(
-        text,
-        width(),
-        initial_indent=first,
-        subsequent_indent=hang,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
 
 
 def _variables(ports: Sequence["Port"]) -> None:
@@ -176,7 +115,7 @@ def _variables_of(scenario: "Scenario", patterns: Sequence[str]) -> None:
         for name, port in fmus.ports(fmu).items()
     }
     sources = {wire.target.name: wire.source.name for wire in wires(scenario.resolver)}
-    print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
+    print(wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
     rows: list[tuple[Sequence[str], str]] = [(("", "type", "unit", "start", "range"), "")]
     for name in _chosen(ports, patterns):
         (_, *cells), text = _row(ports[name])
@@ -204,10 +143,10 @@ def _scenario(scenario: "Scenario") -> None:
     from motionfmu.scenarios.body import CHECK, EXPECT
 
     body = scenario.document.body
-    print(_wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
+    print(wrapped(scenario.document.about, f"{scenario.name}: ", "  "))
     print(_until(body))
     if scenario.begin is not None:
-        print(_wrapped(_begin(scenario.begin), "begins ", "  "))
+        print(wrapped(_begin(scenario.begin), "begins ", "  "))
     print(_engine(scenario))
     print("components")
     print_rows([((name, fmu), fmus.about(fmu)) for name, fmu in body.component.items()])
@@ -217,7 +156,7 @@ def _scenario(scenario: "Scenario") -> None:
     except Missing as told:
         gains = [f"in 1/s: {told}"]
     for line in gains:
-        print(_wrapped(line, "  gain ", "    "))
+        print(wrapped(line, "  gain ", "    "))
     steps = [(d.input, f"{_value(d.value)} at {_value(d.at)} s") for d in body.drive]
     _section("steps of inputs", steps)
     if (record := body.record_file) is not None:

@@ -18,7 +18,8 @@ from motionfmu.cli.common import (
     settings,
     stages,
 )
-from motionfmu.cli.info import first_line, print_rows
+from motionfmu.cli.console_text import print_rows
+from motionfmu.cli.list import first_line
 
 if TYPE_CHECKING:
     from motionfmu.analysis.data_sheet import DataSheet

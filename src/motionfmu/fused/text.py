@@ -9,17 +9,14 @@ from motionfmu.fused.fmu_parts import FmuPart
 from motionfmu.fused.system_variables import Roles
 from motionfmu.scenarios.system import End, System
 
-_KINDS = {"Float64": "d", "Int32": "i", "Boolean": "b"}
+# Letter of struct recorder_column, and bytes.
+_KINDS = {"Float64": ("d", 8), "Int32": ("i", 4), "Boolean": ("b", 1)}
 _I32 = (-(2**31), 2**31 - 1)
 
 
 def _in_part(end: End) -> str:
     """C expression of a component's variable in its instance, from a `struct model *m`."""
     return f"m->of_{end.component}.v.{end.port.name}"
-
-
-def _in_model(end: End) -> str:
-    return f"offsetof(struct model, of_{end.component}.v.{end.port.name})"
 
 
 def _here(end: End) -> str:
@@ -161,12 +158,22 @@ def _tables(system: System, parts: Mapping[str, FmuPart], recorded: Sequence[End
         rows.append(f"{{{to}, offsetof({struct}, {at.port.name})}}")
     yield _table("struct system_wire system_wires", rows)
     yield _table(
-        "struct system_column system_columns",
-        [
-            f"{{\"{e.name}\", {_in_model(e)}, '{_KINDS[e.port.type]}', {e.port.count}}}"
-            for e in recorded
-        ],
+        "struct recorder_column system_columns",
+        [f"{{\"{e.name}\", '{_KINDS[e.port.type][0]}', {e.port.count}}}" for e in recorded],
     )
+
+
+def _keep(recorded: Sequence[End]) -> str:
+    """C text that copies what is recorded into a row, in the order of the recorder's groups."""
+    wide = {8: ["SYSTEM_KEEP(-1, r->time);"]}
+    for i, e in enumerate(recorded):
+        width = _KINDS[e.port.type][1] * e.port.count
+        wide.setdefault(width, []).append(f"SYSTEM_KEEP({i}, {_in_part(e)});")
+    lines = ["char *const *block = r->block;", "size_t at;"]
+    for group, width in enumerate(sorted(wide)):
+        lines += [f"at = recorder_place(r, &r->groups[{group}]);", *wide[width]]
+    head = "inline void system_keep(const struct model *m, const struct recorder *r)"
+    return _function(head, lines, ["m"])
 
 
 def main_unit(fmi: int, quickly: bool) -> str:
@@ -196,6 +203,7 @@ def model(
         *_gives(system, parts, used),
         "SYSTEM_COLD_END\n\n",
         *_tables(system, parts, recorded),
+        _keep(recorded),
         _carry(system),
         _until(system),
         _step(system, parts),

@@ -126,9 +126,9 @@ static inline void bench_urgent(const struct kernel *k)
     if (r < 0 || r >= KERNEL_TASKS || k->chooses) {
         return;
     }
-    CHECK(k->task[r].ready);
+    CHECK(k->ready >> r & 1);
     for (int i = 0; i < NETCARD_TASKS; i++) {
-        CHECK(!k->task[i].ready || kernel_priority(k, i) <= kernel_priority(k, r));
+        CHECK(!(k->ready >> i & 1) || kernel_priority(k, i) <= kernel_priority(k, r));
     }
 }
 

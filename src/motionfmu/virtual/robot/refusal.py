@@ -25,7 +25,6 @@ STATUS = (
     "OFF_PLANE",
     "NO_UNIT",
     "NO_SPLINE",
-    "NO_FLOW",
     "TILTED",
     "NO_JOINT",
     "BESIDE",
@@ -43,7 +42,7 @@ class RobotError(InputError):
     ----------
     status : str
         Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
-        OFF_PLANE, NO_UNIT, NO_SPLINE, NO_FLOW, TILTED, NO_JOINT, BESIDE of a move;
+        OFF_PLANE, NO_UNIT, NO_SPLINE, TILTED, NO_JOINT, BESIDE of a move;
         COLLISION; VALUE of an argument; PROGRAM of a text.
     value, limit : float
         What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
