@@ -178,7 +178,10 @@ static void publish(struct fmu *f)
     for (int i = 0; i < FPGA_CHANNELS && f->s.m.switched != c->switched; i++)
         v->dout_clock[i] = (double)c->output_clock[i];
     f->s.m.switched = c->switched;
-    LINK_CARRY(v->pulse_rate, c->rate)
+    v->external_servo_on = c->servo >> FPGA_AXES & 1;
+    for (int i = 0; i < FPGA_AXES; i++)
+        v->pulse_rate[i] = c->rate[i];
+    v->external_rate = c->rate[FPGA_AXES];
     LINK_CARRY(v->ao, c->ao)
     v->dout = link_wrap(c->outputs);
 }

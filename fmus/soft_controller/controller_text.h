@@ -80,7 +80,9 @@ static int read_points(struct fmu *f, struct controller_blob *b)
     struct robot_job_report r;
     int64_t length;
 
-    robot_job_points_clear(&b->points);
+    const enum robot_job_outside outside = (enum robot_job_outside)b->config.robot.external.kind;
+
+    robot_job_points_clear(&b->points, outside);
     if (!name[0]) {
         return 0;
     }
@@ -88,7 +90,7 @@ static int read_points(struct fmu *f, struct controller_blob *b)
     if (!text) {
         return -1;
     }
-    int code = robot_job_points_read(&b->points, text, length, &r);
+    int code = robot_job_points_read(&b->points, outside, text, length, &r);
     code = code ? refuse_text(f, name, text, &r) : 0;
     free(text);
     return code;
@@ -158,21 +160,6 @@ static int read_all_jobs(struct fmu *f, struct controller_blob *b, char **text)
                                               : 0;
 }
 
-/* A spline that cannot be driven is refused before anything moves. */
-static int refuse_splines(struct fmu *f, const struct controller_blob *b)
-{
-    const struct robot_job_program *p = &b->job;
-
-    for (int32_t i = 0, job = 0; i < p->count; i++) {
-        job += job + 1 < p->jobs && p->job[job + 1].start <= i;
-        if (p->instruction[i].path == ROBOT_JOB_SPLINE) {
-            return fmu_fail(f, "%s: line %d: MOVS needs moves that flow: soft.flow = true",
-                            b->file[p->job[job].text], (int)p->instruction[i].line);
-        }
-    }
-    return 0;
-}
-
 static int read_jobs(struct fmu *f, struct controller_blob *b)
 {
     const char *job = f->s.v.job;
@@ -188,7 +175,6 @@ static int read_jobs(struct fmu *f, struct controller_blob *b)
                    ? fmu_fail(f, "job = \"%s\": no such job in %s", job, f->s.v.program)
                    : 0;
     }
-    code = code == 0 && !f->s.v.flow ? refuse_splines(f, b) : code;
     b->has_job = code == 0;
     return code;
 }

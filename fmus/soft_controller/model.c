@@ -100,6 +100,8 @@ static void publish_arm(struct vars *v, struct controller *s, const struct contr
     memcpy(v->tool_quaternion, r->pose.turn, sizeof v->tool_quaternion);
     memcpy(v->joint_command, r->joint, sizeof v->joint_command);
     memcpy(v->joint_rate, r->rate, sizeof v->joint_rate);
+    v->external_command = r->external;
+    v->external_command_rate = r->external_rate;
     v->configuration = robot_factors(r, &c->robot, v->factors);
     const struct limited limited = controller_limited(s, c, panel);
     v->limited_by = limited.by;
@@ -239,6 +241,7 @@ static void read_bus(struct fmu *f, int64_t at)
     READ(int32_t, memory, )
     READ(bool, stopped, )
     READ(int32_t, pulse_count, )
+    READ(int32_t, external_count, )
     controller_instant(&f->s.m.controller, &b->config, &t, &card, &panel, at / FPGA_CLOCK_NS);
 }
 

@@ -28,6 +28,7 @@ struct robot_sample {
     double joint[OPW_JOINTS], rate[OPW_JOINTS]; /* [deg], [deg/s] commanded */
     double place[3], speed,
         feed;          /* [mm] of the tip, [mm/s] along its path, asked for; 0 of joints */
+    double base[3];    /* [mm] where a track has the arm's base */
     double factors[3]; /* from singular: [mm], 1, 1 */
     int32_t line;      /* that moves, */
     int32_t at;        /* and that a job reads next; 0: none, it is a part program */
@@ -60,6 +61,9 @@ static const struct field reading_fields[] = {
     READ_ROW(pulses, "pulses"),
     READ_ROW(joint, "deg"),
     READ_ROW(pose, "mm, deg"),
+    READ(external, "mm, deg"),
+    READ(external_command, "mm, deg"),
+    READ_ROW(base_command, "mm"),
     READ_ROW(joint_command, "deg"),
     READ_ROW(pose_command, "mm, deg"),
     READ(configuration, ""),
@@ -161,6 +165,7 @@ static const struct field sample_fields[] = {
     SAMPLE_ROW(joint, "deg"),
     SAMPLE_ROW(rate, "deg/s"),
     SAMPLE_ROW(place, "mm"),
+    SAMPLE_ROW(base, "mm"),
     SAMPLE(speed, "mm/s"),
     SAMPLE(feed, "mm/s"),
     SAMPLE_ROW(factors, "mm, 1, 1"),
@@ -244,16 +249,18 @@ static int read_jobs(struct robot_program *p, const char *first, int64_t length,
     return 1;
 }
 
-/* Read a program (an empty text is none) in one of the languages, and its points. */
-int binding_robot_read(struct robot_program *p, const char *const text[2], const int64_t length[2],
-                       bool gcode, binding_file file, char message[MESSAGE])
+/* Read a program (an empty text is none) in one of the languages, and its points, for a robot. */
+int binding_robot_read(struct robot_program *p, const struct robot_station *s,
+                       const char *const text[2], const int64_t length[2], bool gcode,
+                       binding_file file, char message[MESSAGE])
 {
+    const enum robot_job_outside outside = (enum robot_job_outside)s->config.robot.external.kind;
     struct robot_job_report r;
 
     memset(p, 0, sizeof *p);
-    robot_job_points_clear(&p->points);
+    robot_job_points_clear(&p->points, outside);
     p->orders.points = &p->points;
-    if (robot_job_points_read(&p->points, text[1], length[1], &r) < 0) {
+    if (robot_job_points_read(&p->points, outside, text[1], length[1], &r) < 0) {
         char found[ROBOT_JOB_MESSAGE_MAX];
         robot_job_message(&r, text[1], found);
         snprintf(message, MESSAGE, "points: %.400s", found);
@@ -341,6 +348,7 @@ static void sample(struct robot_station *s, const struct robot_program *p, struc
         x->rate[i] = r->rate[i] / unit;
     }
     memcpy(x->place, r->pose.at, sizeof x->place);
+    external_to_world(&s->config.robot.external, r->external, x->base);
     x->speed = r->speed;
     x->feed = limited.feed;
     robot_factors(r, &s->config.robot, x->factors);

@@ -8,12 +8,13 @@ import mujoco
 import numpy as np
 import pytest
 from random_arms import RandomArm, worst_differences
+from scipy.spatial.transform import Rotation
 
 from motionfmu import run
 from motionfmu.arm_machines import arm_machine
 from motionfmu.arms import ArmDescription, RigidLink, mjcf_text, urdf_text
 from motionfmu.arms.arm_description import angles_of, turn_of
-from motionfmu.arms.mjcf_text import LEAST_INERTIA, LEAST_MASS
+from motionfmu.arms.mjcf_text import LEAST_INERTIA, LEAST_MASS, quaternion
 from motionfmu.arms.urdf_reader import urdf_text_arm
 
 
@@ -80,6 +81,14 @@ def test_bodies_are_written_as_they_were():
     assert len(arm.joints[0].link.shapes) == 4
     geoms = mujoco.MjModel.from_xml_string(mjcf_text(arm)).geom_size
     assert geoms == pytest.approx(np.array([[0.5, 1, 1.5], [0.1, 1, 0], [0.3, 0, 0]]))
+
+
+def test_quaternions_are_scipy_s():
+    """Of length 1, whichever element is the largest, up to the sign that both may have."""
+    for turn in Rotation.random(200, np.random.default_rng(4)):
+        theirs = turn.as_quat()[[3, 0, 1, 2]]
+        found = quaternion(turn.as_matrix())
+        assert found * np.sign(found @ theirs) == pytest.approx(theirs, abs=1e-14)
 
 
 def test_every_quarter_turn_is_written_and_read_back():

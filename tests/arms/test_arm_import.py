@@ -26,19 +26,9 @@ def told(*words: str | Path) -> str:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The machine made of the small arm, and beside it what was told."""
-    made = tmp_path_factory.mktemp("arms") / "small"
-    (made.parent / "told").write_text(told("import", SMALL, "-o", made), encoding="utf-8")
-    return made
-
-
-@pytest.fixture(scope="module")
-def result(folder: Path):
-    """Its example run, the arm's own geometry without errors."""
-    machine = run.machine(folder)
-    exact = {"arm.origin_error": 0.0}
-    return machine.scenario(folder / "example.job", set=exact).run()
+def file() -> Path:
+    """The small arm."""
+    return SMALL
 
 
 def test_what_was_taken_for_granted_is_listed(folder):

@@ -37,20 +37,6 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return found
 
 
-@pytest.fixture(scope="module")
-def folder(file: Path) -> Path:
-    """The machine made of it, and beside it what was told."""
-    made = file.parent / "cobot"
-    (made.parent / "told").write_text(told("import", file, "-o", made), encoding="utf-8")
-    return made
-
-
-@pytest.fixture(scope="module")
-def result(folder: Path):
-    """Its example run, the arm's own geometry without errors."""
-    return run.machine(folder).scenario(folder / "example.job", set={"arm.origin_error": 0.0}).run()
-
-
 def test_random_axes_are_where_pinocchio_has_them() -> None:
     """Tips of ten arms of six turning joints at 20 states each, joints beside the chain too."""
     rng = np.random.default_rng(3)

@@ -7,7 +7,6 @@ import mujoco
 import numpy as np
 import pytest
 from random_arms import PinocchioChain
-from test_arm_import import told
 from typer.testing import CliRunner
 
 from motionfmu import run
@@ -23,6 +22,7 @@ from motionfmu.arms import (
     urdf_arm,
     urdf_text,
 )
+from motionfmu.arms.linkage import linkage_of
 from motionfmu.arms.urdf_reader import urdf_text_arm
 from motionfmu.base.errors import InputError
 from motionfmu.cli import app
@@ -75,14 +75,6 @@ def file(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     place = tmp_path_factory.mktemp("palletizer") / f"{request.param}.urdf"
     place.write_text(urdf(KINDS[request.param]), encoding="utf-8")
     return place
-
-
-@pytest.fixture(scope="module")
-def folder(file: Path) -> Path:
-    """The machine made of it, and beside it what was told."""
-    made = file.parent / "machine"
-    (made.parent / "told").write_text(told("import", file, "-o", made), encoding="utf-8")
-    return made
 
 
 def test_poses_are_pinocchio_s(file: Path) -> None:
@@ -213,6 +205,7 @@ def test_tables_say_it_too(tmp_path: Path) -> None:
 WRONG = {
     "rod, wrist: what is behind tilts by 0.5 of shoulder": (3, 5, ("shoulder", -0.5)),
     "rod, wrist: what is behind tilts by 1 of elbow": (4, 5, ("elbow", 0.0)),
+    "axes of joints 1 and 2 are at 45°, 90° wanted": (1, 1, "0 1 1"),
     "the axis of wrist is 90° from that of joint 3": (4, 1, "1 0 0"),
     "the axis of wrist is 30 mm beside that of rod": (4, 2, "0 0.05 0.03"),
     "missing: poses of 5 coordinates": (4, 5, None),
@@ -226,6 +219,12 @@ def test_other_linkages_are_refused(why: str) -> None:
     rows[place][column] = value
     with pytest.raises(NoOpwGeometry, match=why.replace(".", r"\.")):
         driven_geometry(urdf_text_arm(urdf(rows), "wrong.urdf"))
+
+
+def test_a_linkage_may_begin_at_an_angle() -> None:
+    """What follows by an offset, too, keeps the hand as level as it was."""
+    text = urdf(SERIAL).replace("<mimic ", '<mimic offset="0.1" ', 1)
+    assert linkage_of(urdf_text_arm(text, "turned.urdf")).levels == (0, 0, 0, 2)
 
 
 def test_a_link_between_pivots_has_no_mass(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from random_arms import PinocchioChain
-from test_arm_import import told
 from typer.testing import CliRunner
 
 from motionfmu import run
@@ -21,17 +20,9 @@ MM, SLIDE = 1e-3, 2
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The machine made of it, and beside it what was told."""
-    made = tmp_path_factory.mktemp("scara") / "scara"
-    (made.parent / "told").write_text(told("import", SCARA, "-o", made), encoding="utf-8")
-    return made
-
-
-@pytest.fixture(scope="module")
-def result(folder: Path):
-    """Its example run, the arm's own geometry without errors."""
-    return run.machine(folder).scenario(folder / "example.job", set={"arm.origin_error": 0.0}).run()
+def file() -> Path:
+    """The SCARA."""
+    return SCARA
 
 
 @pytest.fixture(scope="module")

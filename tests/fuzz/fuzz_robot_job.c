@@ -43,7 +43,8 @@ static void write_points(void)
         p.tool = p.tool > 0 ? 0 : p.tool;
         p.user = p.user > 0 ? 0 : p.user;
         HOLDS(robot_job_point_write(i, &p, text) == 0);
-        HOLDS(robot_job_points_read(&again, text, (int64_t)strlen(text), &r) == 0);
+        HOLDS(robot_job_points_read(&again, ROBOT_JOB_NO_AXIS, text, (int64_t)strlen(text), &r)
+              == 0);
         for (int k = 0; k < 6; k++) {
             HOLDS(fabs(again.point[i].value[k] - p.value[k]) <= 0.5e-6 + 1e-10);
         }
@@ -103,10 +104,31 @@ static void somewhere(const void *arm, struct robot_job_point here[2])
     here[1] = (struct robot_job_point){ .kind = ROBOT_JOB_POSE };
 }
 
+static void seen(const void *arm, const struct robot_job_point *from, struct robot_job_point *pose)
+{
+    (void)arm;
+    HOLDS(from->kind != ROBOT_JOB_NO_POINT);
+    HOLDS(from->tool >= 0 && from->tool < ROBOT_JOB_FRAMES && points.tool[from->tool].defined);
+    HOLDS(from->user >= 0 && from->user < ROBOT_JOB_FRAMES && points.user[from->user].defined);
+    HOLDS(pose->tool >= 0 && pose->tool < ROBOT_JOB_FRAMES && points.tool[pose->tool].defined);
+    HOLDS(pose->user >= 0 && pose->user < ROBOT_JOB_FRAMES && points.user[pose->user].defined);
+    memcpy(pose->value, from->value, sizeof pose->value);
+}
+
+static void led(const void *arm, const struct robot_job_point *from,
+                const struct robot_job_point *to, int32_t frame, double by[6])
+{
+    struct robot_job_point pose = *to;
+    seen(arm, from, &pose);
+    seen(arm, &pose, &pose);
+    HOLDS(frame >= ROBOT_JOB_BY_TOOL && frame < ROBOT_JOB_FRAMES);
+    memcpy(by, to->value, sizeof to->value);
+}
+
 static void run_program(const uint8_t *data, size_t size)
 {
     static struct robot_job_run kept;
-    struct robot_job_inputs in = { .here = somewhere };
+    struct robot_job_inputs in = { .here = somewhere, .convert = seen, .shift = led };
     const struct robot_job_start start = { .vj = 10.0, .v = 100.0, .vr = 20.0 };
     robot_job_begin(&kept, &program, &start);
     for (size_t n = 0; n < CALLS; n++) {
@@ -148,9 +170,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     HOLDS(first && second);
     memcpy(first, data, head);
     memcpy(second, data + rest, (size_t)length);
-    if (robot_job_points_read(&points, first, (int64_t)head, &r)) {
+    if (robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, first, (int64_t)head, &r)) {
         check_report(&r, first, (int64_t)head);
-        robot_job_points_clear(&points);
+        robot_job_points_clear(&points, ROBOT_JOB_NO_AXIS);
     } else {
         write_points();
     }

@@ -11,7 +11,8 @@ static struct robot_job_run run;
 int robot_job_steps_load(const char *points_text, const char *text, char *message)
 {
     struct robot_job_report r;
-    if (robot_job_points_read(&points, points_text, (int64_t)strlen(points_text), &r)) {
+    if (robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, points_text, (int64_t)strlen(points_text),
+                              &r)) {
         robot_job_message(&r, points_text, message);
         return 1;
     }

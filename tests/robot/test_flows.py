@@ -1,15 +1,10 @@
 """Moves that flow: nearly as quick as toppra's bound along their way, quicker than stops."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 import toppra
 from toppra import algorithm, constraint
 
-import motionfmu
-from motionfmu import InputError
-from motionfmu.analysis.dry_run import dry_run
 from motionfmu.virtual.robot import RobotError, VirtualRobot
 
 toppra.setup_logging("ERROR")
@@ -129,9 +124,10 @@ ROW_POINTS = "P001 J1=-20 J2=10 J3=-10 J4=0 J5=80 J6=0\n" + "".join(
 )
 
 
-def test_a_spline_passes_its_points() -> None:
-    """One after another, without a stop between them, to a rest at the last."""
-    robot = VirtualRobot(flow=True, ik_time=1e-6, tool=[0, 0, 150, 0, 0, 0])
+@pytest.mark.parametrize("flow", [True, False])
+def test_a_spline_passes_its_points(flow: bool) -> None:
+    """One after another, without a stop, to a rest at the last; whether other moves flow or not."""
+    robot = VirtualRobot(flow=flow, ik_time=1e-6, tool=[0, 0, 150, 0, 0, 0])
     robot.start(SPLINE, ROW_POINTS)
     places, rests = [], False
     while not rests:
@@ -145,21 +141,6 @@ def test_a_spline_passes_its_points() -> None:
     step = np.linalg.norm(np.diff(places[at[0] : at[-1]], axis=0), axis=1) / (10 * CYCLE)
     assert step[300:-200].min() > 180.0
     assert step.max() < 200.5
-
-
-def test_a_spline_without_flow_is_refused(tmp_path: Path) -> None:
-    """By the run before anything moves, by the dry run where it stands; both name the key."""
-    file = tmp_path / "a.job"
-    file.write_text(SPLINE)
-    (tmp_path / "a.points").write_text(ROW_POINTS)
-    scenario = motionfmu.machine("robot6").scenario(file)
-    with pytest.raises(InputError, match=r"a\.job: line 4: MOVS .* soft\.flow = true"):
-        scenario.run()
-    dry = dry_run(scenario)
-    assert dry.fault_line == 4
-    assert "soft.flow = true" in dry.fault
-    flowing = dry_run(scenario, (), {"soft.flow": True})
-    assert flowing.faults == []
 
 
 @pytest.mark.parametrize("wrong", [{"part": 0.6}, {"radius": -1.0}, {"zone": np.inf}])

@@ -43,7 +43,7 @@ int32_t fpga_slot_unpack(const int32_t word[FPGA_SLOT_WORDS], enum fpga_format f
         const uint8_t byte = (uint8_t)((uint32_t)word[i / 4] >> 8 * (i % 4));
         const int32_t n = byte_pulses(byte, format);
         pulses[i] = n;
-        if (n > most || n < -most || (i >= FPGA_AXES && byte))
+        if (n > most || n < -most || (i >= FPGA_PLAYED && byte))
             bad = i;
     }
     return bad;

@@ -21,7 +21,8 @@ enum {
     FPGA_CLOCK_HZ = 40000000,
     FPGA_CLOCK_NS = 1000000000 / FPGA_CLOCK_HZ,
     FPGA_AXES = 6,
-    FPGA_SLOT_AXES = 8, /* bytes of a slot: six axes and two spare bytes, which must be 0 */
+    FPGA_PLAYED = 7,    /* with the external axis, the last one */
+    FPGA_SLOT_AXES = 8, /* bytes of a slot: those axes and a spare byte, which must be 0 */
     FPGA_SLOT_WORDS = 2,
     FPGA_SLOTS = 128, /* slots of a pulse memory */
     FPGA_WORDS = FPGA_SLOTS * FPGA_SLOT_WORDS,
@@ -104,7 +105,9 @@ enum fpga_format {
     X(bool, stopped, )                   /* emergency stop, until a reset */ \
     X(double, stopped_clock, )           /* [clock] of the latest emergency stop */ \
     X(int32_t, pulse_count, [FPGA_AXES]) /* [pulses] put out, forward minus backward */ \
-    X(int32_t, dropped, [FPGA_AXES])     /* [pulses] dropped by stops, forward minus backward */
+    X(int32_t, dropped, [FPGA_AXES])     /* [pulses] dropped by stops, forward minus backward */ \
+    X(int32_t, external_count, )         /* the same of the external axis: put out, */ \
+    X(int32_t, external_dropped, )       /* and dropped */
 
 LINK_STRUCT(fpga_host, FPGA_WRITE(LINK_MEMBER) FPGA_OUT(LINK_MEMBER) FPGA_AO(LINK_MEMBER)
                            FPGA_LEVELS(LINK_MEMBER));

@@ -3,10 +3,11 @@
 #include <math.h>
 #include <string.h>
 
-void arm_moves_start(struct arm_moves *c, const double turn[4])
+void arm_moves_start(struct arm_moves *c, const double turn[4], double external)
 {
     memset(c, 0, sizeof *c);
     memcpy(c->move[0].turn, turn, 4 * sizeof *turn);
+    c->move[0].external[0] = c->move[0].external[1] = external;
     c->count = 1; /* a move that is over */
 }
 
@@ -126,6 +127,13 @@ void arm_moves_pose(const struct arm_geometry *g, const double place[AXES],
     }
     memcpy(pose->at, place, sizeof pose->at);
     attitude(g->moves, n, place, pose->turn);
+}
+
+double arm_moves_external(const struct arm_moves *c, const double place[AXES])
+{
+    const int32_t n = active(c, place);
+    const double *e = move_of(c, n)->external, part = part_of(c, n, place);
+    return part < 1.0 ? e[0] + part * (e[1] - e[0]) : e[1];
 }
 
 bool arm_moves_by_joints(const struct arm_moves *c, const double place[AXES])

@@ -35,6 +35,8 @@ struct arm_move {
     double by[3];    /* [rad] rotation vector of its turn, base frame */
     double joint[OPW_JOINTS]; /* [rad] at its start */
     double step[OPW_JOINTS];  /* [rad] to its end */
+    double external[2]; /* [m] [rad] external axis (external.h) at its start, its end; it goes with
+                         * the coordinate, so that moves if this does */
 };
 
 struct arm_moves {
@@ -49,8 +51,8 @@ struct arm_geometry {
     const struct arm_moves *moves;
 };
 
-/* Begin without moves, the tool having this attitude. */
-void arm_moves_start(struct arm_moves *c, const double turn[4]);
+/* Begin without moves, the tool having this attitude, the external axis being there. */
+void arm_moves_start(struct arm_moves *c, const double turn[4], double external);
 
 /* Append a move whose coordinate goes on by `way` [mm]; its from and to are set here. */
 void arm_moves_add(struct arm_moves *c, const struct arm_move *move, double way);
@@ -64,6 +66,9 @@ int arm_moves_axis(const struct arm_moves *c);
 /* Pose of the tip at a place; on a move of the joints it follows from joint[]. */
 void arm_moves_pose(const struct arm_geometry *g, const double place[AXES],
                     const double joint[AXES], struct pose *pose);
+
+/* The external axis at a place. [m] [rad] */
+double arm_moves_external(const struct arm_moves *c, const double place[AXES]);
 
 /* Whether a place belongs to a move of the joints, which takes no inverse kinematics. */
 bool arm_moves_by_joints(const struct arm_moves *c, const double place[AXES]);

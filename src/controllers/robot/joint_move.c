@@ -17,10 +17,22 @@ double robot_joint_speed(const struct robot_config *c, int joint)
     return el_min(c->arm.joint[joint].speed, (c->slot_pulses - 1.0) / (c->scale[joint] * c->slot));
 }
 
-void robot_plan_joints(struct robot *r, const struct robot_config *c,
-                       const double target[OPW_JOINTS], double share)
+double robot_external_speed(const struct robot_config *c)
 {
-    struct arm_move m = { .kind = ARM_MOVE_JOINTS };
+    return el_min(c->external.speed, (c->slot_pulses - 1.0) / (c->external.scale * c->slot));
+}
+
+double robot_travel(const struct robot *r, const struct robot_move *move)
+{
+    return move->target.beside != EXTERNAL_NONE ? move->target.external - robot_end_external(r)
+                                                : 0.0;
+}
+
+void robot_plan_joints(struct robot *r, const struct robot_config *c,
+                       const double target[OPW_JOINTS], double travel, double share)
+{
+    struct arm_move m = { .kind = ARM_MOVE_JOINTS,
+                          .external = { r->rear_external, r->rear_external + travel } };
     struct manipulator arm = c->arm;
     double end[AXES], way = 0.0, acc = INFINITY;
 
@@ -29,6 +41,10 @@ void robot_plan_joints(struct robot *r, const struct robot_config *c,
         m.joint[i] = r->rear_joint[i];
         m.step[i] = target[i] - r->rear_joint[i];
         way = el_max(way, UNIT * fabs(m.step[i]) / robot_joint_speed(c, i));
+    }
+    if (travel != 0.0) {
+        way = el_max(way, UNIT * fabs(travel) / robot_external_speed(c));
+        acc = c->external.acc * way / fabs(travel);
     }
     for (int i = 0; i < OPW_JOINTS; i++) {
         acc = el_min(acc, c->arm.joint[i].acc * way / fabs(m.step[i]));
@@ -92,7 +108,7 @@ enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,
     }
     double from[OPW_JOINTS];
     memcpy(from, r->rear_joint, sizeof from);
-    robot_plan_joints(r, c, target, move->share);
+    robot_plan_joints(r, c, target, robot_travel(r, move), move->share);
     if (robot_flows(r, c, move)) {
         robot_flow_line(r, c, move, from, target);
     }

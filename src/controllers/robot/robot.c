@@ -29,10 +29,12 @@ static void come_to_rest(struct robot *r, const struct robot_config *c)
 
     arm.tool = r->tool;
     r->pose = manipulator_pose(&arm, r->joint);
-    arm_moves_start(&r->moves, r->pose.turn);
+    arm_moves_start(&r->moves, r->pose.turn, r->external);
     memset(r->rear, 0, sizeof r->rear);
     memcpy(r->rear, r->pose.at, sizeof r->pose.at);
+    external_to_world(&c->external, r->external, r->pose.at);
     memcpy(r->rear_joint, r->joint, sizeof r->joint);
+    r->rear_external = r->external;
     r->rear_kind = ARM_MOVE_POSE;
     r->rear_zone = 0.0;
     r->tool_path.count = r->tool_path.next = 0;
@@ -47,6 +49,12 @@ void robot_start(struct robot *r, const struct robot_config *c, const double joi
     trajectory_start(&r->trajectory);
     r->tool = c->arm.tool;
     memcpy(r->joint, joint, sizeof r->joint);
+    come_to_rest(r, c);
+}
+
+void robot_place(struct robot *r, const struct robot_config *c, double external)
+{
+    r->external = external;
     come_to_rest(r, c);
 }
 
@@ -139,9 +147,14 @@ static double apart(const double a[3], const double b[3])
 
 /* Set what the robot shows after a cycle. */
 static void show(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS],
-                 const struct pose *pose)
+                 double external, const struct pose *pose)
 {
     const double way = apart(pose->at, r->pose.at);
+    const double beside = (external - r->external) / c->cycle;
+
+    r->external_gain = (beside - r->external_rate) / c->cycle;
+    r->external_rate = beside;
+    r->external = external;
 
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double rate = (joint[i] - r->joint[i]) / c->cycle;
@@ -158,7 +171,9 @@ static void show(struct robot *r, const struct robot_config *c, const double joi
 static void predict(const struct robot *r, const struct robot_config *c, const double place[AXES],
                     double joint[OPW_JOINTS])
 {
-    const double before = r->speed * c->cycle, now = apart(place, r->pose.at);
+    double at[3] = { r->pose.at[0], r->pose.at[1], r->pose.at[2] };
+    external_to_arm(&c->external, r->external, at);
+    const double before = r->speed * c->cycle, now = apart(place, at);
     const double ratio = before > 0.0 ? el_min(1.0, now / before) : 0.0;
 
     for (int i = 0; i < OPW_JOINTS; i++) {
@@ -175,8 +190,9 @@ static void flow_cycle(struct robot *r, const struct robot_config *c, const stru
     double joint[OPW_JOINTS];
 
     const struct joint_flow_piece *p = joint_flow_joints(&r->flow, joint);
-    const struct pose pose = manipulator_pose(arm, joint);
-    show(r, c, joint, &pose);
+    struct pose pose = manipulator_pose(arm, joint);
+    external_to_world(&c->external, r->external, pose.at);
+    show(r, c, joint, r->external, &pose);
     r->solved += p->solved ? r->speed * c->cycle : 0.0;
     r->line = p->line;
     if (left > 0.0) {
@@ -200,7 +216,7 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
     manipulator_with(&c->arm, &r->tool, &arm);
     memcpy(joint, r->joint, sizeof joint);
     if (robot_idle(r)) {
-        show(r, c, joint, &pose);
+        show(r, c, joint, r->external, &pose);
         return;
     }
     if (joint_flow_busy(&r->flow)) {
@@ -218,43 +234,51 @@ void robot_cycle(struct robot *r, const struct robot_config *c)
         || manipulator_outside(&arm, r->joint, joint) >= 0) {
         memcpy(joint, r->joint, sizeof joint);
         r->lost = true;
-        show(r, c, joint, &pose);
+        show(r, c, joint, r->external, &pose);
         robot_stop(r);
         return;
     }
+    const double external = arm_moves_external(&r->moves, point.place);
     arm_moves_pose(&g, point.place, joint, &pose);
-    show(r, c, joint, &pose);
+    external_to_world(&c->external, external, pose.at);
+    show(r, c, joint, external, &pose);
     r->solved += arm_moves_by_joints(&r->moves, point.place) ? 0.0 : r->speed * c->cycle;
     r->line = point.line;
     trajectory_accept(&r->trajectory, &beside, &point);
 }
 
-/* Joint that takes the largest share of its limit, from 0. */
-static int most_taken(const double share[OPW_JOINTS])
+/* Joints and the external axis. */
+enum { DRIVEN = OPW_JOINTS + 1 };
+
+/* Which of them takes the largest share of its limit, from 0. */
+static int most_taken(const double share[DRIVEN])
 {
     int most = 0;
 
-    for (int i = 1; i < OPW_JOINTS; i++) {
+    for (int i = 1; i < DRIVEN; i++) {
         most = share[i] > share[most] ? i : most;
     }
     return most;
 }
 
-/* Shares that the joints take of their speeds and accelerations. */
-static void shares(const struct robot *r, const struct robot_config *c, double speed[OPW_JOINTS],
-                   double turn[OPW_JOINTS])
+/* Shares that they take of their speeds and accelerations. */
+static void shares(const struct robot *r, const struct robot_config *c, double speed[DRIVEN],
+                   double turn[DRIVEN])
 {
     for (int i = 0; i < OPW_JOINTS; i++) {
         speed[i] = fabs(r->rate[i]) / robot_joint_speed(c, i);
         turn[i] = fabs(r->gain[i]) / c->arm.joint[i].acc;
     }
+    const bool there = c->external.kind != EXTERNAL_NONE;
+    speed[OPW_JOINTS] = there ? fabs(r->external_rate) / robot_external_speed(c) : 0.0;
+    turn[OPW_JOINTS] = there ? fabs(r->external_gain) / c->external.acc : 0.0;
 }
 
 /* What limits moves that flow: what is neither speed, feed nor acceleration is jerk. */
 static struct limited flow_limited(const struct robot *r, const struct robot_config *c, double feed)
 {
     const struct trajectory *t = &r->trajectory;
-    double speed[OPW_JOINTS], turn[OPW_JOINTS];
+    double speed[DRIVEN], turn[DRIVEN];
 
     shares(r, c, speed, turn);
     const int fast = most_taken(speed), bent = most_taken(turn);
@@ -278,7 +302,7 @@ struct limited robot_limited(struct robot *r, const struct robot_config *c, doub
 {
     const struct trajectory_beside beside = { &r->ring, &r->mean, NULL };
     struct limited told = { .by = LIMITED_STOP };
-    double speed[OPW_JOINTS], turn[OPW_JOINTS];
+    double speed[DRIVEN], turn[DRIVEN];
 
     if (joint_flow_busy(&r->flow)) {
         return flow_limited(r, c, feed);
@@ -337,6 +361,11 @@ void robot_end(const struct robot *r, double joint[OPW_JOINTS])
     memcpy(joint, robot_idle(r) ? r->joint : r->rear_joint, sizeof r->joint);
 }
 
+double robot_end_external(const struct robot *r)
+{
+    return robot_idle(r) ? r->external : r->rear_external;
+}
+
 enum robot_status robot_tool(struct robot *r, const struct robot_config *c, const struct pose *tool)
 {
     if (!robot_idle(r)) {
@@ -354,6 +383,8 @@ void robot_teach(const struct robot *r, const struct robot_config *c, struct rob
     t->turned = true;
     t->pose = r->pose;
     t->branch = manipulator_branch(&c->arm, r->joint);
+    t->beside = c->external.kind;
+    t->external = r->external;
     memcpy(t->joint, r->joint, sizeof t->joint);
     for (int i = 0; i < OPW_JOINTS; i++) {
         const bool slides = manipulator_slides(&c->arm, i);

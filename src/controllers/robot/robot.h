@@ -5,12 +5,14 @@
  *     anything moves
  *
  * Poses are those of the tool's tip in the base frame of the robot; a user's frame is a
- * pose_product before. A call that is refused changes nothing. Joints are in rad, sliding ones in m
+ * pose_product before. With a track that frame is the world's: the base with the track at 0. A
+ * call that is refused changes nothing. Joints are in rad, sliding ones in m
  * wherever rad is said of joints here; those that the arm has not stand at 0.
  */
 #ifndef ROBOT_H
 #define ROBOT_H
 
+#include "external.h"
 #include "joint_flow.h"
 #include "trajectory.h"
 
@@ -23,12 +25,13 @@ enum { ROBOT_ANY_BRANCH = -1, ROBOT_ANY_TURN = MANIPULATOR_ANY_TURN };
 
 struct robot_config {
     struct manipulator arm;   /* with the tool it starts with */
+    struct external external; /* beside it */
     double scale[OPW_JOINTS]; /* [pulses/rad] */
     double feed;              /* [mm/s] highest of the tool's tip */
     double acc;               /* [mm/s^2] of it, along and across */
     double spin;              /* [rad/s] highest of the tool's turning */
     double smooth;            /* [s] in which an acceleration comes up; 0 at once */
-    bool flow;                /* moves but those by the wrist become one curve of the joints */
+    bool flow;                /* all moves but those by the wrist flow, not splines alone */
     double cycle;             /* [s] */
     double slot;              /* [s] of the pulses */
     double slot_pulses;       /* highest number of pulses in a slot */
@@ -39,10 +42,12 @@ struct robot_target {
     bool by_joints;           /* joint[] is the target, else pose is */
     double joint[OPW_JOINTS]; /* [rad] */
     struct pose pose;
-    int branch;           /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
-    int open;             /* sum of the opw_flags that branch leaves open */
-    bool turned;          /* of a pose: turn[] is asked for, but for ROBOT_ANY_TURN */
-    int turn[OPW_JOINTS]; /* whole turns: joint n is within half a turn of so many */
+    int branch;                /* of a pose: sum of opw_flag, or ROBOT_ANY_BRANCH */
+    int open;                  /* sum of the opw_flags that branch leaves open */
+    bool turned;               /* of a pose: turn[] is asked for, but for ROBOT_ANY_TURN */
+    int turn[OPW_JOINTS];      /* whole turns: joint n is within half a turn of so many */
+    enum external_kind beside; /* an external axis of this kind goes to external; NONE: it stays */
+    double external;           /* [m] [rad] */
 };
 
 enum robot_kind {
@@ -50,7 +55,7 @@ enum robot_kind {
     ROBOT_LINE,
     ROBOT_CIRCLE, /* through via.at to the target */
     ROBOT_ARC,    /* about a centre; target.pose gives the attitude at its end only */
-    ROBOT_SPLINE  /* of a row of poses as one smooth curve (tool_spline.h); if moves flow */
+    ROBOT_SPLINE  /* of a row of poses as one smooth curve (tool_spline.h); it flows */
 };
 
 enum robot_singular {
@@ -95,23 +100,23 @@ enum robot_status {
     ROBOT_OFF_PLANE,    /* an arc's start is not in the plane of its centre across its normal */
     ROBOT_NO_UNIT,      /* an arc's normal is no unit vector */
     ROBOT_NO_SPLINE,    /* two poses in a row are the same */
-    ROBOT_NO_FLOW,      /* a spline, where moves do not flow */
     ROBOT_TILTED,       /* the arm's joints do not turn the tool to such an attitude */
-    ROBOT_NO_JOINT      /* the arm has no such joint */
+    ROBOT_NO_JOINT,     /* the arm has no such joint, 6: no external axis */
+    ROBOT_BESIDE        /* a track goes with joints and lines alone */
 };
 
 /* Why a move is refused. */
 struct robot_refusal {
     double part;     /* 0..1 of the path */
     double place[3]; /* [mm] of the tip there */
-    int which;       /* joint, 0 .. 5; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
-    bool slides;     /* the joint does, so value and limit of OUTSIDE are in m */
-    double value;    /* joint, tilt [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
-    double limit;    /* [rad] [mm]; of OTHER_TURN: what it should be within half a turn of; of
+    int which; /* joint, 0 .. 5, 6 the external axis; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
+    bool slides;  /* the joint does, so value and limit of OUTSIDE are in m */
+    double value; /* joint, tilt [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
+    double limit; /* [rad] [m] [mm]; of OTHER_TURN: what it should be within half a turn of; of
                       * NO_JOINT: number of joints */
 };
 
-enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL };
+enum robot_frame { ROBOT_IN_JOINTS, ROBOT_IN_BASE, ROBOT_IN_TOOL, ROBOT_IN_EXTERNAL };
 
 /* The latest move, if it is a spline that goes on. */
 struct robot_spline {
@@ -132,8 +137,9 @@ struct robot {
     struct robot_spline spline;
     struct command command;        /* what its segments have in common */
     bool stop;                     /* an exact stop before its first segment */
-    double rear[AXES];             /* place at the end of the latest move */
+    double rear[AXES];             /* place at the end of the latest move, from the arm's base */
     double rear_joint[OPW_JOINTS]; /* [rad] there */
+    double rear_external;          /* [m] [rad] there */
     enum arm_move_kind rear_kind;
     double rear_zone;
     int32_t index;          /* of the latest command */
@@ -144,16 +150,20 @@ struct robot {
     double joint[OPW_JOINTS]; /* [rad] ideal, at the end of the latest cycle */
     double rate[OPW_JOINTS];  /* [rad/s] mean of that cycle */
     double gain[OPW_JOINTS];  /* [rad/s^2] how much that is more than in the cycle before */
-    struct pose pose;         /* of the tip there */
-    double speed;             /* [mm/s] of the tip along its path */
-    double length;            /* [mm] of its path so far, */
-    double solved;            /* and of what of it took inverse kinematics, no move of joints */
-    int32_t line;             /* of the program */
-    bool lost;                /* the path led out of reach: stopped on the spot; until the next */
+    double external, external_rate, external_gain; /* the same of the external axis */
+    struct pose pose;                              /* of the tip there */
+    double speed;                                  /* [mm/s] of the tip along its path */
+    double length;                                 /* [mm] of its path so far, */
+    double solved; /* and of what of it took inverse kinematics, no move of joints */
+    int32_t line;  /* of the program */
+    bool lost;     /* the path led out of reach: stopped on the spot; until the next */
 };
 
 /* At rest at joints [rad]. Any joints: out of its limits the arm moves back only. */
 void robot_start(struct robot *r, const struct robot_config *c, const double joint[OPW_JOINTS]);
+
+/* At rest, the external axis at another place. */
+void robot_place(struct robot *r, const struct robot_config *c, double external);
 
 /* Whether the next move may be given: all of the one before is in the ring. */
 bool robot_ready(const struct robot *r);
@@ -166,7 +176,7 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
 void robot_cycle(struct robot *r, const struct robot_config *c);
 
 /* What keeps the motion at the end of a cycle from being faster, whose move asked for a feed
- * [mm/s]; 0: of joints. `axis` is the joint at its limit, from 1. */
+ * [mm/s]; 0: of joints. `axis` is the joint at its limit, from 1, 7 the external axis. */
 struct limited robot_limited(struct robot *r, const struct robot_config *c, double feed);
 
 /* Nothing moves and nothing is left to do but what hold or override 0 keeps. */
@@ -185,13 +195,16 @@ void robot_override(struct robot *r, double share);
 /* Joints at the end of the moves given so far, for the target of a next one. [rad] */
 void robot_end(const struct robot *r, double joint[OPW_JOINTS]);
 
+/* The external axis there. [m] [rad] */
+double robot_end_external(const struct robot *r);
+
 /* Take another tool; ROBOT_BUSY while moves are not done. */
 enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
                              const struct pose *tool);
 
 /* Jog along a direction: of joints; or X Y Z and turns about them, of the base or of the tool's
- * frame, through the tip. Speed at the share 0..1 of config's (feed, spin, joint speeds).
- * `way` > 0 [mm] or [rad]: so far only; 0: until robot_release, or as far as the arm goes. A jog
+ * frame, through the tip; or of the external axis, by the first number. Speed at the share 0..1 of config's (feed, spin, joint speeds).
+ * `way` > 0 [mm] or [rad], of a track [m]: so far only; 0: until robot_release, or as far as the arm goes. A jog
  * goes on while the same one is asked for; ROBOT_BUSY: another motion has to end. */
 enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
                             const double direction[6], double share, double way,

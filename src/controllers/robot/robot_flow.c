@@ -18,7 +18,9 @@ static const double USED = 1.0 - 1e-9, USED_AT_ONCE = 1.0 - 1e-3;
 
 bool robot_flows(const struct robot *r, const struct robot_config *c, const struct robot_move *move)
 {
-    return c->flow && !r->jogging && (move->singular != ROBOT_WRIST || move->kind == ROBOT_SPLINE);
+    return move->kind == ROBOT_SPLINE
+           || (c->flow && !r->jogging && robot_travel(r, move) == 0.0
+               && move->singular != ROBOT_WRIST);
 }
 
 static struct speed_limits limits_of(const struct robot_config *c)

@@ -79,6 +79,7 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
     for (int n = 0; n < TRIES && length > least; n++) {
         struct pose pose = r->pose;
         double by[3], q[4];
+        external_to_arm(&c->external, r->external, pose.at);
         for (int i = 0; i < 3; i++) {
             pose.at[i] += v > 0.0 ? velocity[i] / v * length : 0.0;
             by[i] = turn[i] * (v > 0.0 ? length / v : w > 0.0 ? length / w : 0.0);
@@ -92,6 +93,33 @@ static enum robot_status jog_tip(struct robot *r, const struct robot_config *c,
         length = el_max(0.0, length * why->part - least);
     }
     return status;
+}
+
+/* Move the external axis, as far as it goes. */
+static enum robot_status jog_external(struct robot *r, const struct robot_config *c, double way,
+                                      double sign, struct robot_move *move,
+                                      struct robot_refusal *why)
+{
+    const double limit = sign > 0.0 ? c->external.high : c->external.low;
+    const double left = sign * (limit - r->external);
+
+    why->which = OPW_JOINTS;
+    if (c->external.kind == EXTERNAL_NONE) {
+        why->limit = manipulator_joints_of(&c->arm);
+        return ROBOT_NO_JOINT;
+    }
+    if (!(left > 0.0)) {
+        why->value = r->external;
+        why->limit = limit;
+        why->slides = c->external.kind == EXTERNAL_TRACK;
+        return ROBOT_OUTSIDE;
+    }
+    move->kind = ROBOT_JOINTS;
+    move->target.by_joints = true;
+    move->target.beside = c->external.kind;
+    memcpy(move->target.joint, r->joint, sizeof r->joint);
+    move->target.external = r->external + sign * (way > 0.0 ? el_min(way, left) : left);
+    return robot_plan(r, c, move, NULL, NULL, why);
 }
 
 /* Whether the jog asked for is the one under way. */
@@ -117,7 +145,7 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
         most = el_max(most, fabs(direction[i]));
     }
     if (!(most > 0.0 && most <= ROBOT_MOST && share > 0.0 && share <= 1.0 && way >= 0.0
-          && way <= ROBOT_MOST)) {
+          && way <= ROBOT_MOST && (frame != ROBOT_IN_EXTERNAL || direction[0] != 0.0))) {
         return ROBOT_PARAMETER;
     }
     if (same(r, frame, direction)) {
@@ -134,9 +162,11 @@ enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum 
         quaternion_turn(r->pose.turn, velocity, velocity);
         quaternion_turn(r->pose.turn, turn, turn);
     }
-    const enum robot_status status = frame == ROBOT_IN_JOINTS
-                                         ? jog_joints(r, c, direction, way, &move, why)
-                                         : jog_tip(r, c, velocity, turn, way, &move, why);
+    const double sign = direction[0] > 0.0 ? 1.0 : -1.0;
+    const enum robot_status status =
+        frame == ROBOT_IN_EXTERNAL ? jog_external(r, c, way, sign, &move, why)
+        : frame == ROBOT_IN_JOINTS ? jog_joints(r, c, direction, way, &move, why)
+                                   : jog_tip(r, c, velocity, turn, way, &move, why);
     r->jogging = r->jog_held = status == ROBOT_OK;
     r->jog_frame = frame;
     memcpy(r->jog_direction, direction, sizeof r->jog_direction);

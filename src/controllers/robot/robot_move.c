@@ -21,6 +21,9 @@ static const double SAME = 1e-12, DOUBTFUL = 1e-9;
 /* A path of the tip shorter than this share of its turning counts as none. */
 static const double STILL = 1e-3;
 
+/* The external axis counts so much of its coordinate. [mm/m] [mm/rad] */
+static const double METRE = 1000.0;
+
 /* A path this short is rounding. [mm] */
 static const double NOWHERE = 1e-9;
 
@@ -65,8 +68,9 @@ static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
     const double from_0[] = { m->feed, m->spin, m->acc, m->dec, m->zone, m->radius, m->part };
-    return all_sound(t->joint, OPW_JOINTS) && all_sound(t->pose.at, 3) && all_sound(t->pose.turn, 4)
-           && all_sound(m->via, 3) && all_sound(m->centre, 3) && all_sound(m->normal, 3)
+    return all_sound(t->joint, OPW_JOINTS) && all_sound(&t->external, 1) && all_sound(t->pose.at, 3)
+           && all_sound(t->pose.turn, 4) && all_sound(m->via, 3) && all_sound(m->centre, 3)
+           && all_sound(m->normal, 3)
            && (!m->goes_on || (all_sound(m->next.at, 3) && all_sound(m->next.turn, 4)))
            && all_sound(&m->sweep, 1) && all_sound(&m->rise, 1)
            && (m->rise == 0.0 || axis_of(m->normal) >= 0)
@@ -135,7 +139,9 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
                                const struct robot_move *move, const struct pose *pose,
                                const double by[3])
 {
-    struct arm_move m = { .kind = ARM_MOVE_POSE };
+    const double travel = robot_travel(r, move);
+    struct arm_move m = { .kind = ARM_MOVE_POSE,
+                          .external = { r->rear_external, r->rear_external + travel } };
     double way = ARM_MOVES_LEVER * sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
 
     rear_turn(r, arm, m.turn);
@@ -158,6 +164,7 @@ static enum robot_status enter(struct robot *r, const struct manipulator *arm,
     } else {
         way = 0.0;
     }
+    way = el_max(way, METRE * fabs(travel));
     arm_moves_add(&r->moves, &m, way);
     const enum robot_status status = draw(r, move, pose->at);
     r->tool_path.path.length =
@@ -274,12 +281,39 @@ static double feed_of(const struct robot *r, const struct robot_config *c,
     return length == ARM_MOVES_LEVER * angle ? turning : el_min(feed, turning); /* it turns only */
 }
 
+/* Limits of a path on which the external axis goes evenly, by `travel`; feed and acceleration are
+ * those of the tip in the world, where the way of a line is another one. */
+static void share_path(const struct robot *r, const struct robot_config *c,
+                       const struct robot_move *move, const double by[3], double travel,
+                       struct tool_path_limits *l)
+{
+    const struct path *p = &r->tool_path.path;
+    const double angle = sqrt(by[0] * by[0] + by[1] * by[1] + by[2] * by[2]);
+    double from[3], to[3], square = 0.0;
+
+    memcpy(from, p->start, sizeof from);
+    memcpy(to, p->end, sizeof to);
+    external_to_world(&c->external, r->rear_external, from);
+    external_to_world(&c->external, r->rear_external + travel, to);
+    for (int i = 0; i < 3; i++) {
+        square += (to[i] - from[i]) * (to[i] - from[i]);
+    }
+    const double way = move->kind == ROBOT_LINE ? sqrt(square) : p->length;
+    const double per = p->length / way, each = p->length / fabs(travel); /* infinite: it rests */
+    l->feed = el_min(robot_feed_of(c, move) * per, robot_external_speed(c) * each);
+    l->acc = el_min(c->acc * per, c->external.acc * each);
+    if (angle > SAME && move->singular != ROBOT_WRIST) {
+        l->feed = el_min(l->feed, robot_spin_of(c, move) * p->length / angle);
+    }
+}
+
 /* What the path of a move may take; `chained`: a corner joins it with the move before. */
 static struct tool_path_limits limits_of(const struct robot *r, const struct robot_config *c,
                                          const struct robot_move *move, const double by[3],
                                          bool chained)
 {
-    const bool joined = move->singular != ROBOT_WRIST && !robot_flows(r, c, move);
+    const double travel = robot_travel(r, move);
+    const bool joined = move->singular != ROBOT_WRIST && !robot_flows(r, c, move) && travel == 0.0;
     struct tool_path_limits l = { .feed = feed_of(r, c, move, by),
                                   .acc = c->acc,
                                   .smooth = c->smooth,
@@ -290,6 +324,9 @@ static struct tool_path_limits limits_of(const struct robot *r, const struct rob
     for (int i = 0; i < OPW_JOINTS; i++) {
         l.speed[i] = robot_joint_speed(c, i);
         l.turn[i] = c->arm.joint[i].acc;
+    }
+    if (travel != 0.0) {
+        share_path(r, c, move, by, travel, &l);
     }
     return l;
 }
@@ -347,13 +384,13 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     memcpy(began, r->rear_joint, sizeof began);
     memcpy(rear.at, r->rear, sizeof rear.at);
     rear_turn(r, &arm, rear.turn);
-    bool chained =
-        r->rear_kind == ARM_MOVE_POSE && r->rear_zone > 0.0 && move->singular != ROBOT_WRIST;
+    bool chained = r->rear_kind == ARM_MOVE_POSE && r->rear_zone > 0.0
+                   && move->singular != ROBOT_WRIST && robot_travel(r, move) == 0.0;
     enum robot_status status = enter(r, &arm, move, pose, by);
     if (status == ROBOT_OK && r->tool_path.path.length >= NOWHERE && move->singular != ROBOT_WRIST
         && turns_first(r, &arm, &rear, joint)) {
         arm_moves_drop(&r->moves);
-        robot_plan_joints(r, c, joint, 1.0);
+        robot_plan_joints(r, c, joint, 0.0, 1.0);
         first = r->command;
         tool_path_next(&r->tool_path, &first.path);
         first.feed = first.cap = r->tool_path.segment[0].cap;
@@ -401,7 +438,7 @@ static enum robot_status along(struct robot *r, const struct robot_config *c,
     memcpy(r->rear, r->tool_path.path.end, sizeof r->rear);
     memcpy(r->rear_joint, joint, sizeof joint);
     r->rear_kind = move->singular == ROBOT_WRIST ? ARM_MOVE_WRIST : ARM_MOVE_POSE;
-    r->rear_zone = r->tool_path.stop[1] || flows ? 0.0 : move->zone;
+    r->rear_zone = r->tool_path.stop[1] || flows || robot_travel(r, move) != 0.0 ? 0.0 : move->zone;
     return ROBOT_OK;
 }
 
@@ -511,6 +548,7 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
         put_back(r, &before);
         return status;
     }
+    r->rear_external += robot_travel(r, move);
     r->spline.goes_on = move->kind == ROBOT_SPLINE && move->goes_on;
     r->move = *move;
     r->command.line = move->line;
@@ -535,6 +573,44 @@ static bool all_there(const struct manipulator *arm, const struct robot_target *
     return true;
 }
 
+/* Whether there is an external axis that can do its part of a move. */
+static enum robot_status beside(const struct robot *r, const struct robot_config *c,
+                                const struct robot_move *m, struct robot_refusal *why)
+{
+    const bool straight = m->kind == ROBOT_JOINTS || m->kind == ROBOT_LINE;
+    const bool table = c->external.kind == EXTERNAL_TABLE && m->kind != ROBOT_SPLINE;
+
+    if (m->target.beside == EXTERNAL_NONE) {
+        return ROBOT_OK;
+    }
+    why->which = OPW_JOINTS;
+    why->value = m->target.external;
+    why->slides = c->external.kind == EXTERNAL_TRACK;
+    if (m->target.beside != c->external.kind) {
+        why->limit = manipulator_joints_of(&c->arm);
+        return ROBOT_NO_JOINT;
+    }
+    if (external_outside(&c->external, robot_end_external(r), m->target.external, &why->limit)) {
+        memcpy(why->place, r->pose.at, sizeof why->place);
+        return ROBOT_OUTSIDE;
+    }
+    return straight || table || robot_travel(r, m) == 0.0 ? ROBOT_OK : ROBOT_BESIDE;
+}
+
+/* The move as the arm's base at its end sees it. */
+static struct robot_move from_base(const struct robot *r, const struct robot_config *c,
+                                   const struct robot_move *move)
+{
+    const double end = robot_end_external(r) + robot_travel(r, move);
+    struct robot_move m = *move;
+
+    external_to_arm(&c->external, end, m.target.pose.at);
+    external_to_arm(&c->external, end, m.via);
+    external_to_arm(&c->external, end, m.centre);
+    external_to_arm(&c->external, end, m.next.at);
+    return m;
+}
+
 enum robot_status robot_move(struct robot *r, const struct robot_config *c,
                              const struct robot_move *move, struct robot_refusal *why)
 {
@@ -542,19 +618,27 @@ enum robot_status robot_move(struct robot *r, const struct robot_config *c,
     if (!robot_ready(r)) {
         return ROBOT_BUSY;
     }
-    if (move->kind == ROBOT_SPLINE && !robot_flows(r, c, move)) {
-        return ROBOT_NO_FLOW;
-    }
     if (!sound(move) || (c->arm.by_axes && move->singular == ROBOT_WRIST)) {
         return ROBOT_PARAMETER;
     }
     if (!all_there(&c->arm, &move->target, why)) {
         return ROBOT_NO_JOINT;
     }
+    const enum robot_status able = beside(r, c, move, why);
+    if (able != ROBOT_OK) {
+        return able;
+    }
+    memset(why, 0, sizeof *why);
     if (robot_flows(r, c, move) ? trajectory_busy(&r->trajectory) || r->ring.count > 0
                                 : joint_flow_busy(&r->flow)) {
         return ROBOT_BUSY;
     }
     robot_settle(r, c);
-    return robot_plan(r, c, move, NULL, NULL, why);
+    const struct robot_move m = from_base(r, c, move);
+    const enum robot_status status = robot_plan(r, c, &m, NULL, NULL, why);
+    if (status != ROBOT_OK) {
+        const double at = r->rear_external + why->part * robot_travel(r, move);
+        external_to_world(&c->external, at, why->place);
+    }
+    return status;
 }

@@ -22,16 +22,22 @@ enum robot_status robot_plan(struct robot *r, const struct robot_config *c,
 /* Speed that a joint may have: its own, or what a slot's pulses are. [rad/s] */
 double robot_joint_speed(const struct robot_config *c, int joint);
 
+/* The same of the external axis. [m/s] [rad/s] */
+double robot_external_speed(const struct robot_config *c);
+
+/* How far a move takes the external axis. [m] [rad] */
+double robot_travel(const struct robot *r, const struct robot_move *move);
+
 /* Share that 0 or a number stands for. */
 static inline double robot_share(double share)
 {
     return share > 0.0 ? share : 1.0;
 }
 
-/* A move of the joints to target angles [rad], at a share 0..1 of their limits, becomes the latest
+/* A move of the joints to target angles [rad], of the external axis by `travel`, at a share 0..1 of their limits, becomes the latest
  * of the arm, and its command. */
 void robot_plan_joints(struct robot *r, const struct robot_config *c,
-                       const double target[OPW_JOINTS], double share);
+                       const double target[OPW_JOINTS], double travel, double share);
 
 /* Plan a move of the joints to its target: angles, or a pose. */
 enum robot_status robot_to_joints(struct robot *r, const struct robot_config *c,

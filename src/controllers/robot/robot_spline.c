@@ -143,7 +143,7 @@ enum robot_status robot_to_spline(struct robot *r, const struct robot_config *c,
     for (int i = 0; i < OPW_JOINTS; i++) {
         end[i] = s.end.r[i] / JOINT_CURVE_LEVER;
     }
-    robot_plan_joints(r, c, end, 1.0);
+    robot_plan_joints(r, c, end, 0.0, 1.0);
     robot_flow_pieces(r, c, move, s.count, s.piece);
     r->spline.start = from;
     r->spline.end = s.end;

@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "controller_places.h"
 #include "slots.h"
 
 void controller_start(struct controller *s, const struct controller_config *c)
@@ -12,7 +13,10 @@ void controller_start(struct controller *s, const struct controller_config *c)
     s->memory = 1;
     s->asked = -1;
     s->replaying = -1;
+    robot_place(&s->robot, &c->robot, c->zero_external);
     memcpy(s->joint, c->zero, sizeof s->joint);
+    s->external = c->zero_external;
+    s->external_origin = (double)llround(c->zero_external * c->robot.external.scale);
     for (int i = 0; i < OPW_JOINTS; i++) {
         s->origin[i] = (double)llround(c->zero[i] * c->robot.scale[i]);
     }
@@ -29,10 +33,13 @@ static void look_at_moves(struct controller *s)
 /* Write a cycle of the arm into the slots of a memory, as pulses. */
 static void make_slots(struct controller *s, const struct controller_config *c)
 {
-    int32_t of[OPW_JOINTS][FPGA_SLOTS];
-    bool moves[OPW_JOINTS], any = false;
+    int32_t of[OPW_JOINTS][FPGA_SLOTS], beside[FPGA_SLOTS];
+    bool moves[OPW_JOINTS];
 
     memset(s->words, 0, (size_t)c->slots * FPGA_SLOT_WORDS * sizeof s->words[0]);
+    const bool travels =
+        slots_pulses(s->external, s->robot.external, c->robot.external.scale, c->slots, beside);
+    bool any = travels;
     for (int i = 0; i < OPW_JOINTS; i++) {
         moves[i] = slots_pulses(s->joint[i], s->robot.joint[i], c->robot.scale[i], c->slots, of[i]);
         any |= moves[i];
@@ -42,9 +49,11 @@ static void make_slots(struct controller *s, const struct controller_config *c)
         for (int i = 0; i < OPW_JOINTS; i++) {
             pulses[i] = moves[i] ? of[i][n] : 0;
         }
+        pulses[FPGA_AXES] = travels ? beside[n] : 0;
         fpga_slot_pack(&s->words[n * FPGA_SLOT_WORDS], pulses, c->format);
     }
     memcpy(s->joint, s->robot.joint, sizeof s->joint);
+    s->external = s->robot.external;
 }
 
 /* Measure the latency of lines whose memory has begun to play. */
@@ -63,72 +72,15 @@ static void see_lines(struct controller *s, const struct fpga_shown *card, int64
     s->asked = -1;
 }
 
-/* The number of the tool in force; those of a program are in its points. */
-static int32_t tool_of(const struct controller *s, const struct controller_config *c,
-                       const struct orders_text *t)
-{
-    int32_t n = 0;
-
-    if (memcmp(&s->robot.tool, &c->robot.arm.tool, sizeof s->robot.tool) != 0) {
-        for (n = ROBOT_JOB_FRAMES - 1; n > 0; n--) {
-            const struct robot_job_frame *f = &t->points->tool[n];
-            const struct pose tool = pose_of(f->value, f->value + 3);
-            if (f->defined && memcmp(&tool, &s->robot.tool, sizeof tool) == 0) {
-                break;
-            }
-        }
-    }
-    return n;
-}
-
-/* Whose arm GETS asks for. */
-struct arm_asked {
-    const struct controller *s;
-    const struct controller_config *c;
-    const struct orders_text *t;
-};
-
-/* Where the arm is, as positions of a job: in pulses, and as a pose in the base with all of its
- * configuration, but for turns that end just there, which are then what is nearest. */
-static void arm_here(const void *asked, struct robot_job_point here[2])
-{
-    const struct controller *s = ((const struct arm_asked *)asked)->s;
-    const struct controller_config *c = ((const struct arm_asked *)asked)->c;
-    const struct orders_text *t = ((const struct arm_asked *)asked)->t;
-    static const double TURN = 6.283185307179586, EDGE = 1e-9;
-    static const int TURNED[3] = { 0, 3, 5 };
-    struct manipulator arm = c->robot.arm;
-    const double *joint = s->robot.joint;
-
-    arm.tool = s->robot.tool;
-    const struct pose pose = manipulator_pose(&arm, joint);
-    const int branch = manipulator_branch(&arm, joint);
-    here[0] = here[1] = robot_job_point_open();
-    here[0].kind = ROBOT_JOB_PULSES;
-    here[0].tool = here[1].tool = tool_of(s, c, t);
-    for (int i = 0; i < OPW_JOINTS; i++) {
-        here[0].value[i] = joint[i] * c->orders.pulses[i];
-    }
-    here[1].kind = ROBOT_JOB_POSE;
-    here[1].user = 0;
-    memcpy(here[1].value, pose.at, sizeof pose.at);
-    quaternion_angles(pose.turn, here[1].value + 3);
-    here[1].shoulder = (branch & OPW_BACK) != 0;
-    here[1].elbow = (branch & OPW_ELBOW) != 0;
-    here[1].wrist = (branch & OPW_FLIP) != 0;
-    for (int i = 0; i < 3; i++) {
-        const double turns = joint[TURNED[i]] / TURN, whole = round(turns);
-        here[1].turn[i] = fabs(turns - whole) < 0.5 - EDGE ? (int32_t)whole : ROBOT_JOB_ANY_TURN;
-    }
-}
-
-static struct robot_job_inputs inputs_of(const struct arm_asked *asked,
+static struct robot_job_inputs inputs_of(const struct controller_places *asked,
                                          const struct fpga_shown *card, uint32_t di, int64_t clock)
 {
     struct robot_job_inputs in = { .now = clock * FPGA_CLOCK_NS,
                                    .reached = asked->s->reached - asked->s->first,
                                    .di = di,
-                                   .here = arm_here,
+                                   .here = controller_places_here,
+                                   .convert = controller_places_convert,
+                                   .shift = controller_places_shift,
                                    .arm = asked };
     memcpy(in.ai, card->irq_ai, sizeof in.ai);
     return in;
@@ -159,7 +111,7 @@ static void time_run(struct controller *s, const struct controller_config *c,
 static void poll(struct controller *s, const struct controller_config *c,
                  const struct orders_text *t, const struct fpga_shown *card, int64_t until)
 {
-    const struct arm_asked asked = { s, c, t };
+    const struct controller_places asked = { s, c, t };
     struct layers_copy seen;
 
     for (int64_t at = s->layers.poll; layers_poll(&s->layers, &c->layers, until, &seen);
@@ -179,7 +131,7 @@ static int32_t decide(struct controller *s, const struct controller_config *c,
 {
     controller_panel_run(s, c, t, panel, clock);
     look_at_moves(s);
-    const struct arm_asked asked = { s, c, t };
+    const struct controller_places asked = { s, c, t };
     const struct robot_job_inputs in = inputs_of(&asked, card, (uint32_t)card->irq_inputs, clock);
     s->known = -1;
     const int32_t lines = s->stopped ? 0 : controller_program_run(s, c, t, panel, &in);
@@ -241,6 +193,10 @@ static void look_at_stop(struct controller *s, const struct controller_config *c
             s->joint[i] = (s->origin[i] + card->pulse_count[i]) / c->robot.scale[i];
         }
         robot_start(&s->robot, &c->robot, s->joint);
+        if (c->robot.external.kind != EXTERNAL_NONE) {
+            s->external = (s->external_origin + card->external_count) / c->robot.external.scale;
+            robot_place(&s->robot, &c->robot, s->external);
+        }
         s->reached = s->given;
     }
     s->stopped = card->stopped;
@@ -366,7 +322,9 @@ void controller_rehearse(struct controller *s, const struct controller_config *c
             continue;
         }
         double end[OPW_JOINTS];
+        const double beside = robot_end_external(&s->robot);
         robot_end(&s->robot, end);
         robot_start(&s->robot, &c->robot, end);
+        robot_place(&s->robot, &c->robot, beside);
     }
 }

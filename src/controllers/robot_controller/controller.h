@@ -36,6 +36,7 @@ struct controller_config {
     int32_t depth;             /* room of that queue in lines, up to CONTROLLER_QUEUE */
     int64_t start;             /* [clock] the program starts at the first run from here on */
     double zero[OPW_JOINTS];   /* [rad] joints at clock 0 */
+    double zero_external;      /* [m] [rad] the external axis there */
     uint32_t servo;            /* axes whose servo is on */
     int32_t seed;
     struct robot_config robot;
@@ -142,6 +143,8 @@ struct controller {
     bool stopped;              /* as the card was seen last */
     double joint[OPW_JOINTS];  /* [rad] at the end of all slots written */
     double origin[OPW_JOINTS]; /* [pulses] of the joints where the card's counters are 0 */
+    double external;           /* [m] [rad] the external axis at the end of all slots written */
+    double external_origin;    /* [pulses] of it where the card's counter is 0 */
 
     /* the program */
     enum controller_program program;

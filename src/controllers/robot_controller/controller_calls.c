@@ -55,5 +55,9 @@ int controller_taught(const struct controller *s, const struct controller_config
     for (int i = 0; i < OPW_JOINTS; i++) {
         p.value[i] = s->taught[n].joint[i] / manipulator_unit(&c->robot.arm, i);
     }
+    if (s->taught[n].beside != EXTERNAL_NONE) {
+        p.beside = true;
+        p.external = s->taught[n].external / external_unit(&c->robot.external);
+    }
     return robot_job_point_write(n, &p, line);
 }

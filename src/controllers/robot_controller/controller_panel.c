@@ -21,6 +21,9 @@ enum robot_status controller_panel_jog(struct controller *s, const struct contro
         panel->frame == ROBOT_IN_JOINTS || (d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0);
     double way = panel->jog_way * (turns ? DEGREE : 1.0);
 
+    if (panel->frame == ROBOT_IN_EXTERNAL) {
+        way = panel->jog_way * external_unit(&c->robot.external);
+    }
     for (int i = 0; i < OPW_JOINTS && panel->frame == ROBOT_IN_JOINTS; i++) {
         way = d[i] != 0.0 ? panel->jog_way * manipulator_unit(&c->robot.arm, i) : way;
     }

@@ -66,8 +66,25 @@ enum robot_status controller_program_give(struct controller *s, const struct con
     return status;
 }
 
+/* Where the external axis is at the end of a move. */
+static double end_of(const struct robot *r, const struct robot_target *t)
+{
+    return t->beside != EXTERNAL_NONE ? t->external : robot_end_external(r);
+}
+
+/* Pose of the tip for joints, in the world, at the end of a move to a target. */
+static struct pose pose_at(const struct manipulator *arm, const struct controller *s,
+                           const struct controller_config *c, const struct robot_target *t,
+                           const double joint[OPW_JOINTS])
+{
+    struct pose pose = manipulator_pose(arm, joint);
+    external_to_world(&c->robot.external, end_of(&s->robot, t), pose.at);
+    return pose;
+}
+
 /* A target by joints that is shifted becomes the pose of its tip, in the same branch and turns. */
-static void shift_target(const struct manipulator *arm, struct robot_target *t,
+static void shift_target(const struct manipulator *arm, const struct controller *s,
+                         const struct controller_config *c, struct robot_target *t,
                          const double shift[3])
 {
     static const double TURN = 6.283185307179586;
@@ -76,7 +93,7 @@ static void shift_target(const struct manipulator *arm, struct robot_target *t,
     }
     if (t->by_joints) {
         t->by_joints = false;
-        t->pose = manipulator_pose(arm, t->joint);
+        t->pose = pose_at(arm, s, c, t, t->joint);
         t->branch = manipulator_branch(arm, t->joint);
         t->turned = true;
         for (int i = 0; i < OPW_JOINTS; i++) {
@@ -91,19 +108,21 @@ static void shift_target(const struct manipulator *arm, struct robot_target *t,
 
 /* The branch of the wrist in which joint 4 is within 90 deg of its zero, or beyond: one of the two
  * is, as they are half a turn apart. */
-static void settle_wrist(const struct manipulator *arm, const struct robot *r, int32_t wrist,
-                         struct robot_target *t)
+static void settle_wrist(const struct manipulator *arm, const struct external *e,
+                         const struct robot *r, int32_t wrist, struct robot_target *t)
 {
     static const double TURN = 6.283185307179586;
+    struct pose pose = t->pose;
     double joint[OPW_JOINTS];
     int which;
 
+    external_to_arm(e, end_of(r, t), pose.at);
     if (!(manipulator_flags(arm) & OPW_FLIP)) {
         return;
     }
     memcpy(joint, r->joint, sizeof joint);
     t->branch &= ~OPW_FLIP;
-    if (manipulator_solve(arm, &t->pose, 1u << t->branch, NULL, joint, &which) == MANIPULATOR_FAR) {
+    if (manipulator_solve(arm, &pose, 1u << t->branch, NULL, joint, &which) == MANIPULATOR_FAR) {
         return;
     }
     const double four = joint[3] - TURN * round(joint[3] / TURN);
@@ -114,13 +133,14 @@ static void settle_wrist(const struct manipulator *arm, const struct robot *r, i
 
 /* Where the latest move ends, and a step from there: of the tool's frame, or of one in the base,
  * about whose axes it turns. */
-static void step_from_end(const struct manipulator *arm, const struct robot *r,
-                          const struct order *order, struct robot_target *t)
+static void step_from_end(const struct manipulator *arm, const struct controller *s,
+                          const struct controller_config *c, const struct order *order,
+                          struct robot_target *t)
 {
     double joint[OPW_JOINTS], by[3], back[4];
 
-    robot_end(r, joint);
-    const struct pose end = manipulator_pose(arm, joint);
+    robot_end(&s->robot, joint);
+    const struct pose end = pose_at(arm, s, c, t, joint);
     if (order->in_tool) {
         t->pose = pose_product(&end, &order->step);
         return;
@@ -163,18 +183,19 @@ bool controller_program_move(struct controller *s, const struct controller_confi
     }
     arm.tool = *tool;
     if (m.kind == ROBOT_CIRCLE || m.goes_on) {
-        m.next = order->via.by_joints ? manipulator_pose(&arm, order->via.joint) : order->via.pose;
+        m.next = order->via.by_joints ? pose_at(&arm, s, c, &m.target, order->via.joint)
+                                      : order->via.pose;
         for (int i = 0; i < 3; i++) {
             m.next.at[i] += order->shift[i];
             m.via[i] = m.next.at[i];
         }
     }
     if (order->goes_on) {
-        step_from_end(&arm, &s->robot, order, &m.target);
+        step_from_end(&arm, s, c, order, &m.target);
     }
-    shift_target(&arm, &m.target, order->shift);
+    shift_target(&arm, s, c, &m.target, order->shift);
     if (order->wrist) {
-        settle_wrist(&arm, &s->robot, order->wrist, &m.target);
+        settle_wrist(&arm, &c->robot.external, &s->robot, order->wrist, &m.target);
     }
     const enum robot_status status =
         controller_program_give(s, c, &m, order->line, &s->trouble.refusal);

@@ -35,6 +35,7 @@ struct controller_settings controller_defaults(void)
     fill(s.joint_acc, (const double[]){ 500.0, 500.0, 500.0, 1000.0, 1000.0, 1500.0 });
     fill(s.gear_ratio, (const double[]){ 100.0, 120.0, 120.0, 100.0, 100.0, 80.0 });
     s.start_joint[4] = 90.0;
+    s.external_direction[0] = 1.0;
     memcpy(s.zone, ZONE, sizeof s.zone);
     return s;
 }
@@ -120,6 +121,18 @@ static bool axes_good(const struct controller_settings *s, struct controller_wro
            || refuse(wrong, "singular", 0, s->singular, "not of an arm by its axes");
 }
 
+/* Whether there can be such an axis outside the arm. */
+static bool external_good(const struct controller_settings *s, struct controller_wrong *wrong)
+{
+    const double *d = s->external_direction;
+
+    if (!(s->external_low < s->external_high)) {
+        return refuse(wrong, "external_low", 0, s->external_low, "not below external_high");
+    }
+    return d[0] != 0.0 || d[1] != 0.0 || d[2] != 0.0
+           || refuse(wrong, "external_direction", 0, 0.0, "no direction");
+}
+
 bool controller_settings_good(const struct controller_settings *s, struct controller_wrong *wrong)
 {
     const double clocks = s->bus_period * FPGA_CLOCK_HZ;
@@ -143,6 +156,9 @@ bool controller_settings_good(const struct controller_settings *s, struct contro
         }
     }
     if (s->arm_by == 1 && !axes_good(s, wrong)) {
+        return false;
+    }
+    if (s->external != EXTERNAL_NONE && !external_good(s, wrong)) {
         return false;
     }
     if (s->arm_by == 0 && s->joints != OPW_JOINTS) {
@@ -189,6 +205,23 @@ static void set_robot(const struct controller_settings *s, struct robot_config *
             (struct manipulator_joint){ s->joint_low[i] * unit, s->joint_high[i] * unit,
                                         s->joint_speed[i] * unit, s->joint_acc[i] * unit };
         r->scale[i] = s->gear_ratio[i] * s->pulses_per_turn[i] / (360.0 * DEGREE);
+    }
+}
+
+static void set_external(const struct controller_settings *s, struct external *e)
+{
+    const double *d = s->external_direction;
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+
+    e->kind = (enum external_kind)s->external;
+    const double unit = external_unit(e);
+    e->low = s->external_low * unit;
+    e->high = s->external_high * unit;
+    e->speed = s->external_speed * unit;
+    e->acc = s->external_acc * unit;
+    e->scale = s->external_gear * s->external_pulses / (360.0 * DEGREE);
+    for (int i = 0; i < 3 && e->kind == EXTERNAL_TRACK; i++) {
+        e->along[i] = d[i] / length;
     }
 }
 
@@ -247,7 +280,13 @@ void controller_configure(const struct controller_settings *s, struct controller
     }
     set_layers(s, &c->layers);
     set_robot(s, &c->robot);
+    set_external(s, &c->robot.external);
     set_orders(s, &c->orders);
+    c->orders.external = c->robot.external;
+    if (c->robot.external.kind != EXTERNAL_NONE) {
+        c->zero_external = s->external_start * external_unit(&c->robot.external);
+        c->servo |= 1u << FPGA_AXES;
+    }
     for (int i = 0; i < OPW_JOINTS; i++) {
         c->zero[i] = s->start_joint[i] * manipulator_unit(&c->robot.arm, i);
         c->orders.slides[i] = manipulator_slides(&c->robot.arm, i);

@@ -70,6 +70,18 @@
     X(double, start_joint, [6], "deg", 0.0, -3600.0, 3600.0) \
     X(double, tool, [6], "mm, deg", 0.0, -1e4, 1e4)
 
+/* An axis outside the arm, in mm, of a table in deg. */
+#define CONTROLLER_EXTERNAL(X) \
+    X(int32_t, external, , "", 0, 0, 2) /* enum external_kind */ \
+    X(double, external_direction, [3], "", 0.0, -1e3, 1e3) \
+    X(double, external_low, , "mm, deg", -1000.0, -1e6, 1e6) \
+    X(double, external_high, , "mm, deg", 1000.0, -1e6, 1e6) \
+    X(double, external_speed, , "mm/s, deg/s", 1000.0, 1e-3, 1e6) \
+    X(double, external_acc, , "mm/s2, deg/s2", 1000.0, 1e-3, 1e7) \
+    X(double, external_gear, , "", 100.0, 1e-3, 1e5) \
+    X(int32_t, external_pulses, , "", 2500, 1, 10000000) \
+    X(double, external_start, , "mm, deg", 0.0, -1e6, 1e6)
+
 #define CONTROLLER_PATH(X) \
     X(double, origin, [6], "mm, deg", 0.0, -1e5, 1e5) /* of G54 */ \
     X(double, feed, , "mm/min", 600.0, 1e-6, 1e6) \
@@ -86,7 +98,8 @@
     X(bool, tool_stop, , "", true, false, true)
 
 #define CONTROLLER_SETTINGS(X) \
-    CONTROLLER_TIMES(X) CONTROLLER_LAYERS(X) CONTROLLER_ARM(X) CONTROLLER_PATH(X)
+    CONTROLLER_TIMES(X) \
+    CONTROLLER_LAYERS(X) CONTROLLER_ARM(X) CONTROLLER_EXTERNAL(X) CONTROLLER_PATH(X)
 
 #define CONTROLLER_MEMBER(type, name, elements, unit, start, low, high) type name elements;
 struct controller_settings {

@@ -7,7 +7,6 @@
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
-/* CCN 16: a case for each status. */
 static const char *name_of(enum robot_status status)
 {
     switch (status) {
@@ -23,9 +22,9 @@ static const char *name_of(enum robot_status status)
     case ROBOT_OFF_PLANE:    return "the start is not in the plane of the arc's centre";
     case ROBOT_NO_UNIT:      return "the normal of the arc is no unit vector";
     case ROBOT_NO_SPLINE:    return "two points of a spline in a row are the same";
-    case ROBOT_NO_FLOW:      return "a spline needs moves that flow: soft.flow = true";
     case ROBOT_TILTED:       return "the arm has no joint that turns the tool so";
     case ROBOT_NO_JOINT:     return "no such joint";
+    case ROBOT_BESIDE:       return "a track moves with joints and lines alone";
     }
     return "";
 }
@@ -38,6 +37,16 @@ static void add(struct robot_job_text *t, const char *words, double value)
 
     robot_job_text_add(t, words);
     robot_job_text_number(t, round(value * scale) / scale);
+}
+
+/* Append which joint it is, or that it is the external axis. */
+static void add_axis(struct robot_job_text *t, const struct robot_refusal *r)
+{
+    if (r->which < OPW_JOINTS) {
+        add(t, ": joint ", r->which + 1);
+    } else {
+        robot_job_text_add(t, ": external axis");
+    }
 }
 
 static void add_place(struct robot_job_text *t, const struct robot_refusal *r)
@@ -60,7 +69,7 @@ void controller_refusal_words(enum robot_status status, const struct robot_refus
     switch (status) {
     case ROBOT_FAR: add_place(&t, r); break;
     case ROBOT_OUTSIDE:
-        add(&t, ": joint ", r->which + 1);
+        add_axis(&t, r);
         add(&t, " to ", r->value / (r->slides ? MM : DEGREE));
         add(&t, r->slides ? " mm, limit " : " deg, limit ", r->limit / (r->slides ? MM : DEGREE));
         add(&t, r->slides ? " mm, at " : " deg, at ", 100.0 * r->part);
@@ -94,7 +103,7 @@ void controller_refusal_words(enum robot_status status, const struct robot_refus
         robot_job_text_add(&t, " deg from the tilt that its tool keeps");
         break;
     case ROBOT_NO_JOINT:
-        add(&t, ": joint ", r->which + 1);
+        add_axis(&t, r);
         add(&t, ", the arm has ", r->limit);
         break;
     case ROBOT_NO_UNIT: add(&t, ": its length is ", r->value); break;

@@ -32,6 +32,7 @@ struct orders_config {
     enum robot_singular singular;
     double pulses[OPW_JOINTS]; /* [pulses/rad] of the joints, signed as they are */
     bool slides[OPW_JOINTS];   /* joints that are told in mm, not in degrees */
+    struct external external;  /* beside the arm */
     int32_t lines;             /* most instructions of a job that one call carries out */
 };
 

@@ -2,12 +2,24 @@
 #include "orders_parts.h"
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
+_Static_assert((int)EXTERNAL_TRACK == (int)ROBOT_JOB_BASE_AXIS
+                   && (int)EXTERNAL_TABLE == (int)ROBOT_JOB_STATION_AXIS,
+               "a kind is an axis of the language");
 /* Flags of the inverse kinematics for BACK, DOWN, FLIP of a configuration. */
 static const int FLAG[3] = { OPW_BACK, OPW_ELBOW, OPW_FLIP };
 
 static struct pose frame_pose(const struct robot_job_frame *f)
 {
     return pose_of(f->value, f->value + 3);
+}
+
+void orders_job_joints(const struct robot_job_point *p, const struct orders_config *c,
+                       double joint[OPW_JOINTS])
+{
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / c->pulses[i]
+                                               : p->value[i] * (c->slides[i] ? MM : DEGREE);
+    }
 }
 
 /* A point becomes a target. What its configuration leaves open is what is nearest, or on a path
@@ -19,9 +31,8 @@ static void target_of(struct robot_target *t, const struct robot_job_point *p,
     const int32_t said[3] = { p->shoulder, p->elbow, p->wrist };
 
     t->by_joints = p->kind != ROBOT_JOB_POSE;
+    orders_job_joints(p, c, t->joint);
     for (int i = 0; i < OPW_JOINTS; i++) {
-        t->joint[i] = p->kind == ROBOT_JOB_PULSES ? p->value[i] / c->pulses[i]
-                                                  : p->value[i] * (c->slides[i] ? MM : DEGREE);
         t->turn[i] = ROBOT_ANY_TURN;
     }
     const struct pose frame = frame_pose(user), there = pose_of(p->value, p->value + 3);
@@ -33,6 +44,21 @@ static void target_of(struct robot_target *t, const struct robot_job_point *p,
             t->turned = true;
             t->turn[TURNED[i]] = p->turn[i];
         }
+    }
+}
+
+double orders_job_outside(const struct robot_job_point *p, const struct external *e)
+{
+    return p->kind == ROBOT_JOB_PULSES ? p->external / e->scale : p->external * external_unit(e);
+}
+
+/* The axis outside the arm goes to the place of a point, if that has one. */
+static void beside(struct robot_target *t, const struct robot_job_point *p,
+                   const struct external *e)
+{
+    if (p->beside) {
+        t->beside = e->kind;
+        t->external = orders_job_outside(p, e);
     }
 }
 
@@ -69,6 +95,7 @@ static void job_move(struct order *order, const struct robot_job_run *run,
     const struct robot_job_point *p = robot_job_place(run, t->job, t->points, r->point);
     if (r->increment == ROBOT_JOB_NOT_BY) {
         target_of(&m->target, p, &t->points->user[r->user], c);
+        beside(&m->target, p, &c->external);
         order->wrist = p->wrist >= ROBOT_JOB_WRIST_NEAR ? p->wrist : 0;
     } else {
         m->target.branch = ROBOT_ANY_BRANCH;
@@ -76,6 +103,9 @@ static void job_move(struct order *order, const struct robot_job_run *run,
         order->in_tool = r->increment == ROBOT_JOB_BY_TOOL;
         order->step = pose_of(p->value, p->value + 3);
         order->frame = frame_pose(&t->points->user[order->in_tool ? 0 : r->increment]);
+    }
+    if (r->beside >= 0) {
+        beside(&m->target, robot_job_place(run, t->job, t->points, r->beside), &c->external);
     }
     if (r->shift >= 0) {
         shift_of(order->shift, r->shift_by, &t->points->user[r->shift_user]);

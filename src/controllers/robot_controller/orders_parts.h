@@ -14,4 +14,11 @@ void orders_gcode_next(struct orders *o, const struct orders_config *c, const st
 void orders_job_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
                      const struct robot_job_inputs *in, struct order *order);
 
+/* Joints [rad], [m] of a position of a job that is no pose. */
+void orders_job_joints(const struct robot_job_point *p, const struct orders_config *c,
+                       double joint[OPW_JOINTS]);
+
+/* Place [m] [rad] of the axis outside the arm of a position that has one. */
+double orders_job_outside(const struct robot_job_point *p, const struct external *e);
+
 #endif

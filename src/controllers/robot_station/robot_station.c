@@ -112,7 +112,9 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
     int32_t due = 0;
 
     memset(r, 0, sizeof *r);
-    fpga_pulses(&s->card, r->pulses);
+    int64_t pulses[FPGA_PLAYED];
+    fpga_pulses(&s->card, pulses);
+    memcpy(r->pulses, pulses, sizeof r->pulses);
     for (int i = 0; i < OPW_JOINTS; i++) {
         const double scale = s->config.robot.scale[i], at = controller->origin[i];
         joint[i] = (at + (double)r->pulses[i]) / scale;
@@ -121,8 +123,16 @@ void robot_station_read(const struct robot_station *s, struct robot_station_read
         r->joint_command[i] = controller->joint[i] / unit;
         due += (double)llround(controller->joint[i] * scale) != at + (double)r->pulses[i];
     }
+    const struct external *e = &s->config.robot.external;
+    const double count = controller->external_origin + (double)pulses[FPGA_AXES];
+    const double external = e->kind != EXTERNAL_NONE ? count / e->scale : 0.0;
+    due += (double)llround(controller->external * e->scale) != count;
+    r->external = external / external_unit(e);
+    r->external_command = controller->external / external_unit(e);
+    external_to_world(e, controller->external, r->base_command);
     arm.tool = controller->robot.tool;
-    const struct pose pose = manipulator_pose(&arm, joint);
+    struct pose pose = manipulator_pose(&arm, joint);
+    external_to_world(e, external, pose.at);
     robot_station_pose(&pose, r->pose);
     robot_station_pose(&controller->robot.pose, r->pose_command);
     r->configuration = manipulator_factors(&arm, joint, r->factors);
@@ -144,6 +154,7 @@ void robot_station_rehearse(const struct robot_station *s, const struct orders_t
     struct controller_config c = s->config;
 
     memcpy(c.zero, s->controller.robot.joint, sizeof c.zero);
+    c.zero_external = s->controller.robot.external;
     controller_start(trial, &c);
     controller_rehearse(trial, &c, program);
 }

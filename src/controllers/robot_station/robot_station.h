@@ -48,6 +48,9 @@ struct robot_station_reading {
     int64_t pulses[OPW_JOINTS];       /* put out */
     double joint[OPW_JOINTS];         /* where the arm is, */
     double pose[6];                   /* X Y Z A B C of its tip; */
+    double external;                  /* [mm] [deg] of the axis outside the arm, */
+    double external_command;          /* and at the end of the pulses written */
+    double base_command[3];           /* where a track then has the arm's base */
     double joint_command[OPW_JOINTS]; /* at the end of the pulses written, */
     double pose_command[6];
     int32_t configuration; /* sum of enum opw_flag */

@@ -103,12 +103,12 @@ struct fpga {
     bool pending;  /* levels changed: the next exchange has work to do */
 
     struct slot_memory memory[FPGA_MEMORIES];
-    int32_t playing;            /* memory that plays, -1 none */
-    int64_t start;              /* [clock] of its first slot */
-    int64_t marks;              /* number of marks "full" so far */
-    int64_t base[FPGA_AXES];    /* [pulses] before this memory */
-    double rate[FPGA_AXES];     /* [pulses/s] mean speed of this memory */
-    int64_t dropped[FPGA_AXES]; /* [pulses] dropped by stops */
+    int32_t playing;              /* memory that plays, -1 none */
+    int64_t start;                /* [clock] of its first slot */
+    int64_t marks;                /* number of marks "full" so far */
+    int64_t base[FPGA_PLAYED];    /* [pulses] before this memory */
+    double rate[FPGA_PLAYED];     /* [pulses/s] mean speed of this memory */
+    int64_t dropped[FPGA_PLAYED]; /* [pulses] dropped by stops */
     int64_t underruns;
     bool run; /* the host is armed: running out of slots is an underrun */
 
@@ -181,7 +181,7 @@ void fpga_set_ai(struct fpga *f, const double volts[FPGA_ANALOG]);
 void fpga_set_drives(struct fpga *f, uint32_t drives, bool emergency_stop);
 
 /* Pulses of each axis up to and including the card's clock, forward minus backward. */
-void fpga_pulses(const struct fpga *f, int64_t pulses[FPGA_AXES]);
+void fpga_pulses(const struct fpga *f, int64_t pulses[FPGA_PLAYED]);
 
 /* Number of the slot that plays, in its memory; 0 if none. */
 int32_t fpga_slot(const struct fpga *f);

@@ -22,7 +22,7 @@ static void begin(struct fpga *f, int32_t memory)
     const double seconds = (double)m->slots * f->config.slot_clocks / FPGA_CLOCK_HZ;
     f->playing = memory;
     f->start = f->clock;
-    for (int i = 0; i < FPGA_AXES; i++)
+    for (int i = 0; i < FPGA_PLAYED; i++)
         f->rate[i] = m->sum[m->slots][i] / seconds;
     raise(f);
 }
@@ -36,16 +36,16 @@ static void leave(struct fpga *f)
 
 void fpga_play_stop(struct fpga *f)
 {
-    int64_t before[FPGA_AXES];
+    int64_t before[FPGA_PLAYED];
     memcpy(before, f->base, sizeof before);
     for (int m = 0; m < FPGA_MEMORIES; m++) {
         const struct slot_memory *slots = &f->memory[m];
-        for (int i = 0; i < FPGA_AXES && slots->slots; i++)
+        for (int i = 0; i < FPGA_PLAYED && slots->slots; i++)
             f->dropped[i] += slots->sum[slots->slots][i];
     }
     if (f->playing >= 0)
         leave(f);
-    for (int i = 0; i < FPGA_AXES; i++)
+    for (int i = 0; i < FPGA_PLAYED; i++)
         f->dropped[i] -= f->base[i] - before[i];
     f->memory[0].slots = f->memory[1].slots = 0;
     idle(f);
@@ -81,13 +81,13 @@ void fpga_play_exchange(struct fpga *f)
     }
 }
 
-void fpga_pulses(const struct fpga *f, int64_t pulses[FPGA_AXES])
+void fpga_pulses(const struct fpga *f, int64_t pulses[FPGA_PLAYED])
 {
-    int32_t played[FPGA_AXES] = { 0 };
+    int32_t played[FPGA_PLAYED] = { 0 };
     if (f->playing >= 0)
         slot_memory_played(&f->memory[f->playing], f->clock - f->start, f->config.slot_clocks,
                            played);
-    for (int i = 0; i < FPGA_AXES; i++)
+    for (int i = 0; i < FPGA_PLAYED; i++)
         pulses[i] = f->base[i] + played[i];
 }
 

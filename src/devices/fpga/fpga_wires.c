@@ -42,13 +42,15 @@ void fpga_take(struct fpga_taken *taken, struct fpga *f, const struct fpga_host 
 
 void fpga_show(const struct fpga *f, struct fpga_shown *s)
 {
-    int64_t pulses[FPGA_AXES];
+    int64_t pulses[FPGA_PLAYED];
 
     fpga_pulses(f, pulses);
     for (int i = 0; i < FPGA_AXES; i++) {
         s->pulse_count[i] = link_wrap(pulses[i]);
         s->dropped[i] = link_wrap(f->dropped[i]);
     }
+    s->external_count = link_wrap(pulses[FPGA_AXES]);
+    s->external_dropped = link_wrap(f->dropped[FPGA_AXES]);
     s->irq_seq = link_wrap(f->irq.seq);
     s->irq_clock = (double)f->irq.clock;
     s->irq_inputs = link_wrap(f->irq.inputs);

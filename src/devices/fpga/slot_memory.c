@@ -15,7 +15,7 @@ bool slot_memory_fill(struct slot_memory *m, const int32_t words[FPGA_WORDS], in
             *fault = (struct slot_fault){ k, bad };
             return false;
         }
-        for (int i = 0; i < FPGA_AXES; i++)
+        for (int i = 0; i < FPGA_PLAYED; i++)
             m->sum[k + 1][i] = (int16_t)(m->sum[k + 1][i] + pulses[i]);
     }
     m->slots = slots;
@@ -23,11 +23,11 @@ bool slot_memory_fill(struct slot_memory *m, const int32_t words[FPGA_WORDS], in
 }
 
 void slot_memory_played(const struct slot_memory *m, int64_t clock, int32_t slot_clocks,
-                        int32_t pulses[FPGA_AXES])
+                        int32_t pulses[FPGA_PLAYED])
 {
     const int64_t k = clock / slot_clocks;
     const int32_t within = (int32_t)(clock - k * slot_clocks);
-    for (int i = 0; i < FPGA_AXES; i++) {
+    for (int i = 0; i < FPGA_PLAYED; i++) {
         pulses[i] = m->sum[k][i];
         const int32_t n = k < m->slots ? m->sum[k + 1][i] - m->sum[k][i] : 0;
         if (within && n > 0)

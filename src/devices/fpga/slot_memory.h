@@ -8,7 +8,7 @@
 struct slot_memory {
     int32_t slots; /* number of slots, marked full or playing; 0: the memory is free */
     int64_t mark;  /* number of its mark "full": of two memories the lower plays first */
-    int16_t sum[FPGA_SLOTS + 1][FPGA_AXES]; /* [pulses] of all slots before slot k */
+    int16_t sum[FPGA_SLOTS + 1][FPGA_PLAYED]; /* [pulses] of all slots before slot k */
 };
 
 /* Where a byte is not a valid number of pulses. */
@@ -23,6 +23,6 @@ bool slot_memory_fill(struct slot_memory *m, const int32_t words[FPGA_WORDS], in
 
 /* Pulses of each axis from the first slot up to and including `clock`, counted from its start. */
 void slot_memory_played(const struct slot_memory *m, int64_t clock, int32_t slot_clocks,
-                        int32_t pulses[FPGA_AXES]);
+                        int32_t pulses[FPGA_PLAYED]);
 
 #endif

@@ -106,6 +106,8 @@ enum robot_job_op {
     ROBOT_JOB_OP_SETE,
     ROBOT_JOB_OP_GETE,
     ROBOT_JOB_OP_GETS,
+    ROBOT_JOB_OP_CNVRT,
+    ROBOT_JOB_OP_MSHIFT,
     ROBOT_JOB_OP_SET,
     ROBOT_JOB_OP_ADD,
     ROBOT_JOB_OP_SUB,
@@ -142,11 +144,13 @@ struct robot_job_instruction {
     bool early;  /* NWAIT: what follows a move need not wait until it is reached */
     int32_t to;  /* point; instruction; tool, user frame; level; signal, channel; -1: no shift */
     int32_t via; /* of CIRCLE: point; of LOOP, ENDLOOP: depth; of a shift: user frame; of SET, ADD,
-                  * SUB, GETE of positions: the other position */
-    struct robot_job_by to_by, via_by; /* of positions */
-    int32_t increment;                 /* of a move: its frame, or ROBOT_JOB_NOT_BY */
-    int32_t until;                     /* input that ends a move, from 0; -1: none */
-    bool until_on;                     /* by coming on, not by going off */
+                  * SUB, GETE, CNVRT, MSHIFT of positions: the other position */
+    int32_t end; /* of MSHIFT: the position to which the shift leads, from that of `via` */
+    struct robot_job_by to_by, via_by, end_by; /* of positions */
+    int32_t increment; /* of a move: its frame, or ROBOT_JOB_NOT_BY; of CNVRT, MSHIFT: the frame */
+    int32_t beside;    /* of a move: position of the axis outside the arm; -1: none */
+    int32_t until;     /* input that ends a move, from 0; -1: none */
+    bool until_on;     /* by coming on, not by going off */
     enum robot_job_path path;
     bool goes_on; /* of a SPLINE: the next instruction is the one it goes on with */
     enum robot_job_speed tag;
@@ -155,7 +159,7 @@ struct robot_job_instruction {
     struct robot_job_operand
         acc[2];    /* [%] of the accelerations to speed up, slow down; none: all */
     int32_t level; /* PL; ROBOT_JOB_ANY: the level in force; of SETE, GETE: element from 0; of
-                     * GETS: 0 pulses, 1 a pose */
+                     * GETS: 0 pulses, 1 a pose; of CNVRT: tool, ROBOT_JOB_ANY: the position's */
     double corner; /* CR [mm]; 0: the level decides */
     int64_t time;  /* [ns] length of a TIMER or WAIT; -1: without end */
 };
@@ -173,8 +177,11 @@ struct robot_job_callee {
     int32_t text, line, column, offset, length;
 };
 
-/* A position that stands in a job: C00000 is the job's own, P00000 that of all jobs. */
+/* A position that stands in a job: C00000 is the job's own, P00000 that of all jobs. Those of axes
+ * outside the arm, BC00000, EC00000 and BP00000, EX00000, have one place, in point.external. */
 struct robot_job_position {
+    enum robot_job_outside outside;
+    bool more;   /* there are further axes outside, which are not at 0 */
     int32_t job; /* -1: of all */
     int32_t number;
     struct robot_job_point point;

@@ -127,21 +127,78 @@ static enum robot_job_fault take(struct robot_job_run *run, const struct robot_j
     return robot_job_store(run, &c->left, round(q->value[c->level] * per(q, c->level)));
 }
 
-/* The position that SET, ADD, SUB, GETE look at, in *q: a copy, as it may be the one that
- * changes. */
-static enum robot_job_fault source(struct robot_job_run *run, const struct robot_job_program *p,
-                                   const struct robot_job_points *points,
-                                   const struct robot_job_instruction *c, struct robot_job_point *q)
+/* A position that a line looks at, in *q: a copy, as it may be the one that changes. */
+static enum robot_job_fault look(struct robot_job_run *run, const struct robot_job_program *p,
+                                 const struct robot_job_points *points, int32_t number,
+                                 const struct robot_job_by *by, struct robot_job_point *q)
 {
     int32_t which;
-    const enum robot_job_fault fault = robot_job_which(run, p, points, c->via, &c->via_by, &which);
+    const enum robot_job_fault fault = robot_job_which(run, p, points, number, by, &which);
     *q = *robot_job_place(run, p, points, which);
-    if (fault == ROBOT_JOB_BAD_UNSET && c->op != ROBOT_JOB_OP_PLACE_SET
-        && c->op != ROBOT_JOB_OP_GETE) {
-        begin(q, NULL); /* SUB P001 P001 */
+    return fault;
+}
+
+/* The positions that a line looks at: none, one, or of MSHIFT where it begins and ends. */
+static enum robot_job_fault sources(struct robot_job_run *run, const struct robot_job_program *p,
+                                    const struct robot_job_points *points,
+                                    const struct robot_job_instruction *c,
+                                    struct robot_job_point of[2])
+{
+    memset(of, 0, 2 * sizeof *of);
+    if (c->op == ROBOT_JOB_OP_SETE || c->op == ROBOT_JOB_OP_GETS) {
         return ROBOT_JOB_OK;
     }
-    return fault;
+    const enum robot_job_fault fault = look(run, p, points, c->via, &c->via_by, &of[0]);
+    if (fault == ROBOT_JOB_BAD_UNSET
+        && (c->op == ROBOT_JOB_OP_PLACE_ADD || c->op == ROBOT_JOB_OP_PLACE_SUB)) {
+        begin(&of[0], NULL); /* SUB P001 P001 */
+        return ROBOT_JOB_OK;
+    }
+    return fault == ROBOT_JOB_OK && c->op == ROBOT_JOB_OP_MSHIFT
+               ? look(run, p, points, c->end, &c->end_by, &of[1])
+               : fault;
+}
+
+/* The tool and user frame of a position are those in force where it names none. */
+static void settle(const struct robot_job_run *run, struct robot_job_point *q)
+{
+    q->tool = q->tool != ROBOT_JOB_ANY ? q->tool : run->tool;
+    q->user = q->user != ROBOT_JOB_ANY ? q->user : run->user;
+}
+
+/* CNVRT: a position as a pose in a frame. */
+static enum robot_job_fault convert(const struct robot_job_run *run,
+                                    const struct robot_job_inputs *in,
+                                    const struct robot_job_instruction *c,
+                                    struct robot_job_point *from, struct robot_job_point *q)
+{
+    settle(run, from);
+    *q = robot_job_point_open();
+    q->kind = ROBOT_JOB_POSE;
+    q->tool = c->level != ROBOT_JOB_ANY ? c->level : from->tool;
+    q->user = c->increment;
+    in->convert(in->arm, from, q);
+    return checked(q);
+}
+
+/* MSHIFT: what leads from a position to another, in a frame. Turns that no element can say are
+ * none, so that what a shift may be is not up to rounding. */
+static enum robot_job_fault difference(const struct robot_job_run *run,
+                                       const struct robot_job_inputs *in,
+                                       const struct robot_job_instruction *c,
+                                       struct robot_job_point *from, struct robot_job_point *to,
+                                       struct robot_job_point *q)
+{
+    settle(run, from);
+    settle(run, to);
+    *q = robot_job_point_open();
+    q->kind = ROBOT_JOB_POSE;
+    q->user = 0;
+    in->shift(in->arm, from, to, c->increment, q->value);
+    for (int i = AXES / 2; i < AXES; i++) {
+        q->value[i] = fabs(q->value[i]) * PER_DEG < 0.5 ? 0.0 : q->value[i];
+    }
+    return checked(q);
 }
 
 enum robot_job_fault robot_job_change(struct robot_job_run *run, const struct robot_job_program *p,
@@ -149,16 +206,13 @@ enum robot_job_fault robot_job_change(struct robot_job_run *run, const struct ro
                                       const struct robot_job_inputs *in,
                                       const struct robot_job_instruction *c)
 {
-    struct robot_job_point by, here[2];
-    memset(&by, 0, sizeof by);
-    if (c->op <= ROBOT_JOB_OP_PLACE_SUB || c->op == ROBOT_JOB_OP_GETE) {
-        const enum robot_job_fault fault = source(run, p, points, c, &by);
-        if (fault != ROBOT_JOB_OK) {
-            return fault;
-        }
+    struct robot_job_point of[2], here[2];
+    const enum robot_job_fault fault = sources(run, p, points, c, of);
+    if (fault != ROBOT_JOB_OK) {
+        return fault;
     }
     if (c->op == ROBOT_JOB_OP_GETE) {
-        return take(run, &by, c);
+        return take(run, &of[0], c);
     }
     const int32_t number = robot_job_element(run, &c->to_by, c->to, ROBOT_JOB_POINTS);
     struct robot_job_point *q = run->fault == ROBOT_JOB_OK ? kept(run, p, points, number) : NULL;
@@ -166,15 +220,17 @@ enum robot_job_fault robot_job_change(struct robot_job_run *run, const struct ro
         return run->fault != ROBOT_JOB_OK ? run->fault : ROBOT_JOB_BAD_CHANGED;
     }
     switch (c->op) {
-    case ROBOT_JOB_OP_PLACE_SET: *q = by; return ROBOT_JOB_OK;
+    case ROBOT_JOB_OP_PLACE_SET: *q = of[0]; return ROBOT_JOB_OK;
     case ROBOT_JOB_OP_GETS:
         in->here(in->arm, here);
         *q = here[c->level];
         return ROBOT_JOB_OK;
+    case ROBOT_JOB_OP_CNVRT:  return convert(run, in, c, &of[0], q);
+    case ROBOT_JOB_OP_MSHIFT: return difference(run, in, c, &of[0], &of[1], q);
     case ROBOT_JOB_OP_SETE:
         begin(q, NULL);
         q->value[c->level] = robot_job_value(run, in, &c->right) / per(q, c->level);
         return run->fault;
-    default: return add(q, &by, c->op == ROBOT_JOB_OP_PLACE_ADD ? 1.0 : -1.0);
+    default: return add(q, &of[0], c->op == ROBOT_JOB_OP_PLACE_ADD ? 1.0 : -1.0);
     }
 }

@@ -66,6 +66,7 @@
     X(ROBOT_JOB_BAD_ARC_UNTIL, "via and end with different UNTIL") \
     X(ROBOT_JOB_BAD_AXES, "six values wanted, as many as the arm has axes") \
     X(ROBOT_JOB_BAD_OTHER_AXES, "base or station axes, which the arm has not") \
+    X(ROBOT_JOB_BAD_ARC_OUTSIDE, "via and end with different base or station axes") \
     X(ROBOT_JOB_BAD_OTHER_ROBOT, "a move of another robot, and there is one") \
     X(ROBOT_JOB_BAD_POSITION, "position not in this job") \
     X(ROBOT_JOB_BAD_CONFIGURATION, "///RCONF wants six numbers or more") \

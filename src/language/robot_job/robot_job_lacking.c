@@ -5,18 +5,18 @@
 #include "robot_job_reading.h"
 
 static const char WORDS[][9] = {
-    "ABORT",   "ADVINIT", "ADVSTOP",  "AND",     "ANTOUT",  "ARATIOF", "ARATION", "ARCCTE",
-    "ARCCTS",  "ARCOF",   "ARCON",    "ARCSET",  "ASC",     "ATAN",    "AWELD",   "CAT",
-    "CHR",     "CLEAR",   "CLS",      "CNVRT",   "CONT",    "COS",     "DELETEJ", "DI",
-    "DIALOG",  "EI",      "EIMOVC",   "EIMOVL",  "EXPRESS", "FPT",     "GETFILE", "GETNAME",
-    "GETPOS",  "GETPRM",  "GETREG",   "GUNCL",   "HAND",    "HPMMVOF", "HPMMVON", "HPVELOF",
-    "HPVELON", "HSEN",    "HTRAJOF",  "HTRAJON", "INPUT",   "INVMAT",  "LEN",     "LOADJ",
-    "LOADV",   "MACRO1",  "MACRO2",   "MFRAME",  "MID",     "MSHIFT",  "MULMAT",  "NOT",
-    "OR",      "PRINT",   "PSTART",   "PWAIT",   "REFP",    "SAVEJ",   "SAVEV",   "SETFILE",
-    "SETPRM",  "SETREG",  "SETTM",    "SETTOOL", "SETUALM", "SFTOF3D", "SFTON3D", "SHCKRST",
-    "SHCKSET", "SIN",     "SKILLSND", "SMOOTH",  "SMOVC",   "SMOVL",   "SPOT",    "SQRT",
-    "STROKE",  "STRSTR",  "STRWAIT",  "SWAIT",   "TOOLOF",  "TOOLON",  "TSYNC",   "VAL",
-    "VAL2STR", "VE",      "VWELD",    "WEAVE",   "WVOF",    "WVON",    "XOR"
+    "ABORT",    "ADVINIT", "ADVSTOP", "AND",     "ANTOUT",  "ARATIOF", "ARATION", "ARCCTE",
+    "ARCCTS",   "ARCOF",   "ARCON",   "ARCSET",  "ASC",     "ATAN",    "AWELD",   "CAT",
+    "CHR",      "CLEAR",   "CLS",     "CONT",    "COS",     "DELETEJ", "DI",      "DIALOG",
+    "EI",       "EIMOVC",  "EIMOVL",  "EXPRESS", "FPT",     "GETFILE", "GETNAME", "GETPOS",
+    "GETPRM",   "GETREG",  "GUNCL",   "HAND",    "HPMMVOF", "HPMMVON", "HPVELOF", "HPVELON",
+    "HSEN",     "HTRAJOF", "HTRAJON", "INPUT",   "INVMAT",  "LEN",     "LOADJ",   "LOADV",
+    "MACRO1",   "MACRO2",  "MFRAME",  "MID",     "MULMAT",  "NOT",     "OR",      "PRINT",
+    "PSTART",   "PWAIT",   "REFP",    "SAVEJ",   "SAVEV",   "SETFILE", "SETPRM",  "SETREG",
+    "SETTM",    "SETTOOL", "SETUALM", "SFTOF3D", "SFTON3D", "SHCKRST", "SHCKSET", "SIN",
+    "SKILLSND", "SMOOTH",  "SMOVC",   "SMOVL",   "SPOT",    "SQRT",    "STROKE",  "STRSTR",
+    "STRWAIT",  "SWAIT",   "TOOLOF",  "TOOLON",  "TSYNC",   "VAL",     "VAL2STR", "VE",
+    "VWELD",    "WEAVE",   "WVOF",    "WVON",    "XOR"
 };
 
 bool robot_job_lacks(const struct robot_job_scan *s, struct robot_job_span w)

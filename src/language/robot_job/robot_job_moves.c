@@ -61,10 +61,9 @@ static int speed_tag(struct robot_job_reading *in, struct robot_job_span w,
 /* Whether a word is a position of axes outside the arm: BC00000, EC00000, BP000, EX000. */
 static bool other_axes(const struct robot_job_scan *s, struct robot_job_span w)
 {
-    const struct robot_job_span two = { w.at, 2 };
-    return w.length > 2 && s->text[w.at + 2] >= '0' && s->text[w.at + 2] <= '9'
-           && (robot_job_scan_is(s, two, "BC") || robot_job_scan_is(s, two, "EC")
-               || robot_job_scan_is(s, two, "BP") || robot_job_scan_is(s, two, "EX"));
+    int32_t number;
+    bool own;
+    return robot_job_positions_outside(s, w, &own, &number) != ROBOT_JOB_NO_AXIS;
 }
 
 /* Take ACC or DEC with its share [%], a number or a variable. 1: taken, 0: the word is none. */
@@ -118,12 +117,14 @@ static int take_tag(struct robot_job_reading *in, struct robot_job_span w,
         c->early = true;
         return 0;
     }
+    if (other_axes(s, w)) {
+        return robot_job_positions_beside(in, w, c);
+    }
     const bool level = robot_job_scan_is(s, w, "PL");
     if (!level && !robot_job_scan_is(s, w, "CR")) {
         return robot_job_scan_fault(s,
-                                    other_axes(s, w)        ? ROBOT_JOB_BAD_OTHER_AXES
-                                    : robot_job_lacks(s, w) ? ROBOT_JOB_BAD_LACKING
-                                                            : ROBOT_JOB_BAD_WORD,
+                                    robot_job_lacks(s, w) ? ROBOT_JOB_BAD_LACKING
+                                                          : ROBOT_JOB_BAD_WORD,
                                     w);
     }
     if (c->level != ROBOT_JOB_ANY || c->corner > 0.0) {
@@ -176,6 +177,19 @@ static bool same_shares(const struct robot_job_instruction *a,
     return same;
 }
 
+/* Whether the via of an arc has the axis outside the arm where its end has it, if it says so. */
+static int same_outside(struct robot_job_reading *in, const struct robot_job_instruction *c)
+{
+    const int32_t via = in->via.beside, end = c->beside;
+    const struct robot_job_position *p = in->p->position;
+    return via < 0
+                   || (end >= 0
+                       && p[via - ROBOT_JOB_POINTS].point.external
+                              == p[end - ROBOT_JOB_POINTS].point.external)
+               ? 0
+               : robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_OUTSIDE);
+}
+
 /* MOVC of one point: the first of three is a line, the second is kept, the third makes the arc. */
 static int arc_point(struct robot_job_reading *in, struct robot_job_instruction *c)
 {
@@ -200,7 +214,7 @@ static int arc_point(struct robot_job_reading *in, struct robot_job_instruction 
             in->s.r->other = in->via.line;
             return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_SPEED);
         }
-        return same_frames(in, c);
+        return same_outside(in, c) || same_frames(in, c) ? -1 : 0;
     default: return robot_job_scan_fault_line(&in->s, ROBOT_JOB_BAD_ARC_POINTS);
     }
 }
@@ -258,9 +272,8 @@ static int base_or_user(struct robot_job_reading *in, struct robot_job_span at, 
     return in->points->user[*user].defined ? 1 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
 }
 
-/* Take the frame of an increment: TF as well. */
-static int frame_tag(struct robot_job_reading *in, struct robot_job_span w,
-                     struct robot_job_instruction *c)
+int robot_job_move_frame(struct robot_job_reading *in, struct robot_job_span w,
+                         struct robot_job_instruction *c)
 {
     if (robot_job_scan_is(&in->s, w, "TF")) {
         c->increment = ROBOT_JOB_BY_TOOL;
@@ -281,7 +294,7 @@ static int tags(struct robot_job_reading *in, struct robot_job_instruction *c)
         }
         int status = 0;
         if (c->increment != ROBOT_JOB_NOT_BY) {
-            status = frame_tag(in, w, c);
+            status = robot_job_move_frame(in, w, c);
         }
         if (status < 0 || (status == 0 && take_tag(in, w, c))) {
             return -1;

@@ -1,5 +1,5 @@
 /* robot_job_places - what names a position, and the lines that change one: SET ADD SUB SETE GETE
- * GETS. */
+ * GETS CNVRT MSHIFT. */
 #include "robot_job_reading.h"
 
 enum { ELEMENTS = 6 };
@@ -17,7 +17,7 @@ static void want(struct robot_job_reading *in, int32_t number, struct robot_job_
     }
 }
 
-/* Take P001 or PX001, P[3] or P[B000]. 1: taken, 0: something else stands here. Nobody has looked
+/* Take P001 or PX001, P[3] or PX[B000]. 1: taken, 0: something else stands here. Nobody has looked
  * yet whether there is such a position. */
 static int take_variable(struct robot_job_reading *in, int32_t *number, struct robot_job_by *by,
                          struct robot_job_span *at)
@@ -27,7 +27,7 @@ static int take_variable(struct robot_job_reading *in, int32_t *number, struct r
     const int32_t begin = s->at;
     struct robot_job_span w = robot_job_scan_word(s);
     *by = (struct robot_job_by){ ROBOT_JOB_NOTHING, 0 };
-    if (robot_job_scan_is(s, w, "P")) {
+    if (robot_job_scan_is(s, w, "P") || robot_job_scan_is(s, w, "PX")) {
         const int status = robot_job_operand_element(in, ROBOT_JOB_POINTS, number, by);
         w.length = s->at - w.at;
         *at = w;
@@ -146,16 +146,12 @@ static int take_element(struct robot_job_reading *in, struct robot_job_instructi
 }
 
 /* SETE P001 (3) D000, GETE D000 P001 (3). */
-int robot_job_place_element(struct robot_job_reading *in, enum robot_job_op op)
+static int element(struct robot_job_reading *in, struct robot_job_instruction *c)
 {
     enum { LONG = 1u << ROBOT_JOB_D | 1u << ROBOT_JOB_LD, VALUE = LONG | 1u << ROBOT_JOB_CONSTANT };
     struct robot_job_scan *s = &in->s;
-    struct robot_job_instruction *c = robot_job_reading_add(in, op);
     int32_t whole;
-    if (!c) {
-        return -1;
-    }
-    if (op == ROBOT_JOB_OP_GETE) {
+    if (c->op == ROBOT_JOB_OP_GETE) {
         return robot_job_operand(in, LONG, &c->left) || take_source(in, c) || take_element(in, c)
                    ? -1
                    : 0;
@@ -176,13 +172,9 @@ int robot_job_place_element(struct robot_job_reading *in, enum robot_job_op op)
 }
 
 /* GETS PX001 $PX000 in pulses, $PX001 as a pose. */
-int robot_job_place_here(struct robot_job_reading *in)
+static int here(struct robot_job_reading *in, struct robot_job_instruction *c)
 {
     struct robot_job_scan *s = &in->s;
-    struct robot_job_instruction *c = robot_job_reading_add(in, ROBOT_JOB_OP_GETS);
-    if (!c) {
-        return -1;
-    }
     robot_job_scan_over(s);
     const int32_t begin = s->at;
     struct robot_job_span at = robot_job_scan_word(s);
@@ -201,4 +193,78 @@ int robot_job_place_here(struct robot_job_reading *in)
     return c->level == 1 || robot_job_scan_is(s, at, "PX000")
                ? 0
                : robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, at);
+}
+
+/* Take the frame of a line: BF, RF, UF#(1), and TF if there is one of a tool to be meant. */
+static int take_frame(struct robot_job_reading *in, struct robot_job_instruction *c, bool tool)
+{
+    struct robot_job_scan *s = &in->s;
+    robot_job_scan_over(s);
+    const int32_t begin = s->at;
+    const struct robot_job_span w = robot_job_scan_word(s);
+    const int status = robot_job_move_frame(in, w, c);
+    if (status > 0 && (tool || c->increment != ROBOT_JOB_BY_TOOL)) {
+        return 0;
+    }
+    s->at = status == 0 ? begin : s->at;
+    return status < 0 ? -1
+           : status > 0 || robot_job_scan_is(s, w, "MTF")
+               ? robot_job_scan_fault(s, ROBOT_JOB_BAD_LACKING, w)
+               : robot_job_scan_unexpected(s);
+}
+
+/* Take TL#(1), if it stands here. */
+static int take_tool(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    c->level = ROBOT_JOB_ANY;
+    if (robot_job_scan_over(s)) {
+        return 0;
+    }
+    struct robot_job_span at = robot_job_scan_word(s);
+    if (!robot_job_scan_is(s, at, "TL")) {
+        s->at = at.length > 0 ? at.at : s->at;
+        return robot_job_scan_unexpected(s);
+    }
+    if (!robot_job_scan_take(s, '#') || !robot_job_scan_take(s, '(')) {
+        return robot_job_scan_unexpected(s);
+    }
+    if (robot_job_scan_whole(s, 0, ROBOT_JOB_FRAMES - 1, &c->level)) {
+        return -1;
+    }
+    if (!robot_job_scan_take(s, ')')) {
+        return robot_job_scan_unexpected(s);
+    }
+    at.length = s->at - at.at;
+    return in->points->tool[c->level].defined ? 0
+                                              : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
+}
+
+/* MSHIFT PX001 BF PX002 PX003: its second position. */
+static int take_end(struct robot_job_reading *in, struct robot_job_instruction *c)
+{
+    const int status = robot_job_place_take(in, &c->end, &c->end_by);
+    return status > 0 ? 0 : status < 0 ? -1 : robot_job_scan_unexpected(&in->s);
+}
+
+int robot_job_place_line(struct robot_job_reading *in, enum robot_job_op op)
+{
+    struct robot_job_instruction *c = robot_job_reading_add(in, op);
+    if (!c) {
+        return -1;
+    }
+    switch (op) {
+    case ROBOT_JOB_OP_GETS: return here(in, c);
+    case ROBOT_JOB_OP_CNVRT:
+        return take_target(in, c) || take_source(in, c) || take_frame(in, c, false)
+                       || take_tool(in, c)
+                   ? -1
+                   : 0;
+    case ROBOT_JOB_OP_MSHIFT:
+        return take_target(in, c) || take_frame(in, c, true) || take_source(in, c)
+                       || take_end(in, c)
+                   ? -1
+                   : 0;
+    default: return element(in, c);
+    }
 }

@@ -19,9 +19,10 @@ static const struct {
     char word[8];
 } FLAGS[6] = { { "FRONT" }, { "BACK" }, { "UP" }, { "DOWN" }, { "NOFLIP" }, { "FLIP" } };
 
-void robot_job_points_clear(struct robot_job_points *p)
+void robot_job_points_clear(struct robot_job_points *p, enum robot_job_outside outside)
 {
     memset(p, 0, sizeof *p);
+    p->outside = outside;
     p->tool[0].defined = p->user[0].defined = true;
 }
 
@@ -44,13 +45,13 @@ static int32_t axis_of(const struct robot_job_scan *s, struct robot_job_span w)
 
 /* Take =value of coordinate or joint i; `seen` has a bit for each one given. */
 static int take_value(struct robot_job_scan *s, struct robot_job_span w, int32_t i, double most,
-                      int32_t *seen, double value[6])
+                      int32_t *seen, double *value)
 {
     if (*seen & 1 << i) {
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
     }
     *seen |= 1 << i;
-    return robot_job_scan_take(s, '=') ? robot_job_scan_number(s, -most, most, &value[i])
+    return robot_job_scan_take(s, '=') ? robot_job_scan_number(s, -most, most, value)
                                        : robot_job_scan_unexpected(s);
 }
 
@@ -95,7 +96,7 @@ static int read_frame(struct robot_job_scan *s, struct robot_job_frame frames[RO
         if (i < 0) {
             return robot_job_scan_fault(s, ROBOT_JOB_BAD_WORD, w);
         }
-        if (take_value(s, w, i, coordinate_max(i), &seen, f->value)) {
+        if (take_value(s, w, i, coordinate_max(i), &seen, &f->value[i])) {
             return -1;
         }
     }
@@ -126,6 +127,18 @@ static int take_flag(struct robot_job_scan *s, struct robot_job_span w, struct r
     return 0;
 }
 
+/* Take =value of the axis outside the arm. */
+static int take_external(struct robot_job_scan *s, struct robot_job_span w,
+                         enum robot_job_outside outside, struct robot_job_point *p)
+{
+    int32_t seen = p->beside;
+    if (outside == ROBOT_JOB_NO_AXIS) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_OTHER_AXES, w);
+    }
+    p->beside = true;
+    return take_value(s, w, 0, PLACE_MAX, &seen, &p->external);
+}
+
 struct robot_job_point robot_job_point_open(void)
 {
     return (struct robot_job_point){ .shoulder = ROBOT_JOB_ANY,
@@ -137,7 +150,7 @@ struct robot_job_point robot_job_point_open(void)
                                      .user = ROBOT_JOB_ANY };
 }
 
-/* CCN 18: a case for each kind of word, and the kinds that exclude each other. */
+/* CCN 19: a case for each kind of word, and the kinds that exclude each other. */
 static int read_tags(struct robot_job_scan *s, const struct robot_job_points *points,
                      struct robot_job_point *p)
 {
@@ -154,9 +167,12 @@ static int read_tags(struct robot_job_scan *s, const struct robot_job_points *po
             return robot_job_scan_unexpected(s);
         }
         if (axis >= 0) {
-            status = take_value(s, w, axis, coordinate_max(axis), &places, p->value);
+            status = take_value(s, w, axis, coordinate_max(axis), &places, &p->value[axis]);
         } else if (joint) {
-            status = take_value(s, w, s->text[w.at + 1] - '1', JOINT_MAX, &joints, p->value);
+            const int32_t i = s->text[w.at + 1] - '1';
+            status = take_value(s, w, i, JOINT_MAX, &joints, &p->value[i]);
+        } else if (robot_job_scan_is(s, w, "E")) {
+            status = take_external(s, w, points->outside, p);
         } else if (robot_job_scan_is(s, w, "TOOL")) {
             status = take_frame(s, w, points->tool, &p->tool);
         } else if (robot_job_scan_is(s, w, "USER")) {
@@ -201,15 +217,15 @@ static int read_point(struct robot_job_scan *s, struct robot_job_points *points,
     return read_tags(s, points, p);
 }
 
-int robot_job_points_read(struct robot_job_points *p, const char *text, int64_t length,
-                          struct robot_job_report *r)
+int robot_job_points_read(struct robot_job_points *p, enum robot_job_outside outside,
+                          const char *text, int64_t length, struct robot_job_report *r)
 {
     struct robot_job_scan s;
     int status;
     if (robot_job_scan_begin(&s, text, length, r)) {
         return -1;
     }
-    robot_job_points_clear(p);
+    robot_job_points_clear(p, outside);
     while ((status = robot_job_scan_line(&s)) > 0) {
         struct robot_job_span w;
         if (s.slashes > 0 || (w = robot_job_scan_word(&s)).length == 0) {
@@ -231,7 +247,7 @@ int robot_job_points_read(struct robot_job_points *p, const char *text, int64_t 
 }
 
 /* Whether the reader would take this value.
- * CCN 19: a row of limits that all must hold. */
+ * CCN 20: a row of limits that all must hold. */
 static bool writable(int32_t number, const struct robot_job_point *p)
 {
     bool good = number >= 0 && number < ROBOT_JOB_POINTS
@@ -240,6 +256,7 @@ static bool writable(int32_t number, const struct robot_job_point *p)
                 && p->elbow <= 1 && p->wrist >= ROBOT_JOB_ANY && p->wrist <= 1
                 && p->tool >= ROBOT_JOB_ANY && p->tool < ROBOT_JOB_FRAMES
                 && p->user >= ROBOT_JOB_ANY && p->user < ROBOT_JOB_FRAMES;
+    good &= !p->beside || fabs(p->external) <= PLACE_MAX;
     for (int32_t i = 0; i < 3; i++) {
         good &= p->turn[i] == ROBOT_JOB_ANY_TURN
                 || (p->turn[i] >= -ROBOT_JOB_TURN_MAX && p->turn[i] <= ROBOT_JOB_TURN_MAX);
@@ -284,6 +301,9 @@ int robot_job_point_write(int32_t number, const struct robot_job_point *p,
         if (p->turn[i] != ROBOT_JOB_ANY_TURN) {
             tag(&t, turn, p->turn[i]);
         }
+    }
+    if (p->beside) {
+        tag(&t, "E", p->external);
     }
     if (p->tool != ROBOT_JOB_ANY) {
         tag(&t, "TOOL", p->tool);

@@ -30,15 +30,16 @@ static int take_frame(struct robot_job_reading *in, const struct robot_job_frame
     return frames[*number].defined ? 0 : robot_job_scan_fault(s, ROBOT_JOB_BAD_FRAME, at);
 }
 
-/* ///POSTYPE PULSE, BASE, ROBOT or USER; JOINT, which no pendant writes: degrees of the joints. */
+/* ///POSTYPE PULSE, BASE, ROBOT or USER; ANGLE, and JOINT, which no pendant writes: degrees. */
 static int take_type(struct robot_job_reading *in)
 {
     struct robot_job_scan *s = &in->s;
     robot_job_scan_over(s);
     const struct robot_job_span w = robot_job_scan_word(s);
-    in->kind = robot_job_scan_is(s, w, "PULSE")   ? ROBOT_JOB_PULSES
-               : robot_job_scan_is(s, w, "JOINT") ? ROBOT_JOB_JOINTS
-                                                  : ROBOT_JOB_POSE;
+    const bool angles = robot_job_scan_is(s, w, "JOINT") || robot_job_scan_is(s, w, "ANGLE");
+    in->kind = robot_job_scan_is(s, w, "PULSE") ? ROBOT_JOB_PULSES
+               : angles                         ? ROBOT_JOB_JOINTS
+                                                : ROBOT_JOB_POSE;
     in->in_user = robot_job_scan_is(s, w, "USER");
     if (w.length == 0) {
         return robot_job_scan_unexpected(s);
@@ -102,20 +103,76 @@ int robot_job_positions_word(struct robot_job_reading *in)
     if (robot_job_scan_is(s, w, "RCONF")) {
         return take_configuration(in);
     }
-    in->kind = robot_job_scan_is(s, w, "PULSE") ? ROBOT_JOB_PULSES : ROBOT_JOB_POSE;
+    in->kind = robot_job_scan_is(s, w, "PULSE")   ? ROBOT_JOB_PULSES
+               : robot_job_scan_is(s, w, "ANGLE") ? ROBOT_JOB_JOINTS
+                                                  : ROBOT_JOB_POSE;
     return 0;
 }
 
-int32_t robot_job_positions_find(const struct robot_job_reading *in, char letter, int32_t number)
+/* Number of a position of an axis outside the arm, or with NO_AXIS of the arm; -1: there is
+ * none. */
+static int32_t find(const struct robot_job_reading *in, enum robot_job_outside outside, bool own,
+                    int32_t number)
 {
     const struct robot_job_program *p = in->p;
-    const int32_t job = letter == 'C' ? p->jobs - 1 : ROBOT_OF_ALL;
+    const int32_t job = own ? p->jobs - 1 : ROBOT_OF_ALL;
     for (int32_t i = p->positions; i > 0; i--) {
-        if (p->position[i - 1].job == job && p->position[i - 1].number == number) {
+        const struct robot_job_position *q = &p->position[i - 1];
+        if (q->job == job && q->number == number && q->outside == outside) {
             return ROBOT_JOB_POINTS + i - 1;
         }
     }
     return -1;
+}
+
+int32_t robot_job_positions_find(const struct robot_job_reading *in, char letter, int32_t number)
+{
+    return find(in, ROBOT_JOB_NO_AXIS, letter == 'C', number);
+}
+
+enum robot_job_outside robot_job_positions_outside(const struct robot_job_scan *s,
+                                                   struct robot_job_span w, bool *own,
+                                                   int32_t *number)
+{
+    static const struct {
+        char word[3];
+        enum robot_job_outside outside;
+        bool own;
+    } KIND[4] = { { "BC", ROBOT_JOB_BASE_AXIS, true },
+                  { "BP", ROBOT_JOB_BASE_AXIS, false },
+                  { "EC", ROBOT_JOB_STATION_AXIS, true },
+                  { "EX", ROBOT_JOB_STATION_AXIS, false } };
+    const struct robot_job_span two = { w.at, 2 }, rest = { w.at + 1, w.length - 1 };
+    for (int i = 0; i < 4 && w.length > 2; i++) {
+        *number = robot_job_scan_is(s, two, KIND[i].word) ? robot_job_scan_digits(s, rest) : -1;
+        if (*number >= 0) {
+            *own = KIND[i].own;
+            return KIND[i].outside;
+        }
+    }
+    return ROBOT_JOB_NO_AXIS;
+}
+
+int robot_job_positions_beside(struct robot_job_reading *in, struct robot_job_span w,
+                               struct robot_job_instruction *c)
+{
+    struct robot_job_scan *s = &in->s;
+    int32_t number;
+    bool own;
+    const enum robot_job_outside outside = robot_job_positions_outside(s, w, &own, &number);
+    if (outside != in->points->outside || c->increment != ROBOT_JOB_NOT_BY) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_OTHER_AXES, w);
+    }
+    if (c->beside >= 0) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_TWICE, w);
+    }
+    c->beside = find(in, outside, own, number);
+    if (c->beside < 0) {
+        return robot_job_scan_fault(s, ROBOT_JOB_BAD_POSITION, w);
+    }
+    return in->p->position[c->beside - ROBOT_JOB_POINTS].more
+               ? robot_job_scan_fault(s, ROBOT_JOB_BAD_OTHER_AXES, w)
+               : 0;
 }
 
 /* Read the values of a position behind its =. */
@@ -137,11 +194,31 @@ static int take_values(struct robot_job_reading *in, struct robot_job_point *p)
     return robot_job_scan_over(s) ? 0 : robot_job_scan_fault_line(s, ROBOT_JOB_BAD_AXES);
 }
 
+/* Read the places of axes outside the arm behind the =. */
+static int take_places(struct robot_job_reading *in, struct robot_job_position *q)
+{
+    struct robot_job_scan *s = &in->s;
+    const double most = in->kind == ROBOT_JOB_PULSES ? PULSES_MAX : PLACE_MAX;
+    q->point.beside = true;
+    if (robot_job_scan_number(s, -most, most, &q->point.external)) {
+        return -1;
+    }
+    for (int i = 1; i < AXES && robot_job_scan_take(s, ','); i++) {
+        double further;
+        if (robot_job_scan_number(s, -most, most, &further)) {
+            return -1;
+        }
+        q->more = q->more || further != 0.0;
+    }
+    return robot_job_scan_over(s) ? 0 : robot_job_scan_unexpected(s);
+}
+
 /* Whether two points mean the same, wherever they are written. */
 static bool same(const struct robot_job_point *a, const struct robot_job_point *b)
 {
     bool good = a->kind == b->kind && a->shoulder == b->shoulder && a->elbow == b->elbow
-                && a->wrist == b->wrist && a->tool == b->tool && a->user == b->user;
+                && a->wrist == b->wrist && a->tool == b->tool && a->user == b->user
+                && a->external == b->external;
     for (int i = 0; i < AXES; i++) {
         good &= a->value[i] == b->value[i];
     }
@@ -154,14 +231,14 @@ static int keep(struct robot_job_reading *in, struct robot_job_span w,
 {
     struct robot_job_program *p = in->p;
     struct robot_job_scan *s = &in->s;
-    const int32_t before = robot_job_positions_find(in, q->job < 0 ? 'P' : 'C', q->number);
+    const int32_t before = find(in, q->outside, q->job >= 0, q->number);
     if (before >= 0) {
         const struct robot_job_point *other = &p->position[before - ROBOT_JOB_POINTS].point;
         return q->job < 0 && same(other, &q->point)
                    ? 0
                    : robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT_TWICE, w);
     }
-    if (q->job < 0 && q->number < ROBOT_JOB_POINTS
+    if (q->job < 0 && q->outside == ROBOT_JOB_NO_AXIS && q->number < ROBOT_JOB_POINTS
         && in->points->point[q->number].kind != ROBOT_JOB_NO_POINT) {
         return robot_job_scan_fault(s, ROBOT_JOB_BAD_POINT_TWICE, w);
     }
@@ -189,6 +266,17 @@ int robot_job_positions_line(struct robot_job_reading *in)
     struct robot_job_position q = { .job = own ? in->p->jobs - 1 : ROBOT_OF_ALL,
                                     .number = robot_job_scan_digits(s, w),
                                     .point = in->position };
+    int32_t number;
+    bool outside_own;
+    q.outside = robot_job_positions_outside(s, w, &outside_own, &number);
+    if (q.outside != ROBOT_JOB_NO_AXIS && q.outside == in->points->outside) {
+        q.job = outside_own ? in->p->jobs - 1 : ROBOT_OF_ALL;
+        q.number = number;
+        q.point.kind = in->kind;
+        q.point.line = s->line;
+        return take_places(in, &q) || keep(in, w, &q) ? -1 : 1;
+    }
+    q.outside = ROBOT_JOB_NO_AXIS;
     if (q.number < 0 || !(own || robot_job_scan_is(s, (struct robot_job_span){ w.at, 1 }, "P"))) {
         return 1; /* of axes outside the arm: a move that goes there is refused */
     }

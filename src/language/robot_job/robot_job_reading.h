@@ -103,14 +103,23 @@ int robot_job_positions_line(struct robot_job_reading *in);
 /* Number of a position of this job, 'C', or of all jobs, 'P'; -1: there is none. */
 int32_t robot_job_positions_find(const struct robot_job_reading *in, char letter, int32_t number);
 
+/* The axes outside the arm whose position a word is, BC00000; *own: of this job, *number: behind
+ * the letters. */
+enum robot_job_outside robot_job_positions_outside(const struct robot_job_scan *s,
+                                                   struct robot_job_span w, bool *own,
+                                                   int32_t *number);
+
+/* Take such a position for a move: the axis it is of has to be there. */
+int robot_job_positions_beside(struct robot_job_reading *in, struct robot_job_span w,
+                               struct robot_job_instruction *c);
+
 /* robot_job_places: positions that change. Take P001, P[B000], or C00001 of this job: 1, 0 if
  * something else stands here, or -1. */
 int robot_job_place_take(struct robot_job_reading *in, int32_t *number, struct robot_job_by *by);
 
-/* SET ADD SUB of a position that follows: 1, 0 if none does, or -1. SETE GETE GETS. */
+/* SET ADD SUB of a position that follows: 1, 0 if none does, or -1. SETE GETE GETS CNVRT MSHIFT. */
 int robot_job_place_calculate(struct robot_job_reading *in, enum robot_job_op op);
-int robot_job_place_element(struct robot_job_reading *in, enum robot_job_op op);
-int robot_job_place_here(struct robot_job_reading *in);
+int robot_job_place_line(struct robot_job_reading *in, enum robot_job_op op);
 
 /* robot_job_lacking: whether a word is INFORM's, but not of this controller. */
 bool robot_job_lacks(const struct robot_job_scan *s, struct robot_job_span w);
@@ -120,6 +129,10 @@ int robot_job_move(struct robot_job_reading *in, enum robot_job_path path);
 int robot_job_move_by(struct robot_job_reading *in);
 int robot_job_move_speed(struct robot_job_reading *in);
 int robot_job_move_shift(struct robot_job_reading *in);
+
+/* Take the frame of an increment, BF RF UF#(1) TF, by its first word: 1, 0: it is none, or -1. */
+int robot_job_move_frame(struct robot_job_reading *in, struct robot_job_span w,
+                         struct robot_job_instruction *c);
 
 /* Another instruction than MOVC follows: the MOVC of one point before it must be three. */
 int robot_job_move_arc_over(struct robot_job_reading *in);

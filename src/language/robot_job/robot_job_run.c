@@ -22,6 +22,7 @@ static const uint8_t KIND[] = { [ROBOT_JOB_OP_MOVE] = MOTION,     [ROBOT_JOB_OP_
                                 [ROBOT_JOB_OP_PLACE_SET] = PLACE, [ROBOT_JOB_OP_PLACE_ADD] = PLACE,
                                 [ROBOT_JOB_OP_PLACE_SUB] = PLACE, [ROBOT_JOB_OP_SETE] = PLACE,
                                 [ROBOT_JOB_OP_GETE] = PLACE,      [ROBOT_JOB_OP_GETS] = PLACE,
+                                [ROBOT_JOB_OP_CNVRT] = PLACE,     [ROBOT_JOB_OP_MSHIFT] = PLACE,
                                 [ROBOT_JOB_OP_NOP] = NOTHING };
 
 void robot_job_begin(struct robot_job_run *run, const struct robot_job_program *p,
@@ -194,6 +195,7 @@ static enum robot_job_fault move(struct robot_job_run *run, const struct robot_j
         r->tool = run->hand;
         r->shift = -1;
     }
+    r->beside = c->beside;
     r->until = c->until;
     r->until_on = c->until_on;
     run->hand = r->tool;

@@ -83,6 +83,14 @@ struct robot_job_inputs {
     double ai[ROBOT_JOB_ANALOGS]; /* [V] */
     /* Where the arm is, when it rests: in pulses, in the base. GETS alone asks for it. */
     void (*here)(const void *arm, struct robot_job_point here[2]);
+    /* A position by the arm's kinematics as a pose with pose->tool, in pose->user; tool and user
+     * frame of both are told. CNVRT alone asks for it. */
+    void (*convert)(const void *arm, const struct robot_job_point *from,
+                    struct robot_job_point *pose);
+    /* What leads from a position to another as an increment in a frame, X Y Z [mm] A B C [deg].
+     * MSHIFT alone asks for it. */
+    void (*shift)(const void *arm, const struct robot_job_point *from,
+                  const struct robot_job_point *to, int32_t frame, double by[6]);
     const void *arm;
 };
 
@@ -106,6 +114,7 @@ struct robot_job_request {
     /* MOVE */
     enum robot_job_path path;
     int32_t point, via;       /* numbers; via of CIRCLE only */
+    int32_t beside;           /* position of the axis outside the arm; -1: that of the point */
     int32_t next, next_user;  /* of SPLINE: the point it goes on to, -1: it ends; its user frame */
     enum robot_job_speed tag; /* VJ, V or VR */
     double speed;

@@ -24,7 +24,7 @@ enum robot_job_fault robot_job_which(struct robot_job_run *run, const struct rob
                                      const struct robot_job_points *points, int32_t number,
                                      const struct robot_job_by *by, int32_t *which);
 
-/* SET ADD SUB of positions, SETE, GETE, GETS. */
+/* SET ADD SUB of positions, SETE, GETE, GETS, CNVRT, MSHIFT. */
 enum robot_job_fault robot_job_change(struct robot_job_run *run, const struct robot_job_program *p,
                                       const struct robot_job_points *points,
                                       const struct robot_job_inputs *in,

@@ -39,8 +39,7 @@ enum form {
     MESSAGE,
     PULSE,
     INCREMENT,
-    ELEMENT,
-    HERE,
+    PLACE,
     NOTHING
 };
 
@@ -88,9 +87,11 @@ static const struct word WORDS[] = { { "MOVJ", MOVE, ROBOT_JOB_JOINT, 0, 0 },
                                      { "SUB", ARITHMETIC, ROBOT_JOB_OP_SUB, VARIABLE, VALUE },
                                      { "MUL", ARITHMETIC, ROBOT_JOB_OP_MUL, VARIABLE, VALUE },
                                      { "DIV", ARITHMETIC, ROBOT_JOB_OP_DIV, VARIABLE, VALUE },
-                                     { "SETE", ELEMENT, ROBOT_JOB_OP_SETE, 0, 0 },
-                                     { "GETE", ELEMENT, ROBOT_JOB_OP_GETE, 0, 0 },
-                                     { "GETS", HERE, 0, 0, 0 },
+                                     { "SETE", PLACE, ROBOT_JOB_OP_SETE, 0, 0 },
+                                     { "GETE", PLACE, ROBOT_JOB_OP_GETE, 0, 0 },
+                                     { "GETS", PLACE, ROBOT_JOB_OP_GETS, 0, 0 },
+                                     { "CNVRT", PLACE, ROBOT_JOB_OP_CNVRT, 0, 0 },
+                                     { "MSHIFT", PLACE, ROBOT_JOB_OP_MSHIFT, 0, 0 },
                                      { "INC", STEP, ROBOT_JOB_OP_ADD, 0, 0 },
                                      { "DEC", STEP, ROBOT_JOB_OP_SUB, 0, 0 },
                                      { "WAIT", WAIT, 0, 0, 0 },
@@ -144,6 +145,7 @@ struct robot_job_instruction *robot_job_reading_add(struct robot_job_reading *in
                                          .level = ROBOT_JOB_ANY,
                                          .time = -1,
                                          .increment = ROBOT_JOB_NOT_BY,
+                                         .beside = -1,
                                          .until = -1,
                                          .inside = robot_job_block_loop_inside(in) };
     return c;
@@ -548,7 +550,7 @@ static int block(struct robot_job_reading *in, enum block what)
     }
 }
 
-/* CCN 23: a case for each form. */
+/* CCN 22: a case for each form. */
 static int instruction(struct robot_job_reading *in, const struct word *w)
 {
     const enum robot_job_op op = (enum robot_job_op)w->what;
@@ -574,8 +576,7 @@ static int instruction(struct robot_job_reading *in, const struct word *w)
     case MESSAGE:    return message(in);
     case PULSE:      return pulse(in);
     case INCREMENT:  return robot_job_move_by(in);
-    case ELEMENT:    return robot_job_place_element(in, op);
-    case HERE:       return robot_job_place_here(in);
+    case PLACE:      return robot_job_place_line(in, op);
     default:         return nothing(in, op);
     }
 }

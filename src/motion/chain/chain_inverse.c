@@ -689,6 +689,52 @@ static bool reaches(const struct chain_form *f, const struct chain_pose *pose,
     return good;
 }
 
+/* The branch to which joints lead by damped iteration, if it is among those that are missing. */
+static uint32_t led_to(const struct chain_form *f, const struct chain_pose *pose,
+                       const double start[CHAIN_JOINTS], uint32_t missing,
+                       double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
+{
+    double q[CHAIN_JOINTS];
+
+    memcpy(q, start, sizeof q);
+    if (!missing || !chain_iterate_damped(&f->chain, f->held, f->size, pose, q)) {
+        return 0;
+    }
+    const int n = chain_branch(f, q);
+    if (!(missing >> n & 1)) {
+        return 0;
+    }
+    for (int i = 0; i < f->chain.joints; i++) {
+        joint[n][i] = within_turn(f, i, q[i]);
+    }
+    return 1u << n;
+}
+
+/* Branches that an arm misses whose axes miss its form a little: beside singular places and at the
+ * edge of reach the form's joints are too far away, or there are none. Iteration leads to them from
+ * near[] and, of those `failed`, from the form's joints. */
+static uint32_t by_damping(const struct chain_form *f, const struct chain_pose *pose,
+                           const double near[CHAIN_JOINTS], double value, uint32_t failed,
+                           uint32_t missing, double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
+{
+    double start[CHAIN_JOINTS], ends[CHAIN_BRANCHES][CHAIN_JOINTS];
+
+    memcpy(start, near, sizeof start);
+    if (f->held >= 0) {
+        start[f->held] = value;
+    }
+    uint32_t there = led_to(f, pose, start, missing, ends);
+    for (int n = 0; n < CHAIN_BRANCHES; n++) {
+        if (failed >> n & 1) {
+            there |= led_to(f, pose, joint[n], missing & ~there & 1u << n, ends);
+        }
+        if (there >> n & 1) {
+            memcpy(joint[n], ends[n], sizeof ends[n]);
+        }
+    }
+    return there;
+}
+
 uint32_t chain_inverse_held(const struct chain_form *f, const struct chain_pose *pose,
                             const double near[CHAIN_JOINTS], double value, uint32_t wanted,
                             double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
@@ -719,11 +765,16 @@ uint32_t chain_inverse_held(const struct chain_form *f, const struct chain_pose 
     default:                   there = with_wrist(&t, q); break;
     }
     there &= wanted;
+    uint32_t failed = 0;
     for (int n = 0; n < CHAIN_BRANCHES; n++) {
         if (there >> n & 1) {
             outer(&t, q[n], value, joint[n]);
-            there &= reaches(f, pose, joint[n]) ? ~0u : ~(1u << n);
+            failed |= reaches(f, pose, joint[n]) ? 0 : 1u << n;
         }
+    }
+    there &= ~failed;
+    if (f->deviation > CHAIN_EXACT && f->held != CHAIN_ARM_ANGLE) { /* which it would not keep */
+        there |= by_damping(f, pose, near, value, failed, wanted & ~there, joint);
     }
     return there;
 }

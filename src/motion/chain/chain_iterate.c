@@ -357,6 +357,20 @@ static bool find(const struct search *s, const struct chain_pose *pose, double j
     return converge(s, pose, joint, &v);
 }
 
+bool chain_iterate_damped(const struct chain *c, int held, double size,
+                          const struct chain_pose *pose, double joint[CHAIN_JOINTS])
+{
+    const struct search s = search_of(c, held, size);
+    double found[CHAIN_JOINTS];
+
+    memcpy(found, joint, sizeof found);
+    if (!find(&s, pose, found)) {
+        return false;
+    }
+    memcpy(joint, found, sizeof found);
+    return true;
+}
+
 enum chain_iterate_status chain_iterate(const struct chain *c, int held, double size,
                                         const struct chain_pose *pose, double joint[CHAIN_JOINTS])
 {

@@ -30,6 +30,11 @@ enum chain_iterate_status {
 enum chain_iterate_status chain_iterate(const struct chain *c, int held, double size,
                                         const struct chain_pose *pose, double joint[CHAIN_JOINTS]);
 
+/* The same from further away, by steps that are halved until less is left. Which of several
+ * solutions it comes to is not said. */
+bool chain_iterate_damped(const struct chain *c, int held, double size,
+                          const struct chain_pose *pose, double joint[CHAIN_JOINTS]);
+
 /* Joints close to those of a pose become those of it. False, and joint[] as it was: it is not
  * proved that there are any. */
 bool chain_iterate_close(const struct chain *c, int held, double size,

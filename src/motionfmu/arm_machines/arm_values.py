@@ -29,7 +29,6 @@ from motionfmu.arms.arm_description import (
     joined,
     placed,
 )
-from motionfmu.arms.linkage import linkage_of
 from motionfmu.base.errors import InputError
 
 Array = NDArray[np.float64]
@@ -307,9 +306,9 @@ class _Values:
 
     def _hand(self) -> dict[str, Any]:
         """What a linkage keeps level before the last joint, from its pivot, of a palletizer."""
-        if not isinstance(self.geometry, AxesGeometry) or not self.levels:
+        if not isinstance(self.geometry, AxesGeometry) or not self.geometry.linkage:
             return {}
-        geometry, linkage = self.geometry, linkage_of(self.arm)
+        geometry, linkage = self.geometry, self.geometry.linkage
         frames = self.arm.frames(geometry.straight)
         back = np.linalg.inv(placed(geometry.places[-1] - geometry.hand))
         parts = [(self.arm.joints[k].link, back @ frames[k]) for k in linkage.pivots]

@@ -12,14 +12,14 @@ from motionfmu.arms.arm_geometry import (
     NoOpwGeometry,
     OpwGeometry,
     is_gantry,
-    is_palletizer,
     is_scara,
     kind_of,
+    level_linkage,
     opw_geometry,
     turns_six,
 )
 from motionfmu.arms.joint_axes import ANGLE
-from motionfmu.arms.linkage import FOUR, NoLinkage, linkage_of
+from motionfmu.arms.linkage import FOUR, Linkage, NoLinkage, linkage_of
 
 # Angles of joints 2, 3, 4 at which the reach is looked for; it is 1 % too short at most.
 STEPS = 24
@@ -51,6 +51,8 @@ class AxesGeometry:
         So many joints before each do not tilt its link; none given: all tilt all.
     hand : (3,) ndarray
         Of a palletizer: joint 4 on the hand, from the pivot where its origin is [m].
+    linkage : Linkage, optional
+        Of a palletizer that was described: where its joints are in the description.
     """
 
     origins: Array
@@ -61,6 +63,7 @@ class AxesGeometry:
     deviation: float = 0.0
     levels: tuple[int, ...] = ()
     hand: Array = field(default_factory=lambda: np.zeros(3))
+    linkage: Linkage | None = None
 
     @property
     def places(self) -> Array:
@@ -227,8 +230,8 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
         It is none of six turning joints, no SCARA, palletizer or gantry; the text names its kind
         and what is missing.
     """
-    if is_palletizer(arm):
-        return _palletizer(arm)
+    if linkage := level_linkage(arm):
+        return _palletizer(arm, linkage)
     try:
         geometry = opw_geometry(arm)
     except NoOpwGeometry as error:
@@ -242,9 +245,8 @@ def driven_geometry(arm: ArmDescription) -> ArmGeometry:
     return replace(axes_geometry(arm), why=why)
 
 
-def _palletizer(arm: ArmDescription) -> AxesGeometry:
+def _palletizer(arm: ArmDescription, linkage: Linkage) -> AxesGeometry:
     """The axes of a palletizer: those that are nearly in parallel are exactly so."""
-    linkage = linkage_of(arm)
     first, second, third, fourth = linkage.driven
     frames = arm.frames(np.zeros(FOUR))
     chain = (first, second, third, linkage.pivots[-1])
@@ -261,6 +263,7 @@ def _palletizer(arm: ArmDescription) -> AxesGeometry:
         why=PALLETIZER,
         slides=(False,) * FOUR,
         levels=linkage.levels,
+        linkage=linkage,
         hand=_tidy(last[:3, 3] - places[-1]),
     )
     found = replace(found, flange=_upright(found.flange, found.axes[3]))

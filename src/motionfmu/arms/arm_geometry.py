@@ -11,7 +11,7 @@ import numpy as np
 
 from motionfmu.arms.arm_description import ArmDescription, Array, about, placed
 from motionfmu.arms.joint_axes import ANGLE, MEET, JointAxes, joint_axes
-from motionfmu.arms.linkage import NoLinkage, linkage_of
+from motionfmu.arms.linkage import Linkage, NoLinkage, linkage_of
 
 SIX = 6
 SHORTEST = 1e-3  # [m] the least upper arm and forearm that the controller takes
@@ -125,7 +125,7 @@ def kind_of(arm: ArmDescription) -> str:
     slides = "".join("P" if j.slides else "R" for j in arm.joints)
     lines = joint_axes(arm)
     if any(j.follows is not None for j in arm.joints):
-        if is_palletizer(arm):
+        if level_linkage(arm):
             return PALLETIZER
         names = ", ".join(j.name for j in arm.joints if j.follows is not None)
         return f"an arm with a parallelogram (following joints: {names})"
@@ -149,13 +149,12 @@ def kind_of(arm: ArmDescription) -> str:
 SCARA, PALLETIZER = "a SCARA", "a palletizer"
 
 
-def is_palletizer(arm: ArmDescription) -> bool:
-    """Whether a linkage keeps the hand of four turning joints level."""
+def level_linkage(arm: ArmDescription) -> Linkage | None:
+    """The linkage that keeps the hand of four turning joints level; None: there is none."""
     try:
-        linkage_of(arm)
+        return linkage_of(arm)
     except NoLinkage:
-        return False
-    return True
+        return None
 
 
 def is_scara(arm: ArmDescription) -> bool:

@@ -117,12 +117,11 @@ def quaternion(turn: Array) -> Array:
 
 
 def _equalities(arm: ArmDescription) -> Iterator[str]:
-    followers = [j for j in arm.joints if j.follows is not None]
+    followers = [(j.name, *j.follows) for j in arm.joints if j.follows is not None]
     if not followers:
         return
     yield "  <equality>"
-    for joint in followers:
-        leader, factor, offset = joint.follows or (0, 1.0, 0.0)
-        names = f"joint1={quoteattr(joint.name)} joint2={quoteattr(arm.joints[leader].name)}"
+    for name, leader, factor, offset in followers:
+        names = f"joint1={quoteattr(name)} joint2={quoteattr(arm.joints[leader].name)}"
         yield f'    <joint {names} polycoef="{numbers([offset, factor, 0, 0, 0])}"/>'
     yield "  </equality>"

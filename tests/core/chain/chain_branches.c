@@ -213,6 +213,65 @@ static void calibrated(const struct rig *r, double by)
     CHECK(found > 0.95 * all_of_them);
 }
 
+/* Kinova's Gen3 (maker's URDF), whose axes 5 and 7 miss each other by 0.35 mm. */
+static const struct rig GEN3 = {
+    "Gen3, joint 3 held",
+    7,
+    2,
+    CHAIN_WRIST_SHOULDER,
+    false,
+    { { 0, 0, .15643 },
+      { 0, -.005375, .12838 },
+      { 0, -.006375, .21038 },
+      { 0, -.006375, .21038 },
+      { 0, -.006375, .20843 },
+      { 0, -.00017505, .10593 },
+      { 0, -.00017505, .10593 } },
+    { { 0, 0, -1 }, Y, { 0, 0, -1 }, Y, { 0, 0, -1 }, Y, { 0, 0, -1 } },
+    0,
+    0,
+    { 0, 0, .0615 },
+    0
+};
+
+/* An arm that nearly has a form comes to the joints of a pose beside singular places, too, where
+ * the branches of its form are too far away: from joints within `off` of them, or, of a `share`,
+ * from any; the held joint is the one asked for. Each branch is the same asked for alone. */
+static void nearly(const struct rig *r, double off, double share)
+{
+    const struct chain_form f = rig_form(r);
+    int back = 0;
+    enum { POSES = 2000 };
+
+    CHECK_EQ(f.kind, r->kind);
+    CHECK(f.deviation > CHAIN_EXACT);
+    for (int n = 0; n < POSES; n++) {
+        double q[CHAIN_JOINTS], near[CHAIN_JOINTS], all[CHAIN_BRANCHES][CHAIN_JOINTS];
+        double alone[CHAIN_BRANCHES][CHAIN_JOINTS], least = INFINITY;
+        struct chain_pose pose, again;
+        rig_anywhere(&f.chain, &seed, q);
+        chain_forward(&f.chain, q, &pose);
+        for (int i = 0; i < CHAIN_JOINTS; i++) {
+            near[i] = q[i] + (i == f.held ? 0.3 : check_real(&seed, -off, off));
+        }
+        const double held = q[f.held];
+        const uint32_t there = chain_inverse_held(&f, &pose, near, held, 0xff, all);
+        CHECK(there != 0 || off > 1.0);
+        for (int k = 0; k < CHAIN_BRANCHES; k++) {
+            CHECK_EQ(chain_inverse_held(&f, &pose, near, held, 1u << k, alone), there & 1u << k);
+            if (there >> k & 1) {
+                chain_forward(&f.chain, all[k], &again);
+                CHECK(rig_between(&pose, &again) < 1e-11);
+                CHECK(memcmp(alone[k], all[k], sizeof all[k]) == 0);
+                CHECK_EQ(all[k][f.held], held);
+                least = fmin(least, rig_apart(&f.chain, all[k], q));
+            }
+        }
+        back += least < 1e-9;
+    }
+    CHECK(back >= share * POSES);
+}
+
 /* The arm angle is what was asked for, and turns the elbow while the flange stands. */
 static void arm_angles(const struct rig *r)
 {
@@ -313,6 +372,9 @@ int main(void)
             calibrated(&RIGS[n], 2e-4);
         }
     }
+    nearly(&GEN3, 0.0, 1.0);
+    nearly(&GEN3, 5e-3, 0.999);
+    nearly(&GEN3, 3.0, 0.985);
     arm_angles(&RIGS[13]);
     nearest();
     levels();

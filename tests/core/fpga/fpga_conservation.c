@@ -11,7 +11,7 @@ static struct fpga_write answer(const struct fpga *card, uint64_t *random, int64
     struct fpga_write w = { .memory = memory, .slots = (int32_t)check_random(random, 1, 24) };
     for (int32_t k = 0; k < w.slots; k++) {
         int32_t n[FPGA_SLOT_AXES] = { 0 };
-        for (int i = 0; i < FPGA_AXES; i++) {
+        for (int i = 0; i < FPGA_PLAYED; i++) {
             n[i] = (int32_t)check_random(random, -49, 49);
             sum[i] += n[i];
         }
@@ -23,7 +23,7 @@ static struct fpga_write answer(const struct fpga *card, uint64_t *random, int64
 int main(void)
 {
     uint64_t random = 14;
-    int64_t sum[FPGA_AXES] = { 0 }, before[FPGA_AXES] = { 0 }, pulses[FPGA_AXES];
+    int64_t sum[FPGA_PLAYED] = { 0 }, before[FPGA_PLAYED] = { 0 }, pulses[FPGA_PLAYED];
     int64_t deadline = 0, early = 0;
     struct fpga card = rig_card();
     fpga_advance(&card, 4000);
@@ -40,7 +40,7 @@ int main(void)
         const int64_t begin = end && w.clock < end ? end : (w.clock / SLOT + 1) * SLOT;
         fpga_advance(&card, begin - 1);
         fpga_pulses(&card, pulses);
-        for (int i = 0; i < FPGA_AXES; i++) {
+        for (int i = 0; i < FPGA_PLAYED; i++) {
             CHECK_EQ(pulses[i], before[i]); /* all that was written before this write */
             before[i] = sum[i];
         }
@@ -54,7 +54,7 @@ int main(void)
            INTERRUPTS, (long long)early, (long long)deadline);
     fpga_advance(&card, card.clock + FPGA_SLOTS * SLOT);
     fpga_pulses(&card, pulses);
-    for (int i = 0; i < FPGA_AXES; i++)
+    for (int i = 0; i < FPGA_PLAYED; i++)
         CHECK_EQ(pulses[i], sum[i]);
     CHECK(deadline > INTERRUPTS / 10 && early > INTERRUPTS / 10);
     CHECK_EQ(card.refused + card.late, 0);

@@ -152,7 +152,7 @@ static void refusals(void)
     CHECK_EQ(fpga_post_write(&card, &w), FPGA_ON_THE_WAY);
     CHECK_EQ(card.refused, 8);
     fpga_advance(&card, 200 + 128 * SLOT + 3 * SLOT);
-    int64_t pulses[FPGA_AXES];
+    int64_t pulses[FPGA_PLAYED];
     fpga_pulses(&card, pulses);
     CHECK_EQ(pulses[0], 128 + 6 - 2); /* the last slot of the second has axis 2 alone */
     CHECK_EQ(pulses[2], -49);

@@ -33,7 +33,7 @@ static inline struct fpga_write rig_write(int32_t memory, int32_t slots, int32_t
 
 static inline int64_t rig_pulses(const struct fpga *card)
 {
-    int64_t pulses[FPGA_AXES];
+    int64_t pulses[FPGA_PLAYED];
     fpga_pulses(card, pulses);
     CHECK_EQ(pulses[5], -pulses[0]);
     return pulses[0];

@@ -29,10 +29,10 @@ static void bytes(void)
             int32_t word[2] = { 0, 0 }, n[8];
             word[axis / 4] = (int32_t)((uint32_t)byte << 8 * (axis % 4));
             const int value = byte < 128 ? byte : byte - 256;
-            const bool counts = value >= -49 && value <= 49 && (axis < 6 || !byte);
+            const bool counts = value >= -49 && value <= 49 && (axis < FPGA_PLAYED || !byte);
             CHECK_EQ(fpga_slot_unpack(word, FPGA_COUNTS, 49, n), counts ? -1 : axis);
             CHECK_EQ(n[axis], value);
-            const bool bits = byte < 4 && (axis < 6 || !byte);
+            const bool bits = byte < 4 && (axis < FPGA_PLAYED || !byte);
             CHECK_EQ(fpga_slot_unpack(word, FPGA_BITS, 1, n), bits ? -1 : axis);
             if (bits)
                 CHECK_EQ(n[axis], byte == 1 ? 1 : byte == 3 ? -1 : 0);

@@ -71,6 +71,78 @@ static void here(void)
     }
 }
 
+/* A position as the job has left it. */
+static void is(int32_t number, const double value[6])
+{
+    const struct robot_job_point *q =
+        robot_job_place(&controller.orders.job, &jobs, &points, number);
+
+    CHECK_EQ(q->kind, ROBOT_JOB_POSE);
+    for (int i = 0; i < 6; i++) {
+        CHECK_NEAR(i < 3 ? q->value[i] : remainder(q->value[i] - value[i], 360.0),
+                   i < 3 ? value[i] : 0.0, 1e-9);
+    }
+}
+
+/* CNVRT: pulses, joints and poses as a pose in a frame, with a tool; the arm goes back there with
+ * the joints that it had. User frame 2 is at 900, -300, 200, turned by 90 degrees about z. */
+static void conversions(void)
+{
+    begin("MOVJ P006\nGETS PX050 $PX000\nCNVRT PX051 PX050 UF#(2)\nMOVJ P000\nMOVJ P051\nEND\n");
+    while (controller.given < 2 && now < LONG) {
+        pc_cycle();
+    }
+    double was[OPW_JOINTS];
+    memcpy(was, controller.joint, sizeof was);
+    finish();
+    is(51, (double[6]){ 300, 0, 150, 180, 0, 90 });
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        CHECK_NEAR(controller.robot.joint[i], was[i], 2e-3);
+    }
+    pc_at(900.0, 0.0, 350.0, 1e-6);
+    begin("CNVRT PX050 P004 BF\nCNVRT PX051 PX050 RF TL#(0)\nCNVRT PX052 PX050 UF#(2) TL#(1)\n"
+          "TOOL 1\nCNVRT PX053 P000 BF\nMOVJ P001\nMOVJ P053\nEND\n");
+    finish();
+    is(50, (double[6]){ 1100, 0, 350, 180, 0, 180 });
+    is(51, (double[6]){ 1100, 0, 500, 180, 0, 180 }); /* the flange: the tool points down */
+    is(52, (double[6]){ 300, -200, 150, 180, 0, 90 });
+    CHECK_EQ(robot_job_place(&controller.orders.job, &jobs, &points, 51)->tool, 0);
+    static const double zero[] = { 0, -20, 10, 0, 90, 0 };
+    for (int i = 0; i < OPW_JOINTS; i++) {
+        CHECK_NEAR(controller.robot.joint[i], zero[i] * DEGREE, 1e-9);
+    }
+}
+
+/* MSHIFT: what leads from one position to another, in each frame; IMOV and SFTON go that way. */
+static void differences(void)
+{
+    begin("MSHIFT PX050 BF P001 P002\nMSHIFT PX051 UF#(2) P001 P002\nMSHIFT PX052 TF P001 P002\n"
+          "MSHIFT PX053 RF P003 P009\nMSHIFT PX054 TF P003 P009\nMSHIFT PX055 BF P001 P004\n"
+          "MOVJ P003\nIMOV PX054 V=500 TF\nEND\n");
+    finish();
+    is(50, (double[6]){ 100, 100, 0, 0, 0, 0 });
+    is(51, (double[6]){ 100, -100, 0, 0, 0, 0 });
+    is(52, (double[6]){ -100, 100, 0, 0, 0, 0 });
+    is(53, (double[6]){ -200, 0, 0, 0, 0, -10 });
+    is(54, (double[6]){ 200, 0, 0, 0, 0, 10 }); /* whose z points down */
+    is(55, (double[6]){ 200, 0, 0, 0, 0, 0 });
+    pc_at(900.0, 0.0, 350.0, 1e-6);
+    CHECK_NEAR(pc_off(180.0, 0.0, 170.0), 0.0, 1e-6);
+    /* From a place of the arm in pulses; its turns are none by less than an element says. */
+    begin("MOVJ P001\nGETS PX050 $PX000\nMSHIFT PX051 UF#(2) PX050 P002\nSFTON P051 UF#(2)\n"
+          "MOVL P001 V=500\nEND\n");
+    finish();
+    pc_at(1000.0, 100.0, 350.0, 1e-6);
+    /* A turn about an axis that is none of the frame's: IMOV leads by it to the same attitude. */
+    begin("MOVJ P001\nSETE P060 (4) 200000\nSETE P060 (5) -100000\nIMOV P060 VR=50 UF#(2)\n"
+          "GETS PX061 $PX001\nMSHIFT PX062 UF#(2) P001 PX061\nMOVJ P001\n"
+          "IMOV P062 VR=50 UF#(2)\nEND\n");
+    finish();
+    is(62, (double[6]){ 0, 0, 0, 20, -10, 0 });
+    const struct robot_job_point *q = robot_job_place(&controller.orders.job, &jobs, &points, 61);
+    CHECK_NEAR(pc_off(q->value[3], q->value[4], q->value[5]), 0.0, 1e-6);
+}
+
 /* A line of 200 mm from P001 to P003 at V=100 with an input that comes `after` cycles in it.
  * Returns where the move has ended, from its begin; *braked: what the tool went after the input.
  * [mm] */
@@ -174,6 +246,8 @@ int main(void)
 {
     increments();
     here();
+    conversions();
+    differences();
     until();
     at_once();
     held();

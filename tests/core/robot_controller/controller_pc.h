@@ -88,7 +88,8 @@ static inline void pc_start(const char *job, const char *gcode)
     struct robot_job_report r;
 
     text = (struct orders_text){ .points = &points };
-    CHECK_EQ(robot_job_points_read(&points, POINTS, (int64_t)strlen(POINTS), &r), 0);
+    CHECK_EQ(robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, POINTS, (int64_t)strlen(POINTS), &r),
+             0);
     if (job) {
         CHECK_EQ(robot_job_read(&jobs, &points, job, (int64_t)strlen(job), &r), 0);
         text.job = &jobs;

@@ -65,7 +65,9 @@ static inline void rig_program(const char *job, const char *of_points)
 {
     struct robot_job_report report;
 
-    CHECK_EQ(robot_job_points_read(&points, of_points, (int64_t)strlen(of_points), &report), 0);
+    CHECK_EQ(robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, of_points,
+                                   (int64_t)strlen(of_points), &report),
+             0);
     CHECK_EQ(robot_job_read(&program, &points, job, (int64_t)strlen(job), &report), 0);
     text.job = &program;
     text.points = &points;
@@ -100,7 +102,7 @@ static inline struct fpga_shown rig_shown(void)
         .memory = card.playing,
         .stopped = card.stopped,
     };
-    int64_t pulses[FPGA_AXES];
+    int64_t pulses[FPGA_PLAYED];
 
     fpga_pulses(&card, pulses);
     for (int i = 0; i < FPGA_AXES; i++) {

@@ -99,6 +99,10 @@ int main(void)
     controller_configure(&s, &usual);
     /* Where the longest wait is at work it is longer than the least. */
     s.irq_longest = 1e-3;
+    s.external = EXTERNAL_TRACK;
+    for (int i = 0; i < 3; i++) {
+        s.external_direction[i] = 1.0 + i;
+    }
     with_axes();
     controller_configure(&s, &by_axes);
     s.arm_by = 0;
@@ -121,6 +125,13 @@ int main(void)
     s.hand_offset[1] = 0.1;
     wrong_together("hand_offset", "no hand that joint_level[4] = 2 keeps level");
     with_axes();
+    s.external = EXTERNAL_TABLE;
+    s.external_high = s.external_low;
+    wrong_together("external_low", "not below external_high");
+    s.external = EXTERNAL_TRACK;
+    s.external_direction[0] = 0.0;
+    wrong_together("external_direction", "no direction");
+    with_axes();
     s.singular = ROBOT_WRIST;
     wrong_together("singular", "not of an arm by its axes");
     s.joint_sign[3] = 0;
@@ -136,7 +147,7 @@ int main(void)
     CHECK_EQ(usual.layers.access, 40);
     CHECK_EQ(usual.layers.tick, 400000);
     CHECK_EQ(usual.depth, 32);
-    CHECK_EQ(usual.servo, 0x3f);
+    CHECK_EQ(usual.servo, 0x7f);
     CHECK_NEAR(usual.zero[4], 1.5707963267948966, 1e-15);
     CHECK_NEAR(usual.robot.cycle, 1e-4, 1e-18);
     CHECK_NEAR(usual.robot.feed, 3000.0, 1e-9);

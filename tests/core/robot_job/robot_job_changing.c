@@ -22,11 +22,36 @@ static void where(const void *arm, struct robot_job_point here[2])
     asked++;
 }
 
+/* A position seen with tools and in frames: their numbers behind its X. */
+static void seen(const void *arm, const struct robot_job_point *from, struct robot_job_point *pose)
+{
+    (void)arm;
+    memcpy(pose->value, from->value, sizeof pose->value);
+    pose->value[1] = 10 * from->tool + from->user;
+    pose->value[2] = 10 * pose->tool + pose->user;
+    pose->elbow = from->kind == ROBOT_JOB_PULSES;
+}
+
+/* From one X to the other; frames and tools of both behind it, and turns about what rounds to
+ * none. */
+static void led(const void *arm, const struct robot_job_point *from,
+                const struct robot_job_point *to, int32_t frame, double by[6])
+{
+    const double way[6] = { to->value[0] - from->value[0],
+                            10 * from->tool + from->user,
+                            10 * to->tool + to->user,
+                            frame,
+                            4.9e-5,
+                            -5.1e-5 };
+    (void)arm;
+    memcpy(by, way, sizeof way);
+}
+
 /* The moves of a program: path, values of the position, tool, user frame, speed; UNTIL and frames
  * of increments; its outputs. A move is reached when somebody asks. */
 static const char *run_text(const char *text)
 {
-    struct robot_job_inputs in = { .here = where, .arm = HERE };
+    struct robot_job_inputs in = { .here = where, .convert = seen, .shift = led, .arm = HERE };
     struct robot_job_request r = { .answer = ROBOT_JOB_BUSY };
     trace[0] = '\0';
     if (read_program(text)) {
@@ -106,6 +131,38 @@ static const struct {
     { "MOVL P2 V=9\nGETS PX012 $PX001\nMOVL P012 V=9\nGETS PX3 $PX000\nGETE D000 PX003 (6)\n"
       "SET B000 D000\nDOUT OG#(1) B000",
       "L1000,100,350,180,0,0 T0 U0 9;reach 1;L700.5,-20.25,300,180,0,-90 T1 U0 9;reach 2;2:1=6;" },
+    /* CNVRT and MSHIFT: tools and frames are those of the positions, or in force */
+    { "TOOL 1\nUSER 2\nCNVRT PX010 P001 BF\nCNVRT PX[11] P[2] UF#(2)\nCNVRT P012 PX004 RF TL#(0)\n"
+      "CNVRT P002 P002 BF TL#(1)\nMOVL P010 V=9\nMOVL P011 V=9\nMOVL P012 V=9\nMOVL P002 V=9",
+      "L900,12,10,180,0,0 T1 U0 9;L1000,12,12,180,0,0 T1 U2 9;L0,12,0,180,0,0 T0 U0 9;"
+      "L1000,12,10,180,0,0 T1 U0 9;reach 4;" },
+    { "SET B001 2\nMSHIFT PX010 TF P001 P[B001]\nMSHIFT P011 UF#(2) P004 P001\nMOVL P010 V=9\n"
+      "TOOL 1\nMSHIFT P002 BF P002 P002\nSETE P002 (6) 0\nMOVL P011 V=9\nMOVL P002 V=9\nSFTON P002",
+      "L100,10,0,-1,0,-5.1e-05 T0 U0 9;L900,2,10,2,0,-5.1e-05 T1 U0 9;"
+      "L0,10,10,0,0,0 T1 U0 9;reach 3;" },
+    { "MSHIFT P010 BF P001 P020\nSET P020 P1", "1 a position that has no value yet" },
+    { "MSHIFT P010 BF P020 P001\nSET P020 P1", "1 a position that has no value yet" },
+    { "SET I000 1000\nMSHIFT P010 BF P001 P[I000]", "2 no such variable" },
+    { "CNVRT P010 P020 BF\nSET P020 P1", "1 a position that has no value yet" },
+    { "CNVRT P010 P001", "line 1: incomplete \"CNVRT P010 P001\"" },
+    { "CNVRT P010 P001 PULSE", "line 1: unexpected \"PULSE\"" },
+    { "CNVRT P010 P001 TF", "line 1: INFORM that this controller lacks \"TF\"" },
+    { "CNVRT P010 P001 MTF", "line 1: INFORM that this controller lacks \"MTF\"" },
+    { "CNVRT P010 P001 UF#(3)", "line 1: tool or user frame not in the points file \"UF#(3)\"" },
+    { "CNVRT P010 P001 BF TL#(2)", "line 1: tool or user frame not in the points file \"TL#(2)\"" },
+    { "CNVRT P010 P001 BF TL#(64)", "line 1: value out of range \"64\" (0 to 63)" },
+    { "CNVRT P010 P001 BF TL(1)", "line 1: unexpected \"(1)\"" },
+    { "CNVRT P010 P001 BF TL#(1", "line 1: incomplete \"CNVRT P010 P001 BF TL#(1\"" },
+    { "CNVRT P010 P001 BF UF#(2)", "line 1: unexpected \"UF#(2)\"" },
+    { "CNVRT P010 P001 BF TL#(1) 1", "line 1: unexpected \"1\"" },
+    { "CNVRT P010 5 BF", "line 1: unexpected \"5\"" },
+    { "CNVRT B010 P001 BF", "line 1: unexpected \"B010\"" },
+    { "CNVRT LPX000 LPX001 BF", "line 1: unexpected \"LPX000\"" },
+    { "MSHIFT P010 P001 P002", "line 1: unexpected \"P001\"" },
+    { "MSHIFT P010 MTF P001 P002", "line 1: INFORM that this controller lacks \"MTF\"" },
+    { "MSHIFT P010 BF P001", "line 1: incomplete \"MSHIFT P010 BF P001\"" },
+    { "MSHIFT P010 BF P005 P001", "line 1: point not in the points file \"P005\"" },
+    { "MSHIFT P010 BF P001 P002 P003", "line 1: unexpected \"P003\"" },
     /* elements of variables, those of a call, by a number, by one of them */
     { "SET B[3] 7\nSET I005 3\nSET D[I005] B[I005]\nADD D003 B003\nSET LR[9] 2.5\nMUL D003 LR009\n"
       "SET B000 D[3]\nDOUT OG#(1) B[0]\nINC B[LI000]\nSET B[B[0]] 1",
@@ -237,7 +294,9 @@ static void later_text(void)
                       second[] = "//NAME B\n//POS\nP500=1,2,3,4,5,6\n//INST\nEND\n";
     struct robot_job_inputs in = { 0 };
     struct robot_job_request r;
-    CHECK_EQ(robot_job_points_read(&points, POINTS, (int64_t)strlen(POINTS), &report), 0);
+    CHECK_EQ(robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, POINTS, (int64_t)strlen(POINTS),
+                                   &report),
+             0);
     robot_job_begin_reading(&program);
     CHECK_EQ(robot_job_read_text(&program, &points, first, (int64_t)strlen(first), &report), 0);
     program.callees = 0;

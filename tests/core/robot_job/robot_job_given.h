@@ -25,7 +25,9 @@ static char message[ROBOT_JOB_MESSAGE_MAX];
 static inline int read_program(const char *text)
 {
     message[0] = '\0';
-    CHECK_EQ(robot_job_points_read(&points, POINTS, (int64_t)strlen(POINTS), &report), 0);
+    CHECK_EQ(robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, POINTS, (int64_t)strlen(POINTS),
+                                   &report),
+             0);
     const int status = robot_job_read(&program, &points, text, (int64_t)strlen(text), &report);
     CHECK_EQ(status, report.fault == ROBOT_JOB_OK ? 0 : -1);
     if (status) {

@@ -164,7 +164,7 @@ static const struct {
     { "CASE 1", "line 1: does not end what is open \"CASE 1\"" },
     { "SWITCH B000\nCASE 1.5\nENDSWITCH", "line 2: no whole number \"1.5\"" },
     { "ARCON ASF#(1)", "line 1: INFORM that this controller lacks \"ARCON\"" },
-    { "CNVRT PX001 PX002 BF", "line 1: INFORM that this controller lacks \"CNVRT\"" },
+    { "MFRAME UF#(1) PX001 PX002 PX003", "line 1: INFORM that this controller lacks \"MFRAME\"" },
     { "SET S[0] 1", "line 1: INFORM that this controller lacks \"S\"" },
     { "SET D000 P001", "line 1: INFORM that this controller lacks \"P001\"" },
     { "SET LP000 P001", "line 1: INFORM that this controller lacks \"LP000\"" },

@@ -3,7 +3,8 @@
 
 static const char *read_points(const char *text)
 {
-    const int status = robot_job_points_read(&points, text, (int64_t)strlen(text), &report);
+    const int status =
+        robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, text, (int64_t)strlen(text), &report);
     CHECK_EQ(status, report.fault == ROBOT_JOB_OK ? 0 : -1);
     message[0] = '\0';
     if (status) {

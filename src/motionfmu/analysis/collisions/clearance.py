@@ -53,10 +53,11 @@ class Approach:
 
 
 def distances(
-    parts: ArmParts, cell: Cell, joints: Array, tip: Array
+    parts: ArmParts, cell: Cell, joints: Array, tip: Array, base: Array | float = 0.0
 ) -> Iterator[tuple[str, str, Array]]:
-    """Two that can touch and their distance (n,) [mm], for joints (n, 6) [deg], tips (n, 3)."""
-    points, radii = parts.points(joints, tip), parts.radii
+    """Two that can touch, their distance (n,) [mm]; joints (n, 6) [deg], tips and bases (n, 3)."""
+    standing = np.broadcast_to(base, tip.shape)
+    points, radii = parts.points(joints, tip - standing) + standing[:, None], parts.radii
     bars = [(points[:, k], points[:, k + 1]) for k in range(len(NAMES))]
     for a, b in parts.pairs:
         yield NAMES[a], NAMES[b], between_segments(bars[a], bars[b]) - radii[a] - radii[b]
@@ -83,7 +84,7 @@ def approaches(samples: NDArray[Any], parts: ArmParts, cell: Cell) -> list[Appro
     Parameters
     ----------
     samples : (n,) structured ndarray
-        As of `DryRun`: ``time``, ``joint``, ``place``, ``line``, ``rate``.
+        As of `DryRun`: ``time``, ``joint``, ``place``, ``base``, ``line``, ``rate``.
     parts : ArmParts
     cell : Cell
 
@@ -92,7 +93,8 @@ def approaches(samples: NDArray[Any], parts: ArmParts, cell: Cell) -> list[Appro
     list of Approach
         By line, then by time; line 0 is the position before the first one.
     """
-    moves = (samples["rate"] != 0.0).any(axis=1)
+    carried = np.diff(samples["base"], axis=0, prepend=samples["base"][:1])
+    moves = (samples["rate"] != 0.0).any(axis=1) | (carried != 0.0).any(axis=1)
     lines = np.where(moves, samples["line"], 0)
     moves[:1] = True
     seen, lines = samples[moves], lines[moves]
@@ -101,8 +103,9 @@ def approaches(samples: NDArray[Any], parts: ArmParts, cell: Cell) -> list[Appro
     for at in [np.arange(len(seen))[k : k + _PIECE] for k in range(0, len(seen), _PIECE)]:
         piece = seen[at]
         joints, tip = piece["joint"].astype(float), piece["place"].astype(float)
+        base = piece["base"].astype(float)
         passes = np.split(np.arange(len(at)), np.unique(np.clip(cuts - at[0], 0, len(at))))
-        for first, second, apart in distances(parts, cell, joints, tip):
+        for first, second, apart in distances(parts, cell, joints, tip, base):
             for rows in passes:
                 if not len(rows):
                     continue

@@ -96,10 +96,15 @@ class CommandedMotion:
         found = self.rows if rows is None else rows
         keys, counts = np.unique(found["cause"] * 8 + found["axis"], return_counts=True)
         shares = [
-            Share(CAUSES[int(k) // 8], self.axes[k % 8 - 1] if k % 8 else "", int(n) * self.frame)
+            Share(CAUSES[int(k) // 8], self._name(int(k % 8)), int(n) * self.frame)
             for k, n in zip(keys, counts, strict=True)
         ]
         return sorted(shares, key=lambda s: -s.time)
+
+    def _name(self, axis: int) -> str:
+        """Name of an axis from 1; 0 is none, one beyond the machine's is outside the arm."""
+        names = ("", *self.axes)
+        return names[axis] if axis < len(names) else "external"
 
     def blocks(self, most: int | None = None) -> list[Block]:
         """Lines of the program, those that lose most first.

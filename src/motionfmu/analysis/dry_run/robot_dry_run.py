@@ -122,8 +122,9 @@ class DryRun:
     file : Path
         The program.
     samples : (n,) structured ndarray
-        ``time`` [s], ``joint`` (6,) [deg], ``rate`` (6,) [deg/s], ``place`` (3,) [mm], ``speed``
-        [mm/s], ``factors`` (3,) (`DryMove`), ``line`` that moves, ``at`` that a job reads next.
+        ``time`` [s], ``joint`` (6,) [deg], ``rate`` (6,) [deg/s], ``place`` (3,) [mm], ``base``
+        (3,) [mm] where a track has the arm, ``speed`` [mm/s], ``factors`` (3,) (`DryMove`),
+        ``line`` that moves, ``at`` that a job reads next.
     low, high, top : (6,) ndarray
         Range [deg] and highest speed [deg/s] of the joints.
     fault : str

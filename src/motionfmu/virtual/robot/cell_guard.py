@@ -11,7 +11,14 @@ from motionfmu.base.binding import CLOCK_HZ, Struct, library
 _STEP = round(0.002 * CLOCK_HZ)
 _MOST = 50_000  # steps that are looked ahead
 _SAMPLE = np.dtype(
-    [("time", "f8"), ("joint", "f8", 6), ("place", "f8", 3), ("line", "i8"), ("rate", "f8", 6)]
+    [
+        ("time", "f8"),
+        ("joint", "f8", 6),
+        ("place", "f8", 3),
+        ("base", "f8", 3),
+        ("line", "i8"),
+        ("rate", "f8", 6),
+    ]
 )
 
 
@@ -32,6 +39,7 @@ class CellGuard:
             row, rests = rows[number], reading["rests"]
             row["time"], row["joint"] = state["clock"] / CLOCK_HZ, reading["joint_command"]
             row["place"] = reading["pose_command"][:3]
+            row["base"] = reading["base_command"]
             number += 1
         state.restore(kept)
         found = approaches(rows[:number], self._parts, self._cell)

@@ -195,7 +195,9 @@ class Commands:
         lengths = (ctypes.c_int64 * 2)(*map(len, both))
         gcode = ctypes.c_bool(language == "gcode")
         c = library()
-        refused = c.binding_robot_read(read.pointer, places, lengths, gcode, texts.file, words)
+        refused = c.binding_robot_read(
+            read.pointer, self._state.pointer, places, lengths, gcode, texts.file, words
+        )
         texts.tell()
         if refused:
             raise RobotError(words.value.decode(), "PROGRAM")

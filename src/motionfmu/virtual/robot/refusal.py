@@ -25,9 +25,9 @@ STATUS = (
     "OFF_PLANE",
     "NO_UNIT",
     "NO_SPLINE",
-    "NO_FLOW",
     "TILTED",
     "NO_JOINT",
+    "BESIDE",
 )
 _IN_RADIANS = ("OUTSIDE", "TILTED")
 _LENGTH = 420
@@ -42,7 +42,7 @@ class RobotError(InputError):
     ----------
     status : str
         Why: BUSY, PARAMETER, FAR, OUTSIDE, SINGULAR, OTHER_BRANCH, OTHER_TURN, NO_CIRCLE,
-        OFF_PLANE, NO_UNIT, NO_SPLINE, NO_FLOW, TILTED, NO_JOINT of a move;
+        OFF_PLANE, NO_UNIT, NO_SPLINE, TILTED, NO_JOINT, BESIDE of a move;
         COLLISION; VALUE of an argument; PROGRAM of a text.
     value, limit : float
         What is wrong and how far it may go [deg] [mm]; NaN: no number decides.
