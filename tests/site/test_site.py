@@ -41,6 +41,8 @@ LOOKED_AT = (
     "docs/theory/smooth-paths",
     "docs/glossary",
     "docs/tutorials/control_student",
+    "docs/tutorials/machine_builder",
+    "docs/how-to/records",
     "scenarios/circle/README",
     "src/motionfmu/README",
     "search",

@@ -8,12 +8,17 @@ import sys
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 from conftest import FMUS, ROOT
+from matplotlib.figure import Figure
+from matplotlib.image import imread
 from site_pages import tutorials
 
 pytestmark = pytest.mark.more
 
+# Share of the points of a picture that may be others; a curve that is moved takes more.
+POINTS = 1e-3
 PAGES = sorted((ROOT / "docs/tutorials").glob("*.md"))
 # Runs the cells in one namespace and writes what each printed.
 RUNNER = """
@@ -46,8 +51,25 @@ def test_a_tutorial_prints_what_it_says(page: Path, tmp_path: Path) -> None:
     found = printed([cell.text for cell in code], tmp_path)
     for cell, out in zip(code, found, strict=True):
         assert out.split("\n") == cell.prints.split("\n"), cell.text
+    assert "assert " in code[-1].text
     drawn = re.findall(r'savefig\("(.+?)"\)', text)
-    assert all((tmp_path / name).stat().st_size > 10_000 for name in drawn)
+    assert drawn == re.findall(r"^!\[.+?\]\((.+?)\)$", text, re.MULTILINE)
+    assert [name for name in drawn if not alike(tmp_path / name, page.parent / name)] == []
+
+
+def alike(made: Path, kept: Path) -> bool:
+    """Whether a picture is the one that the page shows: hardly a point is another one."""
+    new, old = imread(made), imread(kept)
+    return new.shape == old.shape and float(np.mean(np.abs(new - old) > 0.1)) < POINTS
+
+
+def test_another_picture_is_found(tmp_path: Path) -> None:
+    for name, end in (("a", 1.0), ("b", 1.1)):
+        figure = Figure()
+        figure.subplots().plot([0.0, 1.0, 2.0], [0.0, end, 0.5])
+        figure.savefig(tmp_path / f"{name}.png")
+    assert alike(tmp_path / "a.png", tmp_path / "a.png")
+    assert not alike(tmp_path / "a.png", tmp_path / "b.png")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)

@@ -33,6 +33,7 @@ SECTIONS = (
         "Tutorials",
         "One for each kind of user; each is a notebook, too.",
     ),
+    ("docs/how-to/", "how_to", "How to", "One task a page."),
     ("docs/", "words", "Words and tools", "The glossary, and other people's importers."),
     ("examples/", "examples", "Examples", "Small projects to copy; each builds by itself."),
     ("tests/", "tests", "Tests", "How things are held, and tools beside them."),
