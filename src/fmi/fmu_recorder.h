@@ -1,8 +1,9 @@
 /* fmu_recorder - records the signals of a run in a folder of .npy files, one per signal:
  * `<name>.npy` and `time.npy` [s], of shape (rows,) or (rows, count). Rows are collected in blocks
- * of memory, into which the caller puts them, and written a block at a time. The folder appears complete at the end, where there was
- * none, an empty one or an older recording. Or the rows stay in the caller's memory, and there
- * is no folder. Functions that return an int return 0, or -1 with the reason in recorder.why. */
+ * of memory, into which the caller puts them, and written a block at a time. The folder appears
+ * complete at the end, where there was none, an empty one or an older recording. Or the rows stay
+ * in the caller's memory, and there is no folder. Functions that return an int return 0, or -1
+ * with the reason in recorder.why. */
 #ifndef FMU_RECORDER_H
 #define FMU_RECORDER_H
 
@@ -26,8 +27,8 @@ struct recorder_stream {
     int64_t ahead; /* [byte] place in the file up to which room on the disk is reserved */
 };
 
-/* Columns whose rows have the same size: their blocks are full at the same time. Groups stand in the
- * order of that size. */
+/* Columns whose rows have the same size: their blocks are full at the same time. Groups stand in
+ * the order of that size. */
 struct recorder_group {
     struct recorder_stream *streams;
     int count;

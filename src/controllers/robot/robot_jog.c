@@ -129,6 +129,7 @@ static bool same(const struct robot *r, enum robot_frame frame, const double dir
            && memcmp(r->jog_direction, direction, sizeof r->jog_direction) == 0;
 }
 
+/* CCN 18: what a jog asks for is looked at, number by number, before one of three is planned. */
 enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
                             const double direction[6], double share, double way,
                             struct robot_refusal *why)

@@ -63,7 +63,7 @@ static bool all_from_0(const double *x, int n)
     return good;
 }
 
-/* CCN 22: a row of limits that all must hold. */
+/* CCN 23: a row of limits that all must hold. */
 static bool sound(const struct robot_move *m)
 {
     const struct robot_target *t = &m->target;
@@ -364,7 +364,7 @@ static bool turns_over(const struct robot *r, const struct manipulator *arm,
     return angle > 1.0 && robot_tilted(arm, &p, why);
 }
 
-/* CCN 23: a move that turns first is two moves, which are accepted together or refused together; at
+/* CCN 25: a move that turns first is two moves, which are accepted together or refused together; at
  * its ends corners and stops are told apart. */
 static enum robot_status along(struct robot *r, const struct robot_config *c,
                                const struct robot_move *move, const struct pose *pose,

@@ -7,6 +7,7 @@
 
 static const double DEGREE = 0.017453292519943295, MM = 1e-3;
 
+/* CCN 16: a case for each status. */
 static const char *name_of(enum robot_status status)
 {
     switch (status) {

@@ -72,6 +72,7 @@ static void shift_of(double shift[3], const double by[3], const struct robot_job
     pose_point(&frame, by, shift);
 }
 
+/* CCN 16: each tag of a move becomes its member. */
 static void job_move(struct order *order, const struct robot_job_run *run,
                      const struct orders_config *c, const struct orders_text *t,
                      const struct robot_job_request *r)

@@ -250,6 +250,7 @@ static int keep(struct robot_job_reading *in, struct robot_job_span w,
     return 0;
 }
 
+/* CCN 18: a line is one of the arm, one of an axis outside, or no position. */
 int robot_job_positions_line(struct robot_job_reading *in)
 {
     struct robot_job_scan *s = &in->s;
