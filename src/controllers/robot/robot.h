@@ -109,10 +109,11 @@ enum robot_status {
 struct robot_refusal {
     double part;     /* 0..1 of the path */
     double place[3]; /* [mm] of the tip there */
-    int which; /* joint, 0 .. 5, 6 the external axis; factor 0 shoulder 1 elbow 2 wrist; flag (opw_flag) */
-    bool slides;  /* the joint does, so value and limit of OUTSIDE are in m */
-    double value; /* joint, tilt [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
-    double limit; /* [rad] [m] [mm]; of OTHER_TURN: what it should be within half a turn of; of
+    int which;       /* joint, 0 .. 5, 6 the external axis; factor 0 shoulder 1 elbow 2 wrist; flag
+                      * (opw_flag) */
+    bool slides;     /* the joint does, so value and limit of OUTSIDE are in m */
+    double value;    /* joint, tilt [rad]; factor: [m], 1, 1; start off the plane [mm]; length */
+    double limit;    /* [rad] [m] [mm]; of OTHER_TURN: what it should be within half a turn of; of
                       * NO_JOINT: number of joints */
 };
 
@@ -203,9 +204,10 @@ enum robot_status robot_tool(struct robot *r, const struct robot_config *c,
                              const struct pose *tool);
 
 /* Jog along a direction: of joints; or X Y Z and turns about them, of the base or of the tool's
- * frame, through the tip; or of the external axis, by the first number. Speed at the share 0..1 of config's (feed, spin, joint speeds).
- * `way` > 0 [mm] or [rad], of a track [m]: so far only; 0: until robot_release, or as far as the arm goes. A jog
- * goes on while the same one is asked for; ROBOT_BUSY: another motion has to end. */
+ * frame, through the tip; or of the external axis, by the first number. Speed at the share 0..1 of
+ * config's (feed, spin, joint speeds). `way` > 0 [mm] or [rad], of a track [m]: so far only; 0:
+ * until robot_release, or as far as the arm goes. A jog goes on while the same one is asked for;
+ * ROBOT_BUSY: another motion has to end. */
 enum robot_status robot_jog(struct robot *r, const struct robot_config *c, enum robot_frame frame,
                             const double direction[6], double share, double way,
                             struct robot_refusal *why);

@@ -34,8 +34,8 @@ static inline double robot_share(double share)
     return share > 0.0 ? share : 1.0;
 }
 
-/* A move of the joints to target angles [rad], of the external axis by `travel`, at a share 0..1 of their limits, becomes the latest
- * of the arm, and its command. */
+/* A move of the joints to target angles [rad], of the external axis by `travel`, at a share 0..1 of
+ * their limits, becomes the latest of the arm, and its command. */
 void robot_plan_joints(struct robot *r, const struct robot_config *c,
                        const double target[OPW_JOINTS], double travel, double share);
 
