@@ -5,24 +5,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
+from made_arm import told
 
 from motionfmu import run
 from motionfmu.arm_machines import arm_machine
 from motionfmu.arms import opw_geometry, urdf_arm
 from motionfmu.base.errors import InputError
-from motionfmu.cli import app
 
 SMALL = Path(__file__).parent / "small_arm.urdf"
-
-
-def told(*words: str | Path) -> str:
-    """What a command prints, on one line."""
-    result = CliRunner().invoke(app, list(map(str, words)))
-    if isinstance(result.exception, InputError):
-        raise result.exception
-    assert result.exit_code == 0, result.output
-    return " ".join(result.output.split())
 
 
 @pytest.fixture(scope="module")
@@ -31,66 +21,66 @@ def file() -> Path:
     return SMALL
 
 
-def test_what_was_taken_for_granted_is_listed(folder):
-    shown = (folder.parent / "told").read_text(encoding="utf-8")
+def test_what_was_taken_for_granted_is_listed(arm_folder):
+    shown = (arm_folder.parent / "told").read_text(encoding="utf-8")
     assert "small_arm to flange, six joints, reach 0.731 m, 21.8 kg" in shown
     for what in ("acceleration: ", "gear ratio: 81, ", "payload: ", "start pose: ", "motors, ",
                  "stiffness", "range of joints 6", "errors of its geometry", "gains of the drives",
                  "torque: "):  # fmt: skip
         assert what in shown
-        assert what in (folder / "README.md").read_text(encoding="utf-8").replace("\n", " ")
+        assert what in (arm_folder / "README.md").read_text(encoding="utf-8").replace("\n", " ")
     assert "mass, centre" not in shown and "speed of joints" not in shown
-    assert f"next: motionfmu run {folder}/example.job --machine {folder}" in shown
+    assert f"next: motionfmu run {arm_folder}/example.job --machine {arm_folder}" in shown
 
 
-def test_each_value_of_the_geometry_is_written_once(folder):
-    given = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))["set"]
+def test_each_value_of_the_geometry_is_written_once(arm_folder):
+    given = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))["set"]
     assert {"*.a1", "*.c3", "*.joint_sign", "*.gear_ratio", "*.start_joint"} <= given.keys()
     assert not {"soft.a1", "arm.a1", "soft.gear_ratio", "arm.start_joint"} & given.keys()
-    machine = run.machine(folder)
+    machine = run.machine(arm_folder)
     assert machine.plan().disagreements({}) == []
     (apart,) = machine.plan().disagreements({"arm.c3": 0.4})
     assert "both mean arm.c3" in apart
 
 
-def test_a_line_and_joint_moves_run_within_the_limits(result, folder):
-    assert result.ok
-    own = arm_machine(run.machine(folder))
+def test_a_line_and_joint_moves_run_within_the_limits(arm_run, arm_folder):
+    assert arm_run.ok
+    own = arm_machine(run.machine(arm_folder))
     limits = own.arm.joints
-    q = result["soft.joint_command"]
-    rate = np.abs(result["soft.joint_rate"]) / [j.speed for j in limits]
+    q = arm_run["soft.joint_command"]
+    rate = np.abs(arm_run["soft.joint_rate"]) / [j.speed for j in limits]
     assert 0.2 < rate.max() <= 1.0 + 1e-6
     assert (q >= [j.low - 1e-9 for j in limits]).all()
     assert (q <= [j.high + 1e-9 for j in limits]).all()
     assert np.abs(q[-1] - q[0]).max() < 1e-6, "home again"
-    assert np.ptp(result["soft.tool_position"], axis=0).max() > 0.1
+    assert np.ptp(arm_run["soft.tool_position"], axis=0).max() > 0.1
 
 
-def test_controller_and_plant_have_the_tip_of_the_urdf(result):
+def test_controller_and_plant_have_the_tip_of_the_urdf(arm_run):
     """Commanded, and of the links behind their gears: place and attitude, to 1e-9."""
     arm = urdf_arm(SMALL)
-    commanded = arm.forward(result["soft.joint_command"])
-    assert result["soft.tool_position"] == pytest.approx(commanded[:, :3, 3], abs=1e-9)
-    real = arm.forward(result["arm.link_angle"])
-    assert result["arm.tool_position"] == pytest.approx(real[:, :3, 3], abs=1e-9)
-    w, x, y, z = result["arm.tool_quaternion"].T
+    commanded = arm.forward(arm_run["soft.joint_command"])
+    assert arm_run["soft.tool_position"] == pytest.approx(commanded[:, :3, 3], abs=1e-9)
+    real = arm.forward(arm_run["arm.link_angle"])
+    assert arm_run["arm.tool_position"] == pytest.approx(real[:, :3, 3], abs=1e-9)
+    w, x, y, z = arm_run["arm.tool_quaternion"].T
     ahead = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
     assert ahead == pytest.approx(real[:, :3, 0], abs=1e-9)
 
 
-def test_the_plant_weighs_what_the_urdf_says(folder):
+def test_the_plant_weighs_what_the_urdf_says(arm_folder):
     """Torques of the machine's arm at 200 random states: whole tensors, to nine digits."""
-    arm, own = urdf_arm(SMALL), arm_machine(run.machine(folder)).arm
+    arm, own = urdf_arm(SMALL), arm_machine(run.machine(arm_folder)).arm
     q, v, a = np.random.default_rng(1).uniform(-3.0, 3.0, (3, 200, 6))
     torque = arm.inverse_dynamics(q, v, a)
     assert own.inverse_dynamics(q, v, a) == pytest.approx(torque, abs=1e-8 * np.abs(torque).max())
     assert own.forward(q) == pytest.approx(arm.forward(q), abs=1e-9)
 
 
-def test_an_exported_urdf_is_the_same_arm(folder, tmp_path):
-    shown = told("export", folder, "--urdf", "-o", tmp_path / "again.urdf")
+def test_an_exported_urdf_is_the_same_arm(arm_folder, tmp_path):
+    shown = told("export", arm_folder, "--urdf", "-o", tmp_path / "again.urdf")
     assert "6 joints, 21.8 kg, tip tool0" in shown
-    again, own = urdf_arm(tmp_path / "again.urdf"), arm_machine(run.machine(folder)).arm
+    again, own = urdf_arm(tmp_path / "again.urdf"), arm_machine(run.machine(arm_folder)).arm
     q, v, a = np.random.default_rng(2).uniform(-3.0, 3.0, (3, 50, 6))
     torque = own.inverse_dynamics(q, v, a)
     assert again.inverse_dynamics(q, v, a) == pytest.approx(
@@ -100,11 +90,11 @@ def test_an_exported_urdf_is_the_same_arm(folder, tmp_path):
     assert opw_geometry(again).deviation < 1e-12
     # What it says again needs no second guess: gears and torques come back.
     assert [j.ratio for j in again.joints] == [j.ratio for j in own.joints]
-    assert "<mujoco" in _mjcf(folder, tmp_path)
+    assert "<mujoco" in _mjcf(arm_folder, tmp_path)
 
 
-def _mjcf(folder: Path, tmp_path: Path) -> str:
-    told("export", folder, "--mjcf", "--set", "arm.c3=0.5", "-o", tmp_path / "again.xml")
+def _mjcf(arm_folder: Path, tmp_path: Path) -> str:
+    told("export", arm_folder, "--mjcf", "--set", "arm.c3=0.5", "-o", tmp_path / "again.xml")
     return (tmp_path / "again.xml").read_text(encoding="utf-8")
 
 
@@ -130,7 +120,7 @@ def refused(*words: str | Path) -> str:
     return str(error.value)
 
 
-def test_what_cannot_be_driven_is_named(tmp_path, folder):
+def test_what_cannot_be_driven_is_named(tmp_path, arm_folder):
     text = SMALL.read_text(encoding="utf-8")
     file = tmp_path / "slide.urdf"
     slide = 'name="waist" type="prismatic"'
@@ -139,7 +129,7 @@ def test_what_cannot_be_driven_is_named(tmp_path, folder):
     assert "slide.urdf: small_arm is a chain of 6 joints (PRRRRR); missing: drives" in shown
     assert "it cannot be driven yet" in shown
     assert not (tmp_path / "slide").exists()
-    assert "is there already" in refused("import", SMALL, "-o", folder)
+    assert "is there already" in refused("import", SMALL, "-o", arm_folder)
     assert refused("import", SMALL, "--step", "1e-3") == "--stop and --step are for an SSP"
     assert refused("import", "some.ssp", "--tip", "flange") == "--tip is for a URDF"
     assert "it has no arm" in refused("export", "mill3", "--urdf")

@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_arm import told
 from random_arms import PinocchioChain, RandomArm
-from test_arm_import import SMALL, refused, told
+from test_arm_import import SMALL, refused
 
 from motionfmu import run
 from motionfmu.arm_machines import arm_machine
@@ -70,18 +71,18 @@ def test_what_drives_an_arm(file: Path) -> None:
     assert "its seven lengths are off by " in rounded.why
 
 
-def test_the_machine_has_the_axes_once(folder: Path) -> None:
-    shown = (folder.parent / "told").read_text(encoding="utf-8")
+def test_the_machine_has_the_axes_once(arm_folder: Path) -> None:
+    shown = (arm_folder.parent / "told").read_text(encoding="utf-8")
     assert "small_arm to flange, six joints" in shown
     assert "driven by its axes, as an arm of six joints; axes 5 and 6 are at 53.13°" in shown
     assert "start pose: " in shown and "far from singular" in shown
-    tables = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))
     assert tables["component"]["arm"] == "axes_arm"
     given = tables["set"]
     assert given["soft.arm_by"] == 1
     assert {"*.axis_origin", "*.axis_direction", "soft.flange"} <= given.keys()
     assert not {"*.a1", "soft.axis_origin", "arm.axis_origin", "soft.tool"} & given.keys()
-    plan = run.machine(folder).plan()
+    plan = run.machine(arm_folder).plan()
     assert plan.disagreements({}) == []
     moved = list(given["*.axis_origin"])
     moved[0] += 0.01
@@ -89,35 +90,35 @@ def test_the_machine_has_the_axes_once(folder: Path) -> None:
     assert "both mean arm.axis_origin" in apart
 
 
-def test_a_line_and_joint_moves_run_within_the_limits(result, folder: Path) -> None:
-    assert result.ok
-    limits = arm_machine(run.machine(folder)).arm.joints
-    q = result["soft.joint_command"]
-    rate = np.abs(result["soft.joint_rate"]) / [j.speed for j in limits]
+def test_a_line_and_joint_moves_run_within_the_limits(arm_run, arm_folder: Path) -> None:
+    assert arm_run.ok
+    limits = arm_machine(run.machine(arm_folder)).arm.joints
+    q = arm_run["soft.joint_command"]
+    rate = np.abs(arm_run["soft.joint_rate"]) / [j.speed for j in limits]
     assert 0.2 < rate.max() <= 1.0 + 1e-6
     assert (q >= [j.low - 1e-9 for j in limits]).all()
     assert (q <= [j.high + 1e-9 for j in limits]).all()
     assert np.abs(q[-1] - q[0]).max() < 1e-6, "home again"
-    assert np.ptp(result["soft.tool_position"], axis=0).max() > 0.1
+    assert np.ptp(arm_run["soft.tool_position"], axis=0).max() > 0.1
 
 
-def test_controller_and_plant_have_the_tip_of_the_urdf(result, file: Path) -> None:
+def test_controller_and_plant_have_the_tip_of_the_urdf(arm_run, file: Path) -> None:
     """Commanded, and of the links behind their gears: place and attitude, to 1e-9."""
     text = file.read_text(encoding="utf-8")
     oracle = PinocchioChain(text, urdf_arm(file))
     rows = slice(None, None, 50)
-    commanded = np.array([oracle.tip(q) for q in result["soft.joint_command"][rows]])
-    assert result["soft.tool_position"][rows] == pytest.approx(commanded[:, :3, 3], abs=1e-9)
-    real = np.array([oracle.tip(q) for q in result["arm.link_angle"][rows]])
-    assert result["arm.tool_position"][rows] == pytest.approx(real[:, :3, 3], abs=1e-9)
-    w, x, y, z = result["arm.tool_quaternion"][rows].T
+    commanded = np.array([oracle.tip(q) for q in arm_run["soft.joint_command"][rows]])
+    assert arm_run["soft.tool_position"][rows] == pytest.approx(commanded[:, :3, 3], abs=1e-9)
+    real = np.array([oracle.tip(q) for q in arm_run["arm.link_angle"][rows]])
+    assert arm_run["arm.tool_position"][rows] == pytest.approx(real[:, :3, 3], abs=1e-9)
+    w, x, y, z = arm_run["arm.tool_quaternion"][rows].T
     ahead = np.column_stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)])
     assert ahead == pytest.approx(real[:, :3, 0], abs=1e-9)
 
 
-def test_the_plant_weighs_what_the_urdf_says(folder: Path, file: Path) -> None:
+def test_the_plant_weighs_what_the_urdf_says(arm_folder: Path, file: Path) -> None:
     """Torques of the machine's arm at 100 random states against pinocchio, to nine digits."""
-    arm, own = urdf_arm(file), arm_machine(run.machine(folder)).arm
+    arm, own = urdf_arm(file), arm_machine(run.machine(arm_folder)).arm
     oracle = PinocchioChain(file.read_text(encoding="utf-8"), arm)
     q, v, a = np.random.default_rng(1).uniform(-3.0, 3.0, (3, 100, 6))
     torque = np.array([oracle.torque(*row) for row in zip(q, v, a, strict=True)])
@@ -125,9 +126,9 @@ def test_the_plant_weighs_what_the_urdf_says(folder: Path, file: Path) -> None:
     assert found == pytest.approx(torque, abs=1e-8 * np.abs(torque).max())
 
 
-def test_an_exported_urdf_is_the_same_arm(folder: Path, tmp_path: Path) -> None:
-    told("export", folder, "--urdf", "-o", tmp_path / "again.urdf")
-    again, own = urdf_arm(tmp_path / "again.urdf"), arm_machine(run.machine(folder)).arm
+def test_an_exported_urdf_is_the_same_arm(arm_folder: Path, tmp_path: Path) -> None:
+    told("export", arm_folder, "--urdf", "-o", tmp_path / "again.urdf")
+    again, own = urdf_arm(tmp_path / "again.urdf"), arm_machine(run.machine(arm_folder)).arm
     q, v, a = np.random.default_rng(2).uniform(-3.0, 3.0, (3, 50, 6))
     torque = own.inverse_dynamics(q, v, a)
     worst = 1e-12 * np.abs(torque).max()
@@ -137,7 +138,7 @@ def test_an_exported_urdf_is_the_same_arm(folder: Path, tmp_path: Path) -> None:
     told("import", tmp_path / "again.urdf", "-o", tmp_path / "again")
     once, twice = (
         tomllib.loads((f / "machine.toml").read_text(encoding="utf-8"))["set"]
-        for f in (folder, tmp_path / "again")
+        for f in (arm_folder, tmp_path / "again")
     )
     assert twice["*.axis_origin"] == pytest.approx(once["*.axis_origin"], abs=1e-11)
     assert twice["soft.flange"] == pytest.approx(once["soft.flange"], abs=1e-8)

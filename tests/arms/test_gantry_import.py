@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_arm import told
 from random_arms import PinocchioChain
-from test_arm_import import told
 
 from motionfmu import run
 from motionfmu.arm_machines import arm_machine

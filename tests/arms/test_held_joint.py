@@ -4,8 +4,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_arm import told
 from random_arms import PinocchioChain, RandomArm
-from test_arm_import import SMALL, refused, told
+from test_arm_import import SMALL, refused
 
 from motionfmu import run
 from motionfmu.arms import held, urdf_arm

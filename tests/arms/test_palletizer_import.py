@@ -92,15 +92,15 @@ def test_poses_are_pinocchio_s(file: Path) -> None:
     assert geometry.jacobian(q)[3:] == pytest.approx(np.outer([0, 0, 1], [1, 0, 0, -1]), abs=1e-12)
 
 
-def test_the_machine_says_what_the_file_says(file: Path, folder: Path) -> None:
-    shown = (folder.parent / "told").read_text(encoding="utf-8")
+def test_the_machine_says_what_the_file_says(file: Path, arm_folder: Path) -> None:
+    shown = (arm_folder.parent / "told").read_text(encoding="utf-8")
     assert "pal to tool0, four joints" in shown and "driven by its axes, as a palletizer" in shown
-    given = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))["set"]
+    given = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))["set"]
     assert given["*.joints"] == 4
     assert given["*.joint_level"] == [0, 0, int(file.stem == "driven"), 2, 0, 0]
     assert given["*.hand_offset"] == pytest.approx([0.2, 0, -0.1]) and given["arm.hand_mass"] == 12
     # Torques of what the machine has are those of the file.
-    own, arm = arm_machine(run.machine(folder)).arm, urdf_arm(file)
+    own, arm = arm_machine(run.machine(arm_folder)).arm, urdf_arm(file)
     random = np.random.default_rng(4)
     q, v, a = random.uniform(-3, 3, (3, 1000, 4))
     torque, wanted = own.inverse_dynamics(q, v, a), arm.inverse_dynamics(q, v, a)
@@ -109,16 +109,20 @@ def test_the_machine_says_what_the_file_says(file: Path, folder: Path) -> None:
     assert [j.low for j in own.driven] == pytest.approx([j.low for j in arm.driven], abs=1e-7)
 
 
-def test_its_job_runs_level(folder: Path) -> None:
+def test_its_job_runs_level(arm_folder: Path) -> None:
     """All four joints by a joint move and lines; the tool keeps level whatever its gears do."""
-    points = (folder / "example.points").read_text(encoding="utf-8")
+    points = (arm_folder / "example.points").read_text(encoding="utf-8")
     there = "P002 J1=25 J2=20 J3=-12 J4=40 J5=0 J6=0\n"
-    (folder / "all.points").write_text(points + there, encoding="utf-8")
+    (arm_folder / "all.points").write_text(points + there, encoding="utf-8")
     job = "//ALL\nMOVJ P002 VJ=50.00\nMOVL P000 V=400.0\nMOVL P001 V=400.0\nEND\n"
-    (folder / "all.job").write_text(job, encoding="utf-8")
-    result = run.machine(folder).scenario(folder / "all.job", set={"arm.origin_error": 0.0}).run()
+    (arm_folder / "all.job").write_text(job, encoding="utf-8")
+    result = (
+        run.machine(arm_folder)
+        .scenario(arm_folder / "all.job", set={"arm.origin_error": 0.0})
+        .run()
+    )
     assert result.ok
-    machine = arm_machine(run.machine(folder))
+    machine = arm_machine(run.machine(arm_folder))
     joints, geometry = machine.arm.driven, machine.geometry
     q, rate = result["soft.joint_command"], result["soft.joint_rate"]
     assert (np.abs(rate[:, :4]) <= np.array([j.speed for j in joints]) * (1 + 1e-6)).all()
@@ -135,9 +139,9 @@ def test_its_job_runs_level(folder: Path) -> None:
     assert result["arm.tool_position"] == pytest.approx(here[:, :3, 3], abs=1e-9)
 
 
-def test_bars_for_collisions_are_where_the_links_are(folder: Path) -> None:
-    machine = arm_machine(run.machine(folder))
-    given = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))["set"]
+def test_bars_for_collisions_are_where_the_links_are(arm_folder: Path) -> None:
+    machine = arm_machine(run.machine(arm_folder))
+    given = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))["set"]
     rows = {n.partition(".")[2]: v for n, v in given.items() if not n.startswith("arm.")}
     parts = ArmParts.of({**rows, "joint_sign": [1] * 6})
     q = np.zeros((50, 6))
@@ -147,19 +151,21 @@ def test_bars_for_collisions_are_where_the_links_are(folder: Path) -> None:
         assert points[:, k] == pytest.approx(1e3 * frame[:, :3, 3], abs=1e-9)
 
 
-def test_another_tilt_is_refused_with_its_line(folder: Path) -> None:
-    points = (folder / "example.points").read_text(encoding="utf-8")
+def test_another_tilt_is_refused_with_its_line(arm_folder: Path) -> None:
+    points = (arm_folder / "example.points").read_text(encoding="utf-8")
     job = "//TILT\nMOVJ P000 VJ=50.00\nMOVL P002 V=100.0\nEND\n"
-    (folder / "tilt.job").write_text(job, encoding="utf-8")
+    (arm_folder / "tilt.job").write_text(job, encoding="utf-8")
     wrong = "P002 X=900 Y=100 Z=600 A=177 B=0 C=0\n"
-    (folder / "tilt.points").write_text(points + wrong, encoding="utf-8")
-    shown = CliRunner().invoke(app, ["job", str(folder / "tilt.job"), "--machine", str(folder)])
+    (arm_folder / "tilt.points").write_text(points + wrong, encoding="utf-8")
+    shown = CliRunner().invoke(
+        app, ["job", str(arm_folder / "tilt.job"), "--machine", str(arm_folder)]
+    )
     text = " ".join(f"{shown.output} {shown.exception}".split())
     assert "line 3: " in text and "turns the tool so: 3 deg from the tilt" in text
 
 
-def test_written_and_read_back(file: Path, folder: Path) -> None:
-    own = arm_machine(run.machine(folder)).arm
+def test_written_and_read_back(file: Path, arm_folder: Path) -> None:
+    own = arm_machine(run.machine(arm_folder)).arm
     again = urdf_text_arm(urdf_text(own), "again.urdf")
     q = np.random.default_rng(6).uniform(-3, 3, (20, 4))
     assert again.forward(q) == pytest.approx(own.forward(q), abs=1e-12)

@@ -26,19 +26,19 @@ def file() -> Path:
 
 
 @pytest.fixture(scope="module")
-def settings(folder: Path) -> dict:
+def settings(arm_folder: Path) -> dict:
     """What the machine's controller knows of the arm."""
-    given = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))["set"]
+    given = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))["set"]
     wanted = ("joints", "axis_", "flange", "joint_", "gear_ratio", "start_joint", "arm_by")
     rows = {n.partition(".")[2]: v for n, v in given.items() if n.startswith(("soft.", "*."))}
     return {n: v for n, v in rows.items() if n.startswith(wanted)}
 
 
-def test_the_machine_has_four_joints(folder: Path) -> None:
-    shown = (folder.parent / "told").read_text(encoding="utf-8")
+def test_the_machine_has_four_joints(arm_folder: Path) -> None:
+    shown = (arm_folder.parent / "told").read_text(encoding="utf-8")
     assert "small_scara to flange, four joints" in shown
     assert "driven by its axes, as a SCARA" in shown
-    tables = tomllib.loads((folder / "machine.toml").read_text(encoding="utf-8"))
+    tables = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))
     given = tables["set"]
     assert given["*.joints"] == 4 and given["*.joint_slides"] == [0, 0, 1, 0, 0, 0]
     assert given["soft.joint_high"][SLIDE] == pytest.approx(180.0)  # mm
@@ -62,26 +62,26 @@ def test_poses_are_pinocchio_s() -> None:
         assert geometry.jacobian(q)[:3] == pytest.approx(slope, abs=1e-8)
 
 
-def test_its_job_runs_within_the_limits(result, folder: Path) -> None:
-    assert result.ok
-    machine = arm_machine(run.machine(folder))
+def test_its_job_runs_within_the_limits(arm_run, arm_folder: Path) -> None:
+    assert arm_run.ok
+    machine = arm_machine(run.machine(arm_folder))
     joints = machine.arm.joints
     assert [j.kind for j in joints] == ["revolute", "revolute", "prismatic", "revolute"]
-    q, rate = result["soft.joint_command"], result["soft.joint_rate"]
+    q, rate = arm_run["soft.joint_command"], arm_run["soft.joint_rate"]
     assert (np.abs(rate[:, :4]) <= np.array([j.speed for j in joints]) * (1 + 1e-6)).all()
     assert (q[:, :4] <= np.array([j.high for j in joints]) + 1e-9).all()
-    assert (q[:, 4:] == 0.0).all() and np.abs(result["arm.link_angle"][:, 4:]).max() < 1e-12
-    assert (result["card.pulse_count"][:, 4:] == 0).all()
+    assert (q[:, 4:] == 0.0).all() and np.abs(arm_run["arm.link_angle"][:, 4:]).max() < 1e-12
+    assert (arm_run["card.pulse_count"][:, 4:] == 0).all()
     # Commanded tip by the geometry, and the arm's own with the slack of its gears.
     geometry = machine.geometry
     tips = (geometry.frames(q[:, :4])[-1] @ geometry.flange)[:, :3, 3]
-    assert result["soft.tool_position"] == pytest.approx(tips, abs=1e-9)
-    apart = np.linalg.norm(result["arm.tool_position"] - tips, axis=1)
+    assert arm_run["soft.tool_position"] == pytest.approx(tips, abs=1e-9)
+    apart = np.linalg.norm(arm_run["arm.tool_position"] - tips, axis=1)
     assert 1e-5 < apart[-1] < 2e-3
 
 
-def test_its_picture_slides(result) -> None:
-    scene = scene_of(result)
+def test_its_picture_slides(arm_run) -> None:
+    scene = scene_of(arm_run)
     assert scene is not None and scene.arm is not None
     assert [row[2] for row in scene.arm.axes] == [False, False, True, False]
     assert scene.joints is not None and scene.joints.shape[1] >= 4
@@ -119,16 +119,18 @@ def test_calls_count_the_slide_in_mm(settings: dict) -> None:
     assert error.value.status == "TILTED" and error.value.value == pytest.approx(2.0)
 
 
-def test_a_job_is_refused_with_its_line(folder: Path) -> None:
+def test_a_job_is_refused_with_its_line(arm_folder: Path) -> None:
     """A pose that asks for another tilt, and a joint that is not there."""
-    points = (folder / "example.points").read_text(encoding="utf-8")
+    points = (arm_folder / "example.points").read_text(encoding="utf-8")
     job = "//TILT\nMOVJ P000 VJ=50.00\nMOVL P002 V=100.0\nEND\n"
-    (folder / "tilt.job").write_text(job, encoding="utf-8")
+    (arm_folder / "tilt.job").write_text(job, encoding="utf-8")
     for point, why in (
         ("P002 X=400 Y=100 Z=200 A=177 B=0 C=0\n", "turns the tool so: 3 deg from the tilt"),
         ("P002 J1=0 J2=40 J3=50 J4=0 J5=9 J6=0\n", "no such joint: joint 5, the arm has 4"),
     ):
-        (folder / "tilt.points").write_text(points + point, encoding="utf-8")
-        shown = CliRunner().invoke(app, ["job", str(folder / "tilt.job"), "--machine", str(folder)])
+        (arm_folder / "tilt.points").write_text(points + point, encoding="utf-8")
+        shown = CliRunner().invoke(
+            app, ["job", str(arm_folder / "tilt.job"), "--machine", str(arm_folder)]
+        )
         text = " ".join(f"{shown.output} {shown.exception}".split())
         assert "line 3: " in text and why in text

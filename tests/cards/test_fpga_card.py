@@ -55,7 +55,7 @@ class Ticks:
         self.memories: list[list[list[int]] | None] = [None, None]
         self.marked: list[int] = []
         self.playing, self.start, self.timer = -1, 0, self.every
-        self.count, self.dropped, self.rate = [0] * 6, [0] * 6, [0.0] * 6
+        self.count, self.dropped, self.rate = [0] * 7, [0] * 7, [0.0] * 7
         self.writes: list[dict[str, Any]] = []
         self.entries: list[tuple[int, int, int]] = []
         self.analog: list[tuple[int, list[float]]] = []
@@ -134,7 +134,7 @@ class Ticks:
         self.idle(clock)
 
     def idle(self, clock: int) -> None:
-        self.playing, self.timer, self.rate = -1, clock + self.every, [0.0] * 6
+        self.playing, self.timer, self.rate = -1, clock + self.every, [0.0] * 7
 
     def play(self, clock: int) -> None:
         ended = False
@@ -165,8 +165,8 @@ class Ticks:
     def take(self, w: dict[str, Any]) -> None:
         self.ack = w["seq"]
         bits, most = self.c["pulse_format"] == 1, (self.slot - 1) // 4
-        rows = [[pulses_of(b, bits, most) for b in row[:6]] for row in w["bytes"]]
-        bad = any(None in row for row in rows) or any(any(row[6:]) for row in w["bytes"])
+        rows = [[pulses_of(b, bits, most) for b in row[:7]] for row in w["bytes"]]
+        bad = any(None in row for row in rows) or any(any(row[7:]) for row in w["bytes"])
         if self.stopped or self.memories[w["memory"]] is not None or bad:
             self.refused += 1
             return
@@ -216,13 +216,15 @@ class Ticks:
             "drives": self.drives, "memory": self.playing, "full": full, "slot": slot,
             "write_ack": self.ack, "refused": self.refused, "underruns": self.underruns,
             "late": self.late, "stopped": self.stopped, "stopped_clock": self.stopped_clock,
-            "dout": signed(self.out),
+            "dout": signed(self.out), "external_count": self.count[6],
+            "external_dropped": self.dropped[6], "external_rate": self.rate[6],
+            "external_servo_on": bool(self.servo >> 6 & 1),
         }  # fmt: skip
         return {name: [value] for name, value in alone.items()} | {
             "irq_ai": self.irq[3],
-            "pulse_count": self.count,
-            "dropped": self.dropped,
-            "pulse_rate": self.rate,
+            "pulse_count": self.count[:6],
+            "dropped": self.dropped[:6],
+            "pulse_rate": self.rate[:6],
             "dout_clock": self.out_clock,
             "ao": self.ao,
             "servo_on": [bool(self.servo >> i & 1) for i in range(6)],
@@ -257,9 +259,9 @@ def wires_at(draw: st.DrawFn, now: int, period: int, c: dict[str, Any]) -> dict[
     new: dict[str, Any] = {"levels": {}, "ai": None}
     if draw(st.booleans()):
         rows = draw(
-            st.lists(st.lists(good.map(lambda n: n % 256), min_size=6, max_size=6), max_size=5)
+            st.lists(st.lists(good.map(lambda n: n % 256), min_size=7, max_size=7), max_size=5)
         )
-        rows = [[*row, 0, 0] for row in rows]
+        rows = [[*row, 0] for row in rows]
         if rows and draw(few):
             row, byte = draw(st.sampled_from(rows)), draw(st.integers(0, 7))
             row[byte] = draw(st.sampled_from([1, most, most + 1, 255 - most, 4, 128, 0]))
@@ -275,7 +277,7 @@ def wires_at(draw: st.DrawFn, now: int, period: int, c: dict[str, Any]) -> dict[
     if draw(few):
         new["ai"] = draw(st.lists(st.floats(-12, 12), min_size=8, max_size=8))
     if draw(few):
-        new["levels"] = {"host_run": draw(st.booleans()), "host_servo": draw(st.integers(0, 63))}
+        new["levels"] = {"host_run": draw(st.booleans()), "host_servo": draw(st.integers(0, 127))}
     if draw(seldom):
         new["levels"]["emergency_stop"] = draw(st.booleans())
         new["levels"]["drive_alarm"] = [draw(st.integers(0, 1))] + [0] * 5
