@@ -93,9 +93,12 @@ static void publish_arm(struct vars *v, struct controller *s, const struct contr
                         const struct controller_panel *panel)
 {
     const struct robot *r = &s->robot;
+    double base[3] = { 0.0, 0.0, 0.0 };
 
+    external_to_world(&c->robot.external, r->external, base);
     for (int i = 0; i < 3; i++) {
         v->tool_position[i] = r->pose.at[i] * 1e-3;
+        v->base_place[i] = base[i] * 1e-3;
     }
     memcpy(v->tool_quaternion, r->pose.turn, sizeof v->tool_quaternion);
     memcpy(v->joint_command, r->joint, sizeof v->joint_command);

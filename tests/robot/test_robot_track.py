@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 import motionfmu
 from motionfmu.analysis.collisions import ArmParts, read_cell
 from motionfmu.analysis.dry_run import dry_run
+from motionfmu.run.tool_gap import tool_gaps
 
 ROOT = Path(__file__).parents[2]
 SPEED = np.radians([175, 175, 175, 300, 300, 375])
@@ -81,6 +82,16 @@ def test_the_pen_follows_as_the_drives_do(ridden: motionfmu.Result) -> None:
     assert np.abs(pen - 1.7).max() < 2e-3
     carried = ridden["arm.tool_position"][on, 1]
     assert np.ptp(carried) > 0.55
+
+
+def test_tool_and_command_are_compared_in_one_frame(ridden: motionfmu.Result) -> None:
+    (tool,) = tool_gaps(ridden)
+    carried = np.outer(ridden["soft.external_command"], [0.0, 1.0, 0.0])
+    assert np.abs(ridden["soft.base_place"] - carried).max() < 1e-15
+    gap = 1e3 * (ridden["arm.tool_position"] + carried - ridden["soft.tool_position"])
+    distance = np.linalg.norm(gap, axis=1)
+    assert tool.distance(0, len(ridden.time)) == pytest.approx(distance, abs=1e-9)
+    assert tool.sizes[0].largest < 15.0  # 11 ms behind, at 1 m/s
 
 
 def test_a_job_for_a_track_needs_one() -> None:

@@ -12,7 +12,13 @@ from motionfmu.run.tool_gap import tool_gaps
 from motionfmu.scenarios.tool_signals import tools
 
 LINE = ROOT / "scenarios/robot_line"
-SAID = {"arm.tool_position", "arm.tool_quaternion", "soft.tool_position", "soft.tool_quaternion"}
+SAID = {
+    "arm.tool_position",
+    "arm.tool_quaternion",
+    "soft.tool_position",
+    "soft.tool_quaternion",
+    "soft.base_place",
+}
 
 
 def chain(record: list[str], stop: float = 0.3, **set_: object):

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from motionfmu.base import units
 from motionfmu.run.decimate import Read, blocks, reader
 from motionfmu.run.run_record import RunRecord
-from motionfmu.scenarios.tool_signals import Tool, tools
+from motionfmu.scenarios.tool_signals import Tool, outputs, tools
 
 Array = NDArray[np.float64]
 
@@ -51,27 +51,34 @@ def tool_gaps(run: RunRecord) -> list[ToolGap]:
     """Each tool whose command and place were recorded, as numbers, throughout."""
     found = []
     for tool in tools(run.resolver):
-        names = (*tool.position, *(tool.attitude or ()))
+        names = outputs(tool)
         reads = [reader(run.signals[n]) for n in names if n in run.signals]
         finite = all(np.isfinite(b).all() for r in reads for b in blocks(len(run.time), r))
         if len(reads) == len(names) and finite:
-            distance = _distance(run, tool.position)
+            distance = _distance(run, tool)
             angle = None if tool.attitude is None else _angle(run, tool.attitude)
             sizes = _size(run.time, distance), angle and _size(run.time, angle)
             found.append(ToolGap(tool, distance, angle, sizes))
     return found
 
 
-def _distance(run: RunRecord, pair: tuple[str, str]) -> Read:
-    ports = [run.resolver.end(name, "", "").port for name in pair]
-    factors = [units.parse(p.unit or "1").factor / units.parse("mm").factor for p in ports]
-    command, actual = (reader(run[name]) for name in pair)
+def _distance(run: RunRecord, tool: Tool) -> Read:
+    command, actual = (_in_mm(run, name) for name in tool.position)
+    base = _in_mm(run, tool.base) if tool.base else None
 
     def distance(first: int, last: int) -> Array:
-        gap = factors[1] * actual(first, last) - factors[0] * command(first, last)
+        gap = actual(first, last) - command(first, last)
+        if base is not None:
+            gap = gap + base(first, last)
         return np.asarray(np.linalg.norm(gap, axis=1))
 
     return distance
+
+
+def _in_mm(run: RunRecord, name: str) -> Read:
+    unit = run.resolver.end(name, "", "").port.unit
+    factor, read = units.parse(unit or "1").factor / units.parse("mm").factor, reader(run[name])
+    return lambda first, last: np.asarray(factor * read(first, last))
 
 
 def _angle(run: RunRecord, pair: tuple[str, str]) -> Read:

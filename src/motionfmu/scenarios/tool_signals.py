@@ -3,18 +3,22 @@
 from dataclasses import dataclass
 
 from motionfmu.base.errors import InputError
-from motionfmu.scenarios.agreement import commanded
+from motionfmu.scenarios.agreement import COMMAND, commanded, quantities
 from motionfmu.scenarios.system import Resolver, wires
 
-TOOL, ATTITUDE = "arm.tool", "arm.attitude"
+TOOL, ATTITUDE, BASE = "arm.tool", "arm.attitude", "arm.base" + COMMAND
 
 
 @dataclass(frozen=True)
 class Tool:
-    """Outputs of one tool, commanded and actual: positions, attitudes if both have them."""
+    """Outputs of one tool, commanded and actual: positions, attitudes if both have them.
+
+    The actual position is in the arm's base, whose place the controller commands if it knows one.
+    """
 
     position: tuple[str, str]
     attitude: tuple[str, str] | None
+    base: str | None
 
 
 def tools(resolver: Resolver) -> list[Tool]:
@@ -25,14 +29,20 @@ def tools(resolver: Resolver) -> list[Tool]:
     except InputError:  # told where components and wires are checked
         return []
     turns = {pair[0].partition(".")[0]: pair for pair in found[ATTITUDE]}
-    return [Tool(pair, turns.get(pair[0].partition(".")[0])) for pair in found[TOOL]]
+    components = resolver.document.body.component
+    made = []
+    for pair in found[TOOL]:
+        controller = pair[0].partition(".")[0]
+        base = quantities(components[controller]).get(BASE)
+        made.append(Tool(pair, turns.get(controller), base and f"{controller}.{base}"))
+    return made
 
 
 def wanted(resolver: Resolver) -> list[str]:
     """Outputs that are recorded so that a page can compare each tool with its command."""
-    return [
-        name
-        for tool in tools(resolver)
-        for pair in (tool.position, tool.attitude)
-        for name in pair or ()
-    ]
+    return [name for tool in tools(resolver) for name in outputs(tool)]
+
+
+def outputs(tool: Tool) -> list[str]:
+    """All outputs of a tool."""
+    return [*tool.position, *(tool.attitude or ()), *([tool.base] if tool.base else [])]
