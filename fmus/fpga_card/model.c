@@ -178,6 +178,7 @@ static void publish(struct fmu *f)
     for (int i = 0; i < FPGA_CHANNELS && f->s.m.switched != c->switched; i++)
         v->dout_clock[i] = (double)c->output_clock[i];
     f->s.m.switched = c->switched;
+    v->external_pulse_count[0] = v->external_count;
     v->external_servo_on = c->servo >> FPGA_AXES & 1;
     for (int i = 0; i < FPGA_AXES; i++)
         v->pulse_rate[i] = c->rate[i];

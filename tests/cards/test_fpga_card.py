@@ -223,6 +223,7 @@ class Ticks:
         return {name: [value] for name, value in alone.items()} | {
             "irq_ai": self.irq[3],
             "pulse_count": self.count[:6],
+            "external_pulse_count": [self.count[6]] + [0] * 5,
             "dropped": self.dropped[:6],
             "pulse_rate": self.rate[:6],
             "dout_clock": self.out_clock,
