@@ -87,8 +87,9 @@ static int job(const char *name, const char *points_name)
     char message[ROBOT_JOB_MESSAGE_MAX];
     const struct orders_text program = { .job = &jobs, .points = &points };
 
-    robot_job_points_clear(&points);
-    if (robot_job_points_read(&points, text, read_file(points_name, text), &r) < 0
+    robot_job_points_clear(&points, ROBOT_JOB_NO_AXIS);
+    if (robot_job_points_read(&points, ROBOT_JOB_NO_AXIS, text, read_file(points_name, text), &r)
+            < 0
         || robot_job_read(&jobs, &points, text, read_file(name, text), &r) < 0) {
         robot_job_message(&r, text, message);
         printf("%s\n", message);
