@@ -55,7 +55,7 @@ struct system_wire {
         memcpy(&(to), &(from), sizeof(to)); \
     } while (0)
 
-/* Copy a recorded value into its column's row; that of time is column -1. */
+/* Copy a recorded value into the current row of its column; the column of times is -1. */
 #define SYSTEM_KEEP(column, value) memcpy(block[(column) + 1] + at, &(value), sizeof(value))
 
 /* Step a part of several runs, those that have not failed: at once if it can, else one by one. */

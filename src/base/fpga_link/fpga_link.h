@@ -21,7 +21,7 @@ enum {
     FPGA_CLOCK_HZ = 40000000,
     FPGA_CLOCK_NS = 1000000000 / FPGA_CLOCK_HZ,
     FPGA_AXES = 6,
-    FPGA_PLAYED = 7,    /* with the external axis, the last one */
+    FPGA_PLAYED = 7,    /* axes whose pulses are played; the last is the external axis */
     FPGA_SLOT_AXES = 8, /* bytes of a slot: those axes and a spare byte, which must be 0 */
     FPGA_SLOT_WORDS = 2,
     FPGA_SLOTS = 128, /* slots of a pulse memory */

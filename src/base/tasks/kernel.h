@@ -156,9 +156,9 @@ struct kernel {
     struct kernel_task task[KERNEL_TASKS + 1]; /* the last is the idle task */
     uint32_t ready;                            /* tasks that are ready, a bit each */
     struct kernel_queue queue[KERNEL_QUEUES];
-    uint32_t pending;                 /* interrupts that are pending, a bit each, */
-    int64_t pends[KERNEL_INTERRUPTS]; /* [clock] and from when on */
-    bool woken[KERNEL_INTERRUPTS];    /* it has woken a task more urgent than the current one */
+    uint32_t pending;                 /* interrupts that are pending, a bit each */
+    int64_t pends[KERNEL_INTERRUPTS]; /* [clock] at which each became so */
+    bool woken[KERNEL_INTERRUPTS];    /* each has woken a task above the current one */
     int32_t received;                 /* value that an interrupt has received last */
     bool chooses;      /* the kernel chooses a task as soon as no interrupt is served */
     bool owed;         /* a task more urgent than the current one is ready: choose at the tick */

@@ -50,8 +50,8 @@ struct flash_chip {
     int32_t at, bytes;            /* first byte that it changes, and how many */
     int64_t begin, end;           /* [ns] of the operation */
     uint8_t page[FLASH_PAGE];     /* content to be programmed */
-    uint32_t wear[FLASH_SECTORS]; /* erases begun of each sector, */
-    uint32_t most_wear;           /* and the most of them */
+    uint32_t wear[FLASH_SECTORS]; /* erases begun of each sector */
+    uint32_t most_wear;           /* erases begun of the sector with the most */
     uint32_t programs, sector_erases, block_erases, refused;
     bool written[FLASH_SECTORS]; /* the sector has been programmed since its latest erase */
     uint8_t array[FLASH_BYTES];  /* content of such sectors; the others are 0xff, unread here */

@@ -10,7 +10,7 @@
 
 #include <stdbool.h>
 
-/* The numbers are those of enum robot_job_outside. */
+/* Kinds of axis, numbered as those of the robot language (enum robot_job_outside). */
 enum external_kind { EXTERNAL_NONE, EXTERNAL_TRACK, EXTERNAL_TABLE };
 
 struct external {

@@ -31,7 +31,7 @@ struct robot_config {
     double acc;               /* [mm/s^2] of it, along and across */
     double spin;              /* [rad/s] highest of the tool's turning */
     double smooth;            /* [s] in which an acceleration comes up; 0 at once */
-    bool flow;                /* all moves but those by the wrist flow, not splines alone */
+    bool flow;                /* moves flow, except by the wrist; without it splines alone do */
     double cycle;             /* [s] */
     double slot;              /* [s] of the pulses */
     double slot_pulses;       /* highest number of pulses in a slot */

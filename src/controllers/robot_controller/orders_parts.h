@@ -14,7 +14,7 @@ void orders_gcode_next(struct orders *o, const struct orders_config *c, const st
 void orders_job_next(struct orders *o, const struct orders_config *c, const struct orders_text *t,
                      const struct robot_job_inputs *in, struct order *order);
 
-/* Joints [rad], [m] of a position of a job that is no pose. */
+/* Joints [rad], [m] of a job's position given by its joints or pulses, not as a pose. */
 void orders_job_joints(const struct robot_job_point *p, const struct orders_config *c,
                        double joint[OPW_JOINTS]);
 
