@@ -161,6 +161,7 @@ static void publish(struct fmu *f)
     v->done = pc_done(&m->pc);
     v->homed = MCC_check_homef(mcc) == 1;
     v->error = MCC_get_errcode(mcc);
+    v->failed = v->error != 0 && control_rests(mcc);
     v->line = mcc->written.line > 0 ? mcc->written.line : 0;
     v->command = mcc->written.command;
     v->command_newest = mcc->written.newest;

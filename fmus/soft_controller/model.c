@@ -165,6 +165,7 @@ static void publish(struct fmu *f)
 
     v->status = controller_status(s, &panel);
     v->done = controller_done(s);
+    v->failed = controller_failed(s);
     v->error = s->trouble.error;
     v->error_line = s->trouble.line;
     v->line = s->robot.line > 0 ? s->move_line[s->robot.line % CONTROLLER_MOVES] : 0;

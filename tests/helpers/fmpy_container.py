@@ -80,8 +80,7 @@ def _configuration(system: System, folder: Path) -> Configuration:
             name = f"{end.component}.{inner.name}"
             shown = _outer(name, end.port.type, len(outer) + 1, texts.get(end.name))
             outer[shown] = [(components[end.component], inner)]
-    if system.until is not None:
-        end = system.until.end
+    for end in {e.name: e for e in system.ending}.values():
         for inner in _elements(variables[end.component], end):
             name = f"{end.component}.{inner.name}"
             shown = _outer(name, end.port.type, len(outer) + 1, None, "output")

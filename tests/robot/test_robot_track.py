@@ -10,6 +10,10 @@ from numpy.typing import NDArray
 import motionfmu
 from motionfmu.analysis.collisions import ArmParts, read_cell
 from motionfmu.analysis.dry_run import dry_run
+from motionfmu.live.live_machine import LiveMachine
+from motionfmu.live.live_scene import scene
+from motionfmu.report.run_summary import summary_of
+from motionfmu.report.view.scene import scene_of
 from motionfmu.run.tool_gap import tool_gaps
 
 ROOT = Path(__file__).parents[2]
@@ -92,6 +96,31 @@ def test_tool_and_command_are_compared_in_one_frame(ridden: motionfmu.Result) ->
     distance = np.linalg.norm(gap, axis=1)
     assert tool.distance(0, len(ridden.time)) == pytest.approx(distance, abs=1e-9)
     assert tool.sizes[0].largest < 15.0  # 11 ms behind, at 1 m/s
+
+
+def test_pictures_and_the_way_are_in_the_world(ridden: motionfmu.Result) -> None:
+    scene = scene_of(ridden)
+    assert scene is not None and scene.base is not None and scene.joints is not None
+    command = 1e3 * ridden["soft.tool_position"]
+    shown = np.searchsorted(ridden.time, scene.time)
+    assert np.linalg.norm(scene.tool - command[shown], axis=1).max() < 15.0
+    assert scene.base == pytest.approx(1e3 * ridden["soft.base_place"][shown], abs=1e-9)
+    # The arm's tip stands on its base where the tool is.
+    place = tip(scene.joints, scene.base[:, 1] * 1e-3)
+    assert np.linalg.norm(place - scene.tool, axis=1).max() < 2.0
+    world = 1e3 * (ridden["arm.tool_position"] + ridden["soft.base_place"])
+    way = np.linalg.norm(np.diff(world, axis=0), axis=1).sum()
+    distance = summary_of(ridden, None).distance
+    assert way > 6800.0 and distance == pytest.approx(way, rel=1e-9)
+
+
+def test_a_live_picture_stands_on_its_track() -> None:
+    with LiveMachine(motionfmu.load(ROOT / "scenarios/robot_track")) as machine:
+        shown = scene(machine)
+        assert shown is not None and shown["base"] == ["soft.base_place", 1e3]
+    with LiveMachine(motionfmu.load(ROOT / "scenarios/robot_line")) as machine:
+        shown = scene(machine)
+        assert shown is not None and shown["base"] == ["soft.base_place", 1e3]
 
 
 def test_a_job_for_a_track_needs_one() -> None:

@@ -72,6 +72,9 @@ def test_a_wrong_part_program(tmp_path: Path, line: int, program: str, what: str
         ("stop = 3.0", 'stop = "mcc.path_feed"\nlimit = 1', "stop", "Boolean or a whole number"),
         ("stop = 3.0", 'stop = "card.stock"\nlimit = 1', "stop", "which element, card.stock[1]?"),
         ("stop = 3.0", 'stop = "mcc.hold"\nlimit = 1', "stop", "mcc.hold is no output"),
+        ("stop = 3.0", 'stop = "done"\nlimit = 1\nfault = "dun"', "fault", "no component has"),
+        ("stop = 3.0", 'stop = "done"\nlimit = 1\nfault = "mcc.feed"', "fault", "is no output"),
+        ("stop = 3.0", 'stop = 3.0\nfault = "mcc.error"', "fault", "goes with a stop that is a"),
         (
             "stop = 3.0",
             'stop = "done"\nlimit = 1\nsettle = 1e-5',

@@ -341,6 +341,29 @@ def test_a_signal_that_never_comes_is_told(short: motionfmu.Scenario) -> None:
     assert late.stopped.startswith("mcc.services at 0") and len(late.time) == 500
 
 
+@pytest.mark.parametrize("fmi", few([3, 2], 1))
+def test_a_fault_ends_every_engine_alike(short: motionfmu.Scenario, fmi: int) -> None:
+    whole = short.run(stop=0.2)
+    first = int(np.argmax(whole["mcc.services"] != 0))
+    failed = short.changed(stop="done", fault="services", limit=0.5, settle=0.002)
+    told = f"mcc.services at {first * 1e-4:.9g} s"
+    for engine in ENGINES:
+        run = failed.run(engine=engine, fmi=fmi)
+        assert len(run.time) == first + 1 + 20, engine
+        assert run.stopped == told and run.done_at is None
+        assert f"the run ended by its fault, {told}: mcc.done never came" in run.warnings
+        assert differing(run, whole, rows=len(run.time)) == []
+    contained = fmpy_container.run(failed)
+    assert contained.stopped == told and contained.done_at is None
+    # A fault that does not come, or an array's, leaves the end as it is; of two at once it counts.
+    done = short.changed(stop="done", fault="card.enc_count[4]", limit=0.5)
+    both = short.changed(stop="done", fault="done", limit=0.5)
+    for engine in ENGINES:
+        assert done.run(engine=engine, fmi=fmi).stopped == both.run(engine=engine).stopped
+        assert both.run(engine=engine, fmi=fmi).warnings, engine
+    assert not done.run().warnings and done.run().done_at is not None
+
+
 def test_a_session_ends_by_a_signal(short: motionfmu.Scenario) -> None:
     ended = short.changed(stop="mcc.done", limit=0.5)
     with Session(ended, ["mcc.p_gain", "mcc.acc_time"]) as session:

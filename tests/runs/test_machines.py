@@ -52,6 +52,29 @@ def test_a_program_runs_on_a_machine_without_a_scenario(name: str) -> None:
     assert -1e-9 <= result.done_at + 0.1 - result.time[-1] < row
 
 
+def test_a_program_that_is_given_up_ends_its_run_at_rest(tmp_path: Path) -> None:
+    """A point out of reach, and a limit switch in the way: no run goes on to its limit of 600 s."""
+    (tmp_path / "a.job").write_text("MOVJ P000 VJ=50\nMOVL P001 V=500\nMOVL P002 V=500\nEND\n")
+    (tmp_path / "a.points").write_text(
+        "P000 J1=0 J2=-10 J3=10 J4=0 J5=90 J6=0\nP001 X=900 Y=100 Z=500 A=180 B=0 C=180\n"
+        "P002 X=2500 Y=0 Z=500 A=180 B=0 C=180\n"
+    )
+    (tmp_path / "a.ngc").write_text("G21 G17 G90\nG1 X240 F12000\nG1 X0\nM2\n")
+    robot = motionfmu.machine("robot6").scenario(tmp_path / "a.job").run(every=1)
+    short = {"machine.upper_limit_position": [0.1, 0.2, 0.005, 0.5, 0.5, 0.5]}
+    mill = motionfmu.machine("mill3").scenario(tmp_path / "a.ngc", set=short).run(every=1)
+    for result, name, way in ((robot, "soft", "joint_command"), (mill, "mcc", "position")):
+        assert not result.ok and result.done_at is None
+        end = float(result.stopped.removeprefix(f"{name}.failed at ").removesuffix(" s"))
+        row = result.time[1] - result.time[0]
+        assert end + 0.1 - result.time[-1] == pytest.approx(row, abs=1.01 * row)
+        moved = result[f"{name}.{way}"]
+        error = int(np.argmax(result[f"{name}.error"] != 0))
+        last = np.flatnonzero(np.any(moved != moved[-1], axis=1)).max()
+        assert error < last, "what moves comes to rest first"
+        assert 0.0 <= end - result.time[last] < 0.01
+
+
 def test_a_drawing_in_svg_runs_on_a_card_and_on_a_mill() -> None:
     badge = MACHINES / "engraver/badge.svg"
     for name, most in (("engraver", 3e-5), ("mill3", 3e-5)):

@@ -332,7 +332,7 @@ def recorded(view: dict, **signals):
     given |= {"c3": (0.795,), "c4": (0.085,), "joint_offset": (0, 0, -math.pi / 2, 0, 0, 0)}
     given |= {"joint_sign": (1,) * 6, "tool_length": (0.15,)}
     ports |= {n: port((len(v),) if len(v) > 1 else (), "parameter") for n, v in given.items()}
-    body = SimpleNamespace(view=View(**view), iso9283=None, contour=None)
+    body = SimpleNamespace(view=View(**view), iso9283=None, contour=None, component={}, connect={})
     resolver = SimpleNamespace(ports={"arm": ports}, document=SimpleNamespace(body=body))
 
     class Run(dict):

@@ -308,6 +308,11 @@ bool controller_done(const struct controller *s)
     return s->program == PROGRAM_ENDED && robot_idle(&s->robot);
 }
 
+bool controller_failed(const struct controller *s)
+{
+    return s->trouble.error != CONTROLLER_OK && robot_idle(&s->robot);
+}
+
 void controller_rehearse(struct controller *s, const struct controller_config *c,
                          const struct orders_text *t)
 {

@@ -199,6 +199,9 @@ bool controller_running(const struct controller *s);
 /* Whether the program is over and the arm at rest. */
 bool controller_done(const struct controller *s);
 
+/* Whether the program was given up for an error and the arm is at rest. */
+bool controller_failed(const struct controller *s);
+
 /* Behind controller_start: try the moves of a part program one by one without time, each at rest at
  * its end, up to the first that is refused, which s->trouble then names. *s has to be started again
  * afterwards. A job cannot be rehearsed: its inputs decide what it does. */

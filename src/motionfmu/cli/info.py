@@ -199,7 +199,9 @@ def _until(body: Any) -> str:
     limit = getattr(body, "limit", None)
     seconds = "twice its planned time" if limit == "planned" else f"{limit or 0.0:g} s"
     at_most = f", {seconds} at most" if limit else ""
-    end = f"{body.stop:g} s" if isinstance(body.stop, float) else f"until {body.stop}{at_most}"
+    fault = f" or {body.fault}" if getattr(body, "fault", None) else ""
+    signals = f"until {body.stop}{fault}{at_most}"
+    end = f"{body.stop:g} s" if isinstance(body.stop, float) else signals
     return f"{end}, in steps of {body.step:g} s"
 
 

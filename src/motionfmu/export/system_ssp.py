@@ -80,7 +80,8 @@ def as_ssp(
     driving, left_out = stimuli(system)
     structure = _structure(scenario, system, shown, driving, fmi)
     if system.until is not None:
-        left_out.append(f"stop = {system.until.name}: an SSP ends by time, here by limit")
+        names = " and ".join(s.name for s in system.until.signals)
+        left_out.append(f"stop = {names}: an SSP ends by time, here by limit")
     theirs = [c for c, fmu in system.components.items() if not is_ours(fmu)]
     given_to = {s.end.component for s in system.settings}
     left_out += [

@@ -141,7 +141,7 @@ def _key(
         [f"{w.target.name} {w.source.name}" for w in system.wires],
         sorted(wired & {s.end.name for s in system.settings}),
         [e.name for e in recorded],
-        [name, until.name if until else ""],
+        [name, *(s.name for s in (until.signals if until else ()))],
         None if given is None else [repr(given), system.step_ns, system.steps],
     ]
     return disk_cache.key(json.dumps(lists))

@@ -62,8 +62,7 @@ def roles(system: System, recorded: Sequence[End]) -> Roles:
             if free or port.tunable:
                 taken.append(end)
     shown = {e.name: e for e in recorded}
-    if system.until is not None:
-        shown[system.until.end.name] = system.until.end
+    shown |= {e.name: e for e in system.ending}
     return Roles(tuple(given), tuple(taken), tuple(shown.values()))
 
 
@@ -124,8 +123,11 @@ def _own(system: System, step: float, tick_ns: int) -> Iterator[Variable]:
     text = "Steps behind the signal that ends the run, then the system stands still; -1: it goes on"
     yield Variable("until.settle", "parameter", "i32", text, start=[-1], min=-1, max=_STEPS_MAX)
     if system.until is not None:
-        text = f"Communication step at which {system.until.name} came; -1: not yet"
+        names = [s.name for s in system.until.signals]
+        text = f"Communication step at which {' or '.join(names)} came; -1: not yet"
         yield Variable("until.step", "output", "i32", text)
+        which = " or ".join(f"{k} {name}" for k, name in enumerate(names))
+        yield Variable("until.which", "output", "i32", f"Which came: {which}")
 
 
 # CCN 16: each field of one description, which a system with given values fills in another way.

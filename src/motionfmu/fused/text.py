@@ -70,7 +70,8 @@ def _model(system: System, parts: Mapping[str, FmuPart]) -> str:
     return (
         "struct model {\n" + "".join(lines) + "    int64_t step; /* [ns] */\n"
         "    int64_t steps; /* made since the start */\n"
-        "    int32_t until; /* step at which the signal came; -1: not yet */\n};\n"
+        "    int32_t until; /* step at which the signal came; -1: not yet */\n"
+        "    int32_t which; /* of the signals that end the run */\n};\n"
     )
 
 
@@ -97,12 +98,12 @@ def _carry(system: System) -> str:
 
 
 def _until(system: System) -> str:
-    line = "return false;"
-    if system.until is not None:
-        end = system.until.end
-        kind = {"Boolean": "bool", "Int32": "int32_t"}[end.port.type]
-        line = f"return ((const {kind} *)&{_in_part(end)})[{system.until.element or 0}] != 0;"
-    return _function("bool system_until(const struct model *m)", [line], ["m"])
+    lines = []
+    for which, signal in reversed([*enumerate(system.until.signals if system.until else ())]):
+        kind = {"Boolean": "bool", "Int32": "int32_t"}[signal.end.port.type]
+        value = f"((const {kind} *)&{_in_part(signal.end)})[{signal.element or 0}]"
+        lines.append(f"if ({value} != 0) return {which};")
+    return _function("int system_until(const struct model *m)", [*lines, "return -1;"], ["m"])
 
 
 def _step(system: System, parts: Mapping[str, FmuPart]) -> str:
@@ -135,7 +136,7 @@ def _shows(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterabl
     yield _function("void system_return(const struct model *m, struct vars *v)", back, ["m", "v"])
     shown = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.shown]
     if system.until is not None:
-        shown.append("v->until_.step = m->until;")
+        shown += ["v->until_.step = m->until;", "v->until_.which = m->which;"]
     yield _function("void system_show(const struct model *m, struct vars *v)", shown, ["m", "v"])
 
 

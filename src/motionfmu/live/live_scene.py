@@ -18,8 +18,9 @@ TOOLS = ("tool_position", "table_position")
 def scene(machine: LiveMachine) -> dict[str, Any] | None:
     """Names of outputs, factors to mm and rad, lengths of the arm; None if no tool is known."""
     resolver, outputs = machine.scenario.resolver, set(machine.names[0])
-    found = next((t.position for t in tools(resolver)), None)
-    command, tool = found or (_commanded(resolver), _tool(resolver))
+    found = next(iter(tools(resolver)), None)
+    command, tool = found.position if found else (_commanded(resolver), _tool(resolver))
+    base = found and found.base
     if tool is None or tool not in outputs:
         return None
     component = tool.partition(".")[0]
@@ -27,6 +28,7 @@ def scene(machine: LiveMachine) -> dict[str, Any] | None:
     arm = arm_of(resolver, machine.parameter, joints) if joints in outputs else None
     return {
         "tool": [tool, _factor(resolver, tool, "mm")],
+        "base": [base, _factor(resolver, base, "mm")] if base in outputs else None,
         "command": [command, _factor(resolver, command, "mm")] if command in outputs else None,
         "joints": [joints, _factor(resolver, joints, "rad")] if arm else None,
         "arm": arm and asdict(arm),

@@ -6,7 +6,7 @@ function machineView(data) {
   const canvas = root.querySelector("canvas"), pen = canvas.getContext("2d");
   const part = (name) => root.querySelector(`[data-view="${name}"]`);
   const time = numbers(data.time), tool = data.tool.map(numbers);
-  const joints = data.joints && data.joints.map(numbers);
+  const joints = data.joints && data.joints.map(numbers), base = data.base && data.base.map(numbers);
   const path = { time: numbers(data.path.time), speed: numbers(data.path.speed) };
   const xyz = data.path.point.map(numbers);
   path.point = Array.from(path.time, (_, k) => xyz.map((c) => c[k]));
@@ -38,7 +38,8 @@ function machineView(data) {
     const points = [[0, 0, 0], ...path.point];
     const stride = Math.max(1, Math.floor(time.length / 60));
     for (let k = 0; k < time.length; k += stride) {
-      points.push(...armPoints(data.arm, joints.map((s) => s[k])));
+      const stands = base ? base.map((c) => c[k]) : [0, 0, 0];
+      points.push(...armPoints(data.arm, joints.map((s) => s[k])).map((p) => add(p, stands)));
     }
     for (const face of cellFaces(data.cell, [0, 0, 0])) points.push(...face.corners);
     return bounds(points);
@@ -47,7 +48,8 @@ function machineView(data) {
   // Faces of the machine at a time, each with a colour.
   function machine() {
     if (!data.arm) return gantryFaces(sampled(time, tool, now), onPath, theme);
-    return armFaces(data.arm, sampled(time, joints, now), whole.radius / 1100, theme, sampled(time, tool, now));
+    return armFaces(data.arm, sampled(time, joints, now), whole.radius / 1100, theme, sampled(time, tool, now),
+      base && sampled(time, base, now));
   }
 
   let theme = {}, cell = [];

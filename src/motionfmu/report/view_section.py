@@ -74,6 +74,7 @@ def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
         "time": quantised(scene.time),
         "tool": [quantised(c) for c in scene.tool.T],
         "joints": None if scene.joints is None else [quantised(c) for c in scene.joints.T],
+        "base": None if scene.base is None else [quantised(c) for c in scene.base.T],
         "arm": None
         if arm is None
         else {

@@ -75,8 +75,10 @@ class Execution:
         stopped, signal = self._stopped(ran)
         never: tuple[str, ...] = ()
         if (until := self.system.until) is not None and signal is None:
-            limit = self._seconds(self.system.steps)
-            never = (f"{until.name} never came within {limit:.9g} s",)
+            done, limit = until.done.name, self._seconds(self.system.steps)
+            never = (f"{done} never came within {limit:.9g} s",)
+            if ran.signal is not None:
+                never = (f"the run ended by its fault, {stopped}: {done} never came",)
         return Result(
             scenario=self.scenario,
             time=self._time(ran.steps) if ran.time is None else ran.time,
@@ -91,14 +93,15 @@ class Execution:
         )
 
     def _stopped(self, ran: EngineResult) -> tuple[str, float | None]:
-        """Why the run ended, and when the signal that ends it came [s]."""
+        """Why the run ended, and when the signal that it waits for came [s]."""
         until = self.system.until
         if until is None:
             return f"stop = {self._seconds(ran.steps):.9g} s", None
         if ran.signal is None:
-            return f"limit {self._seconds(ran.steps):.9g} s, {until.name} never came", None
+            return f"limit {self._seconds(ran.steps):.9g} s, {until.done.name} never came", None
         at = self._seconds(ran.signal)
-        return f"{until.name} at {at:.9g} s", at
+        told = f"{until.signals[ran.which].name} at {at:.9g} s"
+        return told, at if ran.which == 0 else None
 
     def _time(self, steps: int) -> NDArray[np.float64]:
         """Times of the rows of so many steps [s]."""

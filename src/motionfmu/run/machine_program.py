@@ -113,6 +113,8 @@ class Machine:
         values = {str(self.signals.program): str(ready.file), **self._beside(file.resolve())}
         values = ready.values | values | dict(set or {})
         given: dict[str, Any] = {"stop": self.signals.done, "limit": limit, "settle": settle}
+        if self.signals.fault is not None:
+            given["fault"] = self.signals.fault
         if ready.seconds is not None:
             given = {"stop": time_of(ready.seconds, START, APPROACH + settle)}
         if self.signals.start is not None:

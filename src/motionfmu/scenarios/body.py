@@ -120,6 +120,7 @@ class MachineSignals(BaseModel):
     model_config = _STRICT
     program: Name | None = None  # parameter that names it
     done: Name | None = None  # output that tells the end of the program
+    fault: Name | None = None  # output that is not 0 once the controller has given the program up
     start: Name | None = None  # input that starts it when it becomes 1
     config: Name | None = None  # configuration of a network card, for which drawings are planned
     # Parameters that name a file beside the program with its name and this ending, if there is one.
@@ -224,6 +225,7 @@ class Body(BaseModel):
     axis: list[MachineAxis] = Field(default_factory=list, max_length=LISTED_MAX)
     limits: dict[FigureName, FigureLimit] = Field(default_factory=dict, max_length=FIGURES_MAX)
     stop: Annotated[float, Field(gt=0)] | Name  # [s] when the run ends, or the signal that ends it
+    fault: Name | None = None  # signal that ends the run, too, as one that failed
     # [s] at the latest, where a signal ends the run; planned: twice the planned time
     limit: Annotated[float, Field(gt=0)] | Literal["planned"] | None = None
     # [s] how long a run goes on behind the signal that ends it

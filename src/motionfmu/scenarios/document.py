@@ -155,7 +155,7 @@ def parsed(sources: list[Source], name: str = "") -> Document:
         except ValidationError:  # nothing is left to look at
             Faults(ordered(wrong, (s.name for s in sources))).tell()
             raise
-    if not damaged & {"stop", "limit", "settle"} and (told := _ending(body, places)):
+    if not damaged & {"stop", "fault", "limit", "settle"} and (told := _ending(body, places)):
         wrong += told
         damaged.add("stop")
     about = next((s.about for s in sources if s.about), name)
@@ -173,12 +173,12 @@ def _file(sources: Sources, component: str, fmu: str) -> str:
 
 
 def _ending(body: Body, sources: Sources) -> list[str]:
-    """What is wrong with stop, limit and settle together."""
+    """What is wrong with stop, fault, limit and settle together."""
     if isinstance(body.stop, str) and body.limit is None:
         text = f"stop = {body.stop!r} is a signal: limit = seconds, the longest run, is missing"
         return [f"{_place(sources, '', 'stop')}: {text}"]
     found = []
-    for key in ("limit", "settle"):
+    for key in ("fault", "limit", "settle"):
         if isinstance(body.stop, float) and getattr(body, key) is not None:
             text = f"{key} goes with a stop that is a signal; stop = {body.stop:g} is a time"
             found.append(f"{_place(sources, '', key)}: {text}")

@@ -65,17 +65,30 @@ class Stimulus:
 
 
 @dataclass(frozen=True)
-class Until:
-    """A signal that ends a run."""
+class EndSignal:
+    """An output that ends a run when it is not 0."""
 
     end: End
     element: int | None  # of an array, from 0
-    settle: int  # steps that follow the communication point at which it is not 0
 
     @property
     def name(self) -> str:
         """The output, or the element of it."""
         return self.end.name + (f"[{self.element + 1}]" if self.element is not None else "")
+
+
+@dataclass(frozen=True)
+class Until:
+    """What ends a run before its time: the signal that it waits for, or a fault."""
+
+    done: EndSignal
+    fault: EndSignal | None
+    settle: int  # steps that follow the communication point at which one of them is not 0
+
+    @property
+    def signals(self) -> tuple[EndSignal, ...]:
+        """Both; of two that come at once the later one in this order counts."""
+        return (self.done,) if self.fault is None else (self.done, self.fault)
 
 
 @dataclass(frozen=True)
@@ -91,6 +104,11 @@ class System:
     every: int = 1  # of them is recorded
     until: Until | None = None  # ends the run before
     begin: int = 0  # steps that had been made when the saved state was in which it begins
+
+    @property
+    def ending(self) -> tuple[End, ...]:
+        """Outputs that may end the run, arrays whole."""
+        return () if self.until is None else tuple(s.end for s in self.until.signals)
 
     @property
     def sample_ns(self) -> int:
@@ -350,33 +368,40 @@ def check_inputs(resolver: Resolver, system: System) -> None:
 
 
 def until(resolver: Resolver, step_ns: int) -> Until | None:
-    """The signal that ends a run; None if a time does."""
+    """The signals that end a run; None if a time does."""
     body, document = resolver.document.body, resolver.document
     if not isinstance(body.stop, str):
         return None
-    name = body.stop
-    if "." not in name:
-        name = _only(resolver, name)
-    whole, element = resolver.split(name)
-    end = resolver.end(whole, "", "stop")
-    text, kind = f"stop = {body.stop!r}", end.port.type
-    if end.port.causality != "output":
-        raise document.error(f"{text}: {end.name} is no output", "", "stop")
-    if kind not in ("Boolean", "Int32"):
-        wanted = "a Boolean or a whole number wanted"
-        raise document.error(f"{text}: {end.name} is {kind}; {wanted}", "", "stop")
-    if end.port.shape and element is None:
-        raise document.error(f"{text}: which element, {end.name}[1]?", "", "stop")
-    if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
-        raise document.error(f"{text}: {end.name} has no element {element + 1}", "", "stop")
+    done = _end_signal(resolver, "stop", body.stop)
+    fault = None if body.fault is None else _end_signal(resolver, "fault", body.fault)
     settle = body.settle or 0.0
     steps = round(settle * 1e9 / step_ns)
     if abs(settle * 1e9 - steps * step_ns) > NS_TOLERANCE * max(1.0, settle):
         raise document.error(f"settle = {settle!r} s is no whole number of steps", "", "settle")
-    return Until(end, element, steps)
+    return Until(done, fault, steps)
 
 
-def _only(resolver: Resolver, name: str) -> str:
+def _end_signal(resolver: Resolver, key: str, given: str) -> EndSignal:
+    """The output that a key of the scenario names."""
+    document, name = resolver.document, given
+    if "." not in name:
+        name = _only(resolver, key, name)
+    whole, element = resolver.split(name)
+    end = resolver.end(whole, "", key)
+    text, kind = f"{key} = {given!r}", end.port.type
+    if end.port.causality != "output":
+        raise document.error(f"{text}: {end.name} is no output", "", key)
+    if kind not in ("Boolean", "Int32"):
+        wanted = "a Boolean or a whole number wanted"
+        raise document.error(f"{text}: {end.name} is {kind}; {wanted}", "", key)
+    if end.port.shape and element is None:
+        raise document.error(f"{text}: which element, {end.name}[1]?", "", key)
+    if element is not None and not 0 <= element < end.port.count * bool(end.port.shape):
+        raise document.error(f"{text}: {end.name} has no element {element + 1}", "", key)
+    return EndSignal(end, element)
+
+
+def _only(resolver: Resolver, key: str, name: str) -> str:
     """The one output of this name that a component has."""
     whole, bracket, rest = name.partition("[")
     ends = resolver.matching("*", "output")
@@ -389,4 +414,4 @@ def _only(resolver: Resolver, name: str) -> str:
         raise InputError()
     else:
         told = f"no component has such an output{suggestion(whole, {e.port.name for e in ends})}"
-    raise resolver.document.error(f"stop = {name!r}: {told}", "", "stop")
+    raise resolver.document.error(f"{key} = {name!r}: {told}", "", key)

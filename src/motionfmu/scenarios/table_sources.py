@@ -22,7 +22,17 @@ KEYED = {"drive": "input", "contrary": "off"}
 ORIGINS = ("extends", "without")
 # What a machine does not say, for it has no job.
 NOT_OF_A_SCENARIO = ("drawing",)  # its program is a file that the controller reads
-NOT_OF_A_MACHINE = ("machine", "begin", "stop", "limit", "settle", "drive", "expect", "contrary")
+NOT_OF_A_MACHINE = (
+    "machine",
+    "begin",
+    "stop",
+    "fault",
+    "limit",
+    "settle",
+    "drive",
+    "expect",
+    "contrary",
+)
 
 
 @dataclass(frozen=True)
@@ -293,7 +303,7 @@ def _over(base: Tables, own: Mapping[str, Any], adds: bool) -> Tables:
     """Two tables merged key by key; None, which a program can give, takes a key away."""
     out = dict(base)
     if "stop" in own and not isinstance(own["stop"], str):  # the limit was that of a signal
-        out = {k: v for k, v in out.items() if k not in ("limit", "settle")}
+        out = {k: v for k, v in out.items() if k not in ("fault", "limit", "settle")}
     for name, value in own.items():
         if name not in ORIGINS:
             out[name] = _of_both(name, out.get(name), value, adds)

@@ -2,7 +2,14 @@
 // A machine as it is drawn: faces with their corners, outward normals and colours.
 
 // An arm at its joint angles [rad]; s: its size against one of 1.1 m; colours of body, joint, tool.
-function armFaces(arm, joints, s, colours, tool) {
+// base: where it stands, if it moves.
+function armFaces(arm, joints, s, colours, tool, base) {
+  if (!base) return facesFromBase(arm, joints, s, colours, tool);
+  const faces = facesFromBase(arm, joints, s, colours, tool && add(tool, base, -1));
+  return faces.map((face) => ({ ...face, corners: face.corners.map((corner) => add(corner, base)) }));
+}
+
+function facesFromBase(arm, joints, s, colours, tool) {
   if (arm.axes.length) return axesFaces(arm, joints, s, colours, tool);
   const p = armPose(arm, joints), faces = [];
   const put = (made, color) => made.forEach((f) => faces.push({ ...f, color }));

@@ -30,6 +30,7 @@ def dry_scene(run: DryRun) -> Scene | None:
         s["time"][kept],
         at(reader(place), kept),
         s["speed"][kept].astype(float),
+        base=s["base"][frames].astype(float) if np.ptp(s["base"], axis=0).any() else None,
         rapid=None if rapid.all() else rapid,
         cell=run.cell,
     )

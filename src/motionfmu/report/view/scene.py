@@ -14,6 +14,7 @@ from motionfmu.run.run_record import RunRecord
 from motionfmu.scenarios import limited_signals
 from motionfmu.scenarios.arm_lengths import Arm, arm_of
 from motionfmu.scenarios.system import Resolver
+from motionfmu.scenarios.tool_signals import tools
 from motionfmu.scenarios.view_signals import JOINTS
 
 Array = NDArray[np.float64]
@@ -47,6 +48,7 @@ class Scene:
     path: Array  # (m, 3) [mm]
     speed: Array  # (m,) of the tool [mm/s]
     lines: tuple[DeviationLine, ...] = ()
+    base: Array | None = None  # (n, 3) where an arm stands that is moved as a whole [mm]
     rapid: NDArray[np.bool_] | None = None  # (m,) where the tool does no work
     cell: Cell = field(default_factory=Cell)  # what stands around the arm
 
@@ -61,7 +63,7 @@ def scene_of(
     name = tool_signal(run)
     if not view.show or name is None or len(run.time) < 2:
         return None
-    count, tool = len(run.time), position(run, name)
+    count, base, tool = len(run.time), _base(run, name), position(run, name)
     joints = joint_signal(run, name)
     arm = None if joints is None else arm_of(run.resolver, run.parameter, joints)
     low, high = ends(count, tool)
@@ -81,8 +83,15 @@ def scene_of(
         at(tool, kept),
         way / (run.time[after] - run.time[before]),
         tuple(lines),
+        at(base, frames) if arm and base else None,
         rapids(run, kept, works),
     )
+
+
+def _base(run: RunRecord, name: str) -> Read | None:
+    """Where the arm of this tool stands, if it is moved as a whole and that was recorded."""
+    base = next((t.base for t in tools(run.resolver) if t.position[1] == name), None)
+    return _in_mm(run, base) if base is not None and base in run.signals else None
 
 
 def rapids(
@@ -105,7 +114,14 @@ def rapids(
 
 
 def position(run: RunRecord, name: str) -> Read:
-    """A recorded position in mm, block by block."""
+    """A tool's recorded position in the world in mm, block by block."""
+    tool, base = _in_mm(run, name), _base(run, name)
+    if base is None:
+        return tool
+    return lambda first, last: tool(first, last) + base(first, last)
+
+
+def _in_mm(run: RunRecord, name: str) -> Read:
     read = reader(run[name])
     return lambda first, last: millimetres(run.resolver, name, read(first, last))
 

@@ -1,6 +1,6 @@
 """Where a run is divided, and where it ends: at its last step, or behind a signal."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -20,35 +20,40 @@ def shares(system: System, due: Iterable[int], most: int) -> Iterator[tuple[int,
 
 
 class Ending:
-    """Ends a run behind the first communication point at which a signal is not 0.
+    """Ends a run behind the first communication point at which one of its signals is not 0.
 
-    The engine's `read` fills its array `values` with the signal's elements.
+    For each signal the engine gives a function that fills an array with the signal's elements,
+    and the array.
     """
 
-    def __init__(
-        self, system: System, read: Callable[[], None] = lambda: None, values: Any = ()
-    ) -> None:
-        self._system, self._read, self._values = system, read, values
-        self._until = system.until
+    def __init__(self, system: System, read: Sequence[tuple[Callable[[], None], Any]] = ()) -> None:
+        self._system = system
+        signals = system.until.signals if system.until is not None else ()
+        self._read = [(*r, s.element or 0) for r, s in zip(read, signals, strict=True)]
+        self._settle = 0 if system.until is None else system.until.settle
         self.steps = system.steps
         self.signal: int | None = None
+        self.which = 0
+
+    def _look(self, k: int) -> None:
+        for which, (read, values, element) in enumerate(self._read):
+            read()
+            if values[element]:
+                self.signal, self.which = k, which
+                self.steps = min(self.steps, k + 1 + self._settle)
 
     def ran(self, engine: str, scopes: ScopeSystem, warnings: list[str]) -> EngineResult:
         """The result of a run that has ended."""
-        return EngineResult(engine, scopes.signals(), warnings, self.steps, self.signal)
+        signals = scopes.signals()
+        return EngineResult(engine, signals, warnings, self.steps, self.signal, self.which)
 
     def points(self, progress: Callable[[float], None]) -> Iterator[int]:
         """The communication points of the run, one after the other, each before its step."""
         begin = k = self._system.begin
-        part, element = max(1, (self.steps - begin) // SHARES), 0
-        if self._until is not None and self._until.element is not None:
-            element = self._until.element
+        part = max(1, (self.steps - begin) // SHARES)
         while k < self.steps:
-            if self._until is not None and self.signal is None:
-                self._read()
-                if self._values[element]:
-                    self.signal = k
-                    self.steps = min(self.steps, k + 1 + self._until.settle)
+            if self.signal is None:
+                self._look(k)
             yield k
             if k % part == 0:
                 progress(self._system.share(k))

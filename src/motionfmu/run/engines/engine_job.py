@@ -34,7 +34,8 @@ class EngineResult:
     signals: Mapping[str, NDArray[Any]]  # one row for each sample
     warnings: list[str]  # of the FMUs
     steps: int  # number of steps that were made
-    signal: int | None = None  # communication point at which the signal that ends it came
+    signal: int | None = None  # communication point at which a signal that ends it came
+    which: int = 0  # of the system's two: its number in `Until.signals`
     time: NDArray[np.float64] | None = None  # of the rows [s], if the engine recorded it
 
 

@@ -35,7 +35,7 @@ STEPS_MAX = 20_000
 LANES, LANES_HELD = 8, 1 << 28
 KINDS = {"Float64": np.float64, "Int32": np.int32, "Boolean": np.bool_}
 STEP, FOLDER, EVERY = "system.step", "recorder.folder", "recorder.every"
-SETTLE, SIGNAL = "until.settle", "until.step"
+SETTLE, SIGNAL, WHICH = "until.settle", "until.step", "until.which"
 # The program's own call refuses a component's value.
 _SET = re.compile(r"^(fmi[23]\w+: )(\w+)\.(?=\w)")
 
@@ -67,7 +67,7 @@ class _Instance:
         self._errors: list[str] = []
         self._warnings: list[str] = []
         self.held = bool(self._job.recorded) and program.size(system) <= self._job.memory
-        self.steps, self._signal = system.steps, None
+        self.steps, self._signal, self._which = system.steps, None, 0
 
     def begin(self) -> None:
         """Make the instance, with its values, up to its first step."""
@@ -126,19 +126,20 @@ class _Instance:
             (at,) = self._library.get(self._program.about.variables[SIGNAL])
             if at >= 0:
                 self._signal, self.steps = at, min(self.steps, at + 1 + until.settle)
+                (self._which,) = self._library.get(self._program.about.variables[WHICH])
         return following >= self.steps
 
     def result(self) -> EngineResult:
         """End the run."""
         self._library.terminate()
         names = [end.name for end in self._job.recorded]
-        told, steps, signal = [*self._warnings], self.steps, self._signal
+        told, steps, ended = [*self._warnings], self.steps, (self._signal, self._which)
         if self.held:
             time, *found = (column[: self._system.rows(steps)] for column in self._rows)
             signals = dict(zip(names, found, strict=True))
-            return EngineResult("fused", signals, told, steps, signal, time)
+            return EngineResult("fused", signals, told, steps, *ended, time)
         files = Columns.taken(self._program.signals, names) if names else Columns({})
-        return EngineResult("fused", files, told, steps, signal, files.time)
+        return EngineResult("fused", files, told, steps, *ended, files.time)
 
     def _tell(self, status: int, text: str) -> None:
         told = text.strip().removeprefix(f"{NAME}: ")

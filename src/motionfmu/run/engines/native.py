@@ -56,8 +56,7 @@ def build(system: System, fmi: int, folder: Path) -> Path:
             for name in exposed(end, system.version(end.component, fmi)):
                 if f"{end.component}.{name}" not in wired:
                     container.add_input(f"{end.component}.{name}", f"{end.component}.fmu", name)
-        if system.until is not None:
-            end = system.until.end
+        for end in {e.name: e for e in system.ending}.values():
             for name in exposed(end, system.version(end.component, fmi)):
                 container.add_output(f"{end.component}.fmu", name, f"{end.component}.{name}")
         container.make_fmu(f"{IDENTIFIER}.fmu", step_size=system.step_ns * 1e-9, debug=True)

@@ -42,12 +42,13 @@ def _exchange(wires: list[tuple[Callable[[], None], Callable[[], None]]]) -> Non
 
 
 def _ending(slaves: dict[str, Slave], system: System) -> Ending:
-    """Where the run ends; the signal is read in the FMU that shows it."""
-    if system.until is None:
-        return Ending(system)
-    slave, port = slaves[system.until.end.component], system.until.end.port
-    values = slave.buffer(port.type, port.count)
-    return Ending(system, slave.access("Get", port.type, port.reference, values), values)
+    """Where the run ends; a signal is read in the FMU that shows it."""
+    read = []
+    for end in system.ending:
+        slave, port = slaves[end.component], end.port
+        values = slave.buffer(port.type, port.count)
+        read.append((slave.access("Get", port.type, port.reference, values), values))
+    return Ending(system, read)
 
 
 class Master:

@@ -163,12 +163,12 @@ class Slave:
 
 
 def ending_of(container: Slave, system: System, fmi: int) -> Ending:
-    """The `Ending` of a container's run: the signal is an output of it. Our FMUs have `fmi`."""
-    if system.until is None:
-        return Ending(system)
-    end = system.until.end
-    inner = exposed(end, system.version(end.component, fmi))
-    names = (f"{end.component}.{n}" for n in inner)
-    first, *further = (container.references[n] for n in names)
-    values = container.buffer(end.port.type, end.port.count)
-    return Ending(system, container.access("Get", end.port.type, first, values, *further), values)
+    """The `Ending` of a container's run: signals are outputs of it. Our FMUs have `fmi`."""
+    read = []
+    for end in system.ending:
+        inner = exposed(end, system.version(end.component, fmi))
+        names = (f"{end.component}.{n}" for n in inner)
+        first, *further = (container.references[n] for n in names)
+        values = container.buffer(end.port.type, end.port.count)
+        read.append((container.access("Get", end.port.type, first, values, *further), values))
+    return Ending(system, read)

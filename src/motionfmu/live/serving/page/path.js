@@ -16,14 +16,14 @@ const solids = depthBuffer();
 const [still, trail] = [document.createElement("canvas"), document.createElement("canvas")];
 
 let scene = null, plan = [], done = [], command = [], scale = 0, largest = 0, error = NaN;
-let stage = null, moved = false, dirty = true, drawn = 0, joints = null, tool = null, theme = {};
+let stage = null, moved = false, dirty = true, drawn = 0, joints = null, tool = null, base = null, theme = {};
 
 export async function pathOf() {
   scene = about.scene;
   canvas.closest("section").hidden = !scene;
   if (!scene) return;
-  const { tool: [name], command: ordered, joints: angles } = scene;
-  watch("path", [name, ordered?.[0], angles?.[0]].filter(Boolean));
+  const { tool: [name], command: ordered, joints: angles, base: stands } = scene;
+  watch("path", [name, ordered?.[0], angles?.[0], stands?.[0]].filter(Boolean));
   plan = [];
   clear();
   moved = false;
@@ -46,8 +46,10 @@ const point = ([name, factor]) => {
 // Take the place of the tool from each frame.
 on("frame", () => {
   if (!scene) return;
-  const now = point(scene.tool);
-  if (!now) return;
+  const from = point(scene.tool);
+  if (!from) return;
+  base = scene.base && point(scene.base);
+  const now = base ? add(from, base) : from;
   if (done.length && frame.time < done.at(-1).time) undo();
   joints = scene.joints && values(scene.joints[0]).map((x) => x * scene.joints[1]);
   tool = now;
@@ -183,7 +185,7 @@ function trailOn(look) {
 }
 
 function machineOn(look) {
-  const faces = scene.arm ? joints?.length && armFaces(scene.arm, joints, stage.radius / 1100, theme, tool) : gantryFaces(tool, stage, theme);
+  const faces = scene.arm ? joints?.length && armFaces(scene.arm, joints, stage.radius / 1100, theme, tool, base) : gantryFaces(tool, stage, theme);
   if (!faces) return;
   solids.size(canvas.clientWidth, canvas.clientHeight, devicePixelRatio || 1);
   solids.faces(faces, view, look);
