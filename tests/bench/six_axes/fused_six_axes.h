@@ -9,7 +9,8 @@ enum { USED = 6 };
 
 /* clang-format off */
 #define RECORDED(X)                                                                               \
-    X(mcc, status, int32_t, 1) X(mcc, homed, bool, 1) X(mcc, done, bool, 1) X(mcc, failed, bool, 1) \
+    X(mcc, status, int32_t, 1) X(mcc, homed, bool, 1)                                             \
+    X(mcc, done, bool, 1) X(mcc, failed, bool, 1)                                                 \
     X(mcc, error, int32_t, 1) X(mcc, line, int32_t, 1) X(mcc, command, int32_t, 1)                \
     X(mcc, command_newest, int32_t, 1) X(mcc, path_feed, double, 1)                               \
     X(mcc, position, double, AXES) X(mcc, compensation, int32_t, AXES)                            \
