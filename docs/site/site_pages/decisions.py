@@ -1,5 +1,6 @@
 """The page that lists all decisions by subject, with their days."""
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,21 +27,21 @@ def page(root: Path, pages: list[str]) -> str:
     ]
     for subject, about in subjects(root).items():
         found = [p for p in pages if p.startswith(f"{DECISIONS}/{subject}/")]
-        rows = table(("page", "decided", ""), _rows(root, found)) if found else ""
+        rows = table(("page", "superseded", "decided"), _rows(root, found)) if found else ""
         parts.append(f"## {subject}\n\n{about}\n\n{rows}")
     return "\n\n".join([*parts, toctree(pages)])
 
 
 def _rows(root: Path, pages: list[str]) -> Iterator[tuple[str, str, str]]:
-    """Title, days and what supersedes it, sorted by title; superseded ones are last."""
+    """Title, what supersedes it and days, sorted by title; superseded ones are last."""
     found = []
     for name in pages:
         text = (root / name).read_text(encoding="utf-8")
         days, old = _DAYS.search(text), _SUPERSEDED.search(text)
         mark = ""
         if old:
-            by = Path(name).parent / old[3]
-            mark = f"superseded on {old[1]} by [{plain(old[2])}]({by.as_posix()})"
+            by = os.path.normpath(Path(name).parent / old[3])
+            mark = f"on {old[1]} by [{plain(old[2])}]({by})"
         link = f"[{plain(title(root / name))}]({name})"
-        found.append((link, days[1] if days else "", mark))
-    yield from sorted(found, key=lambda row: (bool(row[2]), row[0].lower()))
+        found.append((link, mark, days[1] if days else ""))
+    yield from sorted(found, key=lambda row: (bool(row[1]), row[0].lower()))
