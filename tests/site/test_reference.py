@@ -16,6 +16,7 @@ from pydantic import BaseModel, Field
 from site_pages import (
     c_headers,
     commands,
+    decisions,
     faults,
     file_keys,
     fmus,
@@ -295,6 +296,30 @@ def test_links_lead_to_pages_and_listings(tmp_path: Path) -> None:
     assert "[folder](a/README.md#b)" in found and "[gone](c.md)" in found
     assert '<a class="listing" href="files/a/code.c.html">code</a>' in found
     assert staged.listed == {"a/code.c"} and "```\n[folder](a)\n```" in found
+
+
+def test_decisions_are_listed_by_subject_and_superseded_ones_last(tmp_path: Path) -> None:
+    folder = tmp_path / "docs/decisions/roads"
+    folder.mkdir(parents=True)
+    subject = "| [roads](docs/decisions/roads) | Where cars go. |\n"
+    (tmp_path / "DESIGN.md").write_text(subject + subject.replace("roads", "rails"))
+    old = "*Decided 2026-11-21.*\n\n*Superseded on 2026-11-22 by [Right](../rails/right.md)*\n"
+    (folder / "left.md").write_text(f"# Left\n\n{old}")
+    (folder / "signs.md").write_text("# Signs\n\n*Decided 2026-11-22; changed 2026-11-24.*\n")
+    pages = [f"docs/decisions/roads/{name}.md" for name in ("left", "signs")]
+    text = decisions.page(tmp_path, pages)
+    assert rows(text)[2:] == [
+        ["[Signs](docs/decisions/roads/signs.md)", "", "2026-11-22; changed 2026-11-24"],
+        [
+            "[Left](docs/decisions/roads/left.md)",
+            "on 2026-11-22 by [Right](docs/decisions/rails/right.md)",
+            "2026-11-21",
+        ],
+    ]
+    assert text.index("## roads\n\nWhere cars go.") < text.index("Signs") < text.index("## rails")
+    staged = staging.Staged(tmp_path, tmp_path / "out", ["DESIGN.md", *pages])
+    found = staging.rewritten("[rails](../rails)", pages[0], staged)
+    assert found == "[rails](../../../decisions.md#rails)\n"
 
 
 def test_what_a_cell_says_is_no_markup() -> None:

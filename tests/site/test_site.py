@@ -30,6 +30,8 @@ LOOKED_AT = (
     "gallery",
     "README",
     "DESIGN",
+    "decisions",
+    "docs/decisions/motion/short-lines",
     "cores",
     "fmus",
     "reference/commands",

@@ -6,6 +6,7 @@ from pathlib import Path
 from site_pages import (
     c_headers,
     commands,
+    decisions,
     faults,
     file_keys,
     fmus,
@@ -14,7 +15,7 @@ from site_pages import (
     tutorials,
 )
 from site_pages.markdown import code, plain, table, toctree
-from site_pages.staging import Staged, index, rewritten, write
+from site_pages.staging import DECISIONS, Staged, index, rewritten, write
 
 # By where pages stand: name, heading and first words of a section. The first that fits counts.
 SECTIONS = (
@@ -34,10 +35,11 @@ SECTIONS = (
         "One for each kind of user; each is a notebook, too.",
     ),
     ("docs/how-to/", "how_to", "How to", "One task a page."),
+    (f"{DECISIONS}/", "", "", ""),
     ("docs/", "words", "Words and tools", "The glossary, and other people's importers."),
     ("examples/", "examples", "Examples", "Small projects to copy; each builds by itself."),
     ("tests/", "tests", "Tests", "How things are held, and tools beside them."),
-    ("", "project", "Project", "Decisions, rules of work, changes."),
+    ("", "project", "Project", "Folders, rules of work, changes."),
 )
 
 
@@ -46,6 +48,7 @@ def write_all(staged: Staged) -> None:
     _write_fmus(staged)
     _write_gallery(staged)
     _write_notebooks(staged)
+    _write_decisions(staged)
     _write_indexes(staged)
     _write_reference(staged)
     here = Path(__file__).parent.parent
@@ -95,6 +98,11 @@ def _write_notebooks(staged: Staged) -> None:
         head, _, rest = (staged.folder / page).read_text(encoding="utf-8").partition("\n")
         link = f'<a href="../../notebooks/{name}" download>Take it as a notebook</a>'
         write(staged.folder / page, f"{head}\n\n{link}\n{rest}")
+
+
+def _write_decisions(staged: Staged) -> None:
+    text = decisions.page(staged.root, _of(f"{DECISIONS}/", staged.pages))
+    write(staged.folder / "decisions.md", text)
 
 
 def _write_indexes(staged: Staged) -> None:

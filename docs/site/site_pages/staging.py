@@ -15,6 +15,7 @@ OUTSIDE = re.compile(r"[a-z]+:|#")
 PICTURES = {".png", ".svg", ".jpg", ".gif"}
 # Folders whose Markdown is the project's; what lies at the root is taken by its name.
 FOLDERS = ("docs", "examples", "fmus", "modelica", "scenarios", "src", "tests")
+DECISIONS = "docs/decisions"  # one folder for each subject
 AT_ROOT = ("README.md", "DESIGN.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
@@ -78,6 +79,8 @@ def _link(match: re.Match[str], name: str, staged: Staged) -> str:
         if file.is_file():
             shutil.copyfile(file, copied)
         return f"![{words}]({address})"
+    if Path(there).parent.as_posix() == DECISIONS:  # a subject: its part of the list of decisions
+        return f"[{words}]({'../' * name.count('/')}decisions.md#{Path(there).name})"
     if file.is_dir() and (file / "README.md").is_file():
         return f"[{words}]({path.rstrip('/')}/README.md{'#' * bool(place)}{place})"
     if there in staged.pages or not file.exists():

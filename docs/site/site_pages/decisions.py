@@ -1,0 +1,47 @@
+"""The page that lists all decisions by subject, with their days."""
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from site_pages.markdown import plain, table, toctree
+from site_pages.staging import DECISIONS, title
+
+_SUBJECT = re.compile(rf"^\| \[([a-z-]+)\]\({DECISIONS}/\1\) \| (.+) \|$", re.MULTILINE)
+_DAYS = re.compile(r"^\*Decided ([^*]+)\.\*$", re.MULTILINE)
+_SUPERSEDED = re.compile(
+    r"^\*Superseded on ([\d-]+) by \[([^\]]+)\]\(([^)\s]+)\)\.?\*$", re.MULTILINE
+)
+
+
+def subjects(root: Path) -> dict[str, str]:
+    """What each subject decides about, by the name of its folder, in DESIGN.md's order."""
+    return dict(_SUBJECT.findall((root / "DESIGN.md").read_text(encoding="utf-8")))
+
+
+def page(root: Path, pages: list[str]) -> str:
+    """The list of decisions: a heading for each subject, a row for each page."""
+    parts = [
+        "# Decisions\n\n[How the project is laid out](DESIGN.md), and why each thing is as it is."
+    ]
+    for subject, about in subjects(root).items():
+        found = [p for p in pages if p.startswith(f"{DECISIONS}/{subject}/")]
+        rows = table(("page", "superseded", "decided"), _rows(root, found)) if found else ""
+        parts.append(f"## {subject}\n\n{about}\n\n{rows}")
+    return "\n\n".join([*parts, toctree(pages)])
+
+
+def _rows(root: Path, pages: list[str]) -> Iterator[tuple[str, str, str]]:
+    """Title, what supersedes it and days, sorted by title; superseded ones are last."""
+    found = []
+    for name in pages:
+        text = (root / name).read_text(encoding="utf-8")
+        days, old = _DAYS.search(text), _SUPERSEDED.search(text)
+        mark = ""
+        if old:
+            by = os.path.normpath(Path(name).parent / old[3])
+            mark = f"on {old[1]} by [{plain(old[2])}]({by})"
+        link = f"[{plain(title(root / name))}]({name})"
+        found.append((link, mark, days[1] if days else ""))
+    yield from sorted(found, key=lambda row: (bool(row[1]), row[0].lower()))

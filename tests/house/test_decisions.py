@@ -1,0 +1,142 @@
+"""Each page of docs/decisions has its form: title, days, one screen, short sentences, links."""
+
+import re
+from datetime import date
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+FOLDER = ROOT / "docs/decisions"
+PAGES = sorted(FOLDER.glob("*/*.md"))
+MOST_LINES = 60  # of a page, one screen
+MOST_COLUMNS = 100  # of a line outside tables
+MOST_WORDS = 40  # of a sentence
+DAY = r"(\d{4}-\d\d-\d\d)"
+DECIDED = re.compile(rf"\*Decided {DAY}(?:; changed {DAY})?\.\*")
+SUPERSEDED = re.compile(rf"\*Superseded on {DAY} by \[[^\]]+\]\(([^)#\s]+)(?:#[^)\s]+)?\)\.?\*")
+LINK = re.compile(r"\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
+
+
+def sentences(text: str) -> list[str]:
+    """Sentences of a page's prose: no headings, tables or blocks of code."""
+    text = re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
+    text = re.sub(r"^\|.*$", "", text, flags=re.MULTILINE)
+    found = []
+    for paragraph in re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )", text):
+        if not paragraph.lstrip().startswith("#"):
+            prose = LINK.sub(r"\1", " ".join(paragraph.split()))
+            prose = re.sub(r"`[^`]*`", "code", prose).replace("*", "")
+            found += re.split(r"(?<=[.?!])\s+", prose.removeprefix("- "))
+    return [sentence for sentence in found if sentence]
+
+
+def words(sentence: str) -> int:
+    """Number of words of a sentence: what has a letter or a digit."""
+    return sum(any(c.isalnum() for c in word) for word in sentence.split())
+
+
+def faults(text: str, folder: Path) -> list[str]:
+    """What is wrong with the form of a page that stands in a folder."""
+    lines = text.splitlines()
+    head = [line for line in lines[:6] if line]
+    found = []
+    if not lines[0].startswith("# ") or lines[0].endswith("."):
+        found.append(f"line 1: no title: {lines[0]}")
+    found += _wrong_days(head[1:3])
+    if len(lines) > MOST_LINES:
+        found.append(f"{len(lines)} lines; {MOST_LINES} are one screen")
+    found += [
+        f"line {number}: {len(line)} columns; {MOST_COLUMNS} at most"
+        for number, line in enumerate(lines, 1)
+        if len(line) > MOST_COLUMNS and not line.startswith("|")
+    ]
+    if not any(line.startswith("## ") for line in lines):
+        found.append("no heading above the decisions")
+    found += [
+        f"{words(sentence)} words; {MOST_WORDS} at most: {sentence}"
+        for sentence in sentences(text)
+        if words(sentence) > MOST_WORDS
+    ]
+    return found + _dead_links(text, folder)
+
+
+def _dead_links(text: str, folder: Path) -> list[str]:
+    return [
+        f"leads nowhere: {address}"
+        for _, address in LINK.findall(re.sub(r"`[^`]*`", "", text))
+        if not re.match(r"[a-z]+:|#", address) and not (folder / address.partition("#")[0]).exists()
+    ]
+
+
+def _wrong_days(head: list[str]) -> list[str]:
+    decided = next((m for line in head if (m := DECIDED.fullmatch(line))), None)
+    if decided is None:
+        return ["no line '*Decided DAY.*' or '*Decided DAY; changed DAY.*' below the title"]
+    first, *later = (date.fromisoformat(day) for day in decided.groups() if day)
+    found = [f"changed {day}, not after {first}" for day in later if day <= first]
+    for line in head:
+        if line.startswith("*Superseded"):
+            by = SUPERSEDED.fullmatch(line)
+            if by is None or not by[2].endswith(".md"):
+                found.append(f"no day and page: {line}")
+            elif date.fromisoformat(by[1]) < first:
+                found.append(f"superseded on {by[1]}, before {first}")
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: f"{page.parent.name}/{page.stem}")
+def test_a_page_has_its_form(page: Path) -> None:
+    """A page is one screen that a reader of its subject understands and that leads on."""
+    assert faults(page.read_text(encoding="utf-8"), page.parent) == []
+
+
+def test_titles_are_of_one_page() -> None:
+    """A page is found by its title, so no two have the same."""
+    titles = [page.read_text(encoding="utf-8").partition("\n")[0] for page in PAGES]
+    assert sorted(set(titles)) == sorted(titles)
+
+
+def test_every_subject_stands_in_the_table() -> None:
+    """DESIGN.md says of each folder of pages what it decides, and links it."""
+    table = (ROOT / "DESIGN.md").read_text(encoding="utf-8")
+    subjects = {page.parent.name for page in PAGES}
+    assert len(subjects) > 5
+    for subject in subjects:
+        assert f"| [{subject}](docs/decisions/{subject}) | " in table, subject
+
+
+GOOD = """# Side of the road
+
+*Decided 2026-11-22; changed 2026-11-24.*
+
+On which side do cars drive?
+
+## Decided
+
+- **Cars drive on the right.** All neighbours do.
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "fault"),
+    [
+        ("# Side", "Side", "no title"),
+        ("changed 2026-11-24", "changed 2026-11-22", "not after"),
+        ("*Decided 2026-11-22; changed 2026-11-24.*", "In November.", "no line"),
+        ("## Decided\n\n", "", "no heading"),
+        ("All neighbours do.", "do so\n" * 20 + "always.", "words; 40"),
+        ("All neighbours do.", "`" + "x" * 100 + "`", "columns; 100"),
+        ("On which", "\n" * 60 + "On which", "lines; 60"),
+        ("All neighbours", "[All](nowhere.md) neighbours", "leads nowhere"),
+        ("\nOn which", "*Superseded on 2026-11-25 by [x](other.md)*\n\nOn which", "other.md"),
+        ("\nOn which", "*Superseded by another page.*\n\nOn which", "no day and page"),
+        ("\nOn which", "*Superseded on 2026-11-20 by [x](it.md)*\n\nOn which", "before 2026-11-22"),
+    ],
+)
+def test_a_wrong_form_is_told(old: str, new: str, fault: str, tmp_path: Path) -> None:
+    """Each rule finds the page that breaks it, and nothing else is wrong with that page."""
+    (tmp_path / "it.md").write_text(GOOD, encoding="utf-8")
+    assert faults(GOOD, tmp_path) == []
+    (told,) = faults(GOOD.replace(old, new), tmp_path)
+    assert fault in told
