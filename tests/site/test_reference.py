@@ -308,12 +308,16 @@ def test_decisions_are_listed_by_subject_and_superseded_ones_last(tmp_path: Path
     (folder / "signs.md").write_text("# Signs\n\n*Decided 2026-11-22; changed 2026-11-24.*\n")
     pages = [f"docs/decisions/roads/{name}.md" for name in ("left", "signs")]
     text = decisions.page(tmp_path, pages)
+
+    def day(number: int) -> str:
+        return f'<span class="day">2026-11-{number}</span>'
+
     assert rows(text)[2:] == [
-        ["[Signs](docs/decisions/roads/signs.md)", "", "2026-11-22; changed 2026-11-24"],
+        ["[Signs](docs/decisions/roads/signs.md)", "", f"{day(22)}; changed {day(24)}"],
         [
             "[Left](docs/decisions/roads/left.md)",
             "on 2026-11-22 by [Right](docs/decisions/rails/right.md)",
-            "2026-11-21",
+            day(21),
         ],
     ]
     assert text.index("## roads\n\nWhere cars go.") < text.index("Signs") < text.index("## rails")

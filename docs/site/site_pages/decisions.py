@@ -32,6 +32,11 @@ def page(root: Path, pages: list[str]) -> str:
     return "\n\n".join([*parts, toctree(pages)])
 
 
+def _whole(text: str) -> str:
+    """A text whose days are not broken at the end of a line."""
+    return re.sub(r"\d{4}-\d\d-\d\d", r'<span class="day">\g<0></span>', text)
+
+
 def _rows(root: Path, pages: list[str]) -> Iterator[tuple[str, str, str]]:
     """Title, what supersedes it and days, sorted by title; superseded ones are last."""
     found = []
@@ -43,5 +48,5 @@ def _rows(root: Path, pages: list[str]) -> Iterator[tuple[str, str, str]]:
             by = os.path.normpath(Path(name).parent / old[3])
             mark = f"on {old[1]} by [{plain(old[2])}]({by})"
         link = f"[{plain(title(root / name))}]({name})"
-        found.append((link, mark, days[1] if days else ""))
+        found.append((link, mark, _whole(days[1]) if days else ""))
     yield from sorted(found, key=lambda row: (bool(row[1]), row[0].lower()))
