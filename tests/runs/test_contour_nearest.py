@@ -89,6 +89,18 @@ def test_feet_on_many_segments_are_those_on_each(seed, segments) -> None:
     assert path.lengths == pytest.approx([s.length for s in path.segments], rel=1e-14)
 
 
+@settings(max_examples=40)
+@given(st.integers(0, 2**32), st.sampled_from([1, 7, 400]))
+def test_distances_alone_have_the_bits_of_the_feet(seed: int, run: int) -> None:
+    """Of points one by one on segments at random, and of long runs on one segment each."""
+    rng = np.random.default_rng(seed)
+    segments = wild(rng, 12).segments
+    which = np.repeat(rng.integers(0, len(segments), 9), run)
+    points = rng.normal(size=(len(which), 3)) * 10.0 ** rng.uniform(-2, 1)
+    wanted = segments.foot(points, which).distance
+    assert segments.distances(points, which).tobytes() == wanted.tobytes()
+
+
 def test_no_two_points_of_a_path_are_farther_apart_than_the_way_between() -> None:
     rng = np.random.default_rng(3)
     path = wild(rng, 60)

@@ -7,6 +7,7 @@ import pytest
 from conftest import ROOT
 
 import motionfmu
+from motionfmu.base.columns import Columns
 from motionfmu.base.errors import InputError
 from motionfmu.run.result import Result
 from motionfmu.run.session import Session
@@ -101,6 +102,52 @@ def test_runs_that_cannot_begin_leave_the_others_whole(
     found = session.run_together(given)
     assert "outside 0 .. 65535" in str(found[0]) and "none.ngc" in str(found[2])
     assert same(bits(found[1]), each[1]) and same(bits(found[3]), each[3])
+
+
+CUTS = [{"mcc.p_gain": g, "drives.velocity_gain": 0.5 + 0.001 * g} for g in range(100, 900, 100)]
+LONG = 1.5  # [s] so long that signals of a run by itself have files, with much of the first circle
+
+
+@pytest.fixture(scope="module")
+def by_files() -> list[str]:
+    """The contour's numbers of each run by itself."""
+    found = []
+    for given in CUTS:
+        ran = motionfmu.load(CIRCLE).run(set=given, stop=LONG)
+        assert isinstance(ran.signals, Columns)
+        found.append(str(ran.contour().numbers()))
+    assert len(set(found)) == len(CUTS)
+    return found
+
+
+@pytest.mark.parametrize("width", [1, 2, 4, 8])
+def test_the_contour_in_memory_is_the_one_by_way_of_files(width: int, by_files: list[str]) -> None:
+    with Session(motionfmu.load(CIRCLE), CUTS[0], stop=LONG) as made:
+        found: list[str] = []
+        for first in range(0, len(CUTS), width):
+            for ran in made.run_together(CUTS[first : first + width]):
+                assert isinstance(ran, Result) and isinstance(ran.signals, dict)
+                found.append(str(ran.contour().numbers()))
+    assert found == by_files
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_an_instance_serves_the_next_run_unless_its_run_failed(fmi: int) -> None:
+    """A run behind another one has the bits of a first one, and messages of its own."""
+    scenario = motionfmu.load(CIRCLE)
+    with Session(scenario, NAMES, stop=0.05, fmi=fmi) as made:
+        (library,) = made._engine._libraries  # type: ignore[attr-defined]
+        first = alone(made, GIVEN[0])
+        address = library.instance.value
+        for given in (GIVEN[5], GIVEN[1]):
+            assert not same(alone(made, given), first)
+            assert library.instance.value == address
+        assert same(alone(made, GIVEN[0]), first)
+        for _ in range(2):
+            assert "outside 0 .. 65535" in str(alone(made, {"mcc.p_gain": -5}))
+            assert "machine: axis 2: rotor.angle is nan" in str(alone(made, THROWN))
+            assert not library.instance
+        assert same(alone(made, GIVEN[0]), first)
 
 
 def test_runs_end_behind_their_own_signals() -> None:

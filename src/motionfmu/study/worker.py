@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from typing import Any
 
+from motionfmu.base import heap
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.run import load, machine
 from motionfmu.run.result import Result
@@ -135,6 +136,7 @@ def main(pipe: int) -> None:
     side by side, or an error, then lists of rows.
     """
     signal.signal(signal.SIGTERM, lambda *_: sys.exit())  # files are removed on the way out
+    heap.keep_freed()
     with Connection(pipe) as connection:
         try:
             worker = Worker(connection.recv())

@@ -33,6 +33,17 @@ class Foot:
 
 
 @dataclass(frozen=True, eq=False)
+class _Ray:
+    """Directions from the axes of circles to the nearest points, in the arcs' own frames."""
+
+    angle: Array  # (n,) from the start [rad]
+    x: Array  # (n,) of the unit vector
+    y: Array
+    zero: Array  # (n,) its height
+    distance: Array  # (n,) of the query points to the nearest ones [mm]
+
+
+@dataclass(frozen=True, eq=False)
 class Arcs:
     """One arc for all points, or one for each of n: then every field has n rows.
 
@@ -106,6 +117,10 @@ class Arcs:
                 getattr(found, name)[rows] = getattr(part, name)
         return found
 
+    def distances(self, points: Array) -> Array:
+        """Distance (n,) of each of the points (n, 3), as `foot` gives it [mm]."""
+        return self._ray(points).distance if self.flat.all() else self.foot(points).distance
+
     def _frame(self, points: Array) -> tuple[Array, Array, Array]:
         """Points in the arc's own frame."""
         # Sums of three products: matrix products of a library with threads would be slower.
@@ -142,7 +157,14 @@ class Arcs:
         return first, (-2.0 * g * s - radius * c, 2.0 * g * c - radius * s, 0.0 * c)
 
     def _foot_flat(self, points: Array) -> Foot:
-        """Nearest points on parts of circles: radially, or at the nearer end."""
+        """Nearest points on parts of circles."""
+        ray = self._ray(points)
+        u, v, zero = ray.x, ray.y, ray.zero
+        point = self._placed(self.radius * u, self.radius * v, zero)
+        return Foot(point, ray.angle * self.radius, ray.distance, self._turned(-v, u, zero))
+
+    def _ray(self, points: Array) -> _Ray:
+        """Where the nearest points on parts of circles are: radially, or at the nearer end."""
         x, y, z = self._frame(points)
         size = np.sqrt(x * x + y * y)
         middle = size == 0.0  # a point on the axis is as far from all points: the start is taken
@@ -159,10 +181,7 @@ class Arcs:
             v = np.where(inside, v, np.where(ended, np.sin(self.angle), 0.0))
             gap = np.hypot(x - self.radius * u, y - self.radius * v)
             off = np.where(inside, off, gap)
-        distance = np.sqrt(off * off + z * z)
-        zero = 0.0 * z
-        point = self._placed(self.radius * u, self.radius * v, zero)
-        return Foot(point, angle * self.radius, distance, self._turned(-v, u, zero))
+        return _Ray(angle, u, v, 0.0 * z, np.sqrt(off * off + z * z))
 
     def _foot_turned(self, points: Array) -> Foot:
         """Nearest points on helices and growing arcs: the best of local minima and ends."""

@@ -78,7 +78,7 @@ def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]
     for begin in range(0, len(rows), BLOCK):
         own = rows[begin : begin + BLOCK]
         part = places(points, own)
-        one, other = (path.segments.foot(part, s[own]).distance for s in segments)
+        one, other = (path.segments.distances(part, s[own]) for s in segments)
         good[begin : begin + BLOCK] = other <= one + 2.0 * SAME
     return good
 
@@ -146,7 +146,7 @@ class _Search:
 
     def look(self, rows: Index, segment: Index) -> None:
         """Compare some of the points with a segment."""
-        distance = self.path.segments.foot(self.points[rows], segment).distance
+        distance = self.path.segments.distances(self.points[rows], segment)
         best, room = self.best[rows], self.room[rows]
         near = distance <= best + room
         if not near.any():
@@ -193,9 +193,9 @@ def _solved(points: Array, path: Path, candidates: tuple[Index, Index], alone: I
     distances, ``C(s, t) = D(t) + min over u <= t of (M(u - 1) - D(u - 1))``, where M is the least C
     of all earlier segments: one running minimum per segment.
     """
-    foot = path.segments.foot
-    single = foot(points, alone).distance
-    trial = foot(points, np.maximum.accumulate(alone)).distance
+    distances = path.segments.distances
+    single = distances(points, alone)
+    trial = distances(points, np.maximum.accumulate(alone))
     slack = float(np.sum(np.maximum(trial**2 - single**2, 0.0)))
     slack += 2.0 * SAME * float(np.sum(trial + SAME))
     low, high = nearest(points, path, candidates, np.sqrt(single**2 + slack) - single + SAME)
@@ -208,7 +208,7 @@ def _solved(points: Array, path: Path, candidates: tuple[Index, Index], alone: I
         a, b = int(np.searchsorted(high, s)), int(np.searchsorted(low, s, side="right"))
         if a >= b:
             continue
-        square = foot(points[a:b], np.full(b - a, s)).distance ** 2
+        square = distances(points[a:b], np.full(b - a, s)) ** 2
         total = np.cumsum(square)
         enter = np.concatenate([[0.0 if a == 0 else least[a - 1]], least[a : b - 1]])
         enter = enter - (total - square)

@@ -148,10 +148,7 @@ class Segments(Sequence[Segment]):
 
     def foot(self, points: Array, which: Index) -> Foot:
         """Nearest point to each of the points (n, 3) [mm] on the segment of its number (n,)."""
-        cuts = np.flatnonzero(which[1:] != which[:-1]) + 1
-        if len(which) and RUN * (len(cuts) + 1) <= len(which):
-            ends = [0, *cuts.tolist(), len(which)]
-            parts = [self[int(which[a])].foot(points[a:b]) for a, b in pairwise(ends)]
+        if parts := [self[int(which[a])].foot(points[a:b]) for a, b in _long_runs(which)]:
             return parts[0] if len(parts) == 1 else _joined(parts)
         shapes = self.columns.shape[which]
         if (shapes == LINE).all():
@@ -161,6 +158,25 @@ class Segments(Sequence[Segment]):
             rows = np.flatnonzero(shapes == shape)
             if len(rows):
                 _put(found, rows, foot(points[rows], which[rows]))
+        return found
+
+    def distances(self, points: Array, which: Index) -> Array:
+        """Distance (n,) of each of the points from its segment, as `foot` gives it [mm]."""
+        shapes = self.columns.shape[which]
+        if not (shapes == ARC).any():
+            return self.foot(points, which).distance
+        found = np.empty(len(points))
+        if ends := _long_runs(which):
+            for a, b in ends:
+                found[a:b] = _distances(self[int(which[a])], points[a:b])
+            return found
+        for shape in (LINE, ARC, CUBIC):
+            rows = np.flatnonzero(shapes == shape)
+            part, own = points[rows], which[rows]
+            if shape == ARC:
+                found[rows] = self.arcs[self.place[own]].distances(part)
+            elif len(rows):
+                found[rows] = self.foot(part, own).distance
         return found
 
     def _on_lines(self, points: Array, which: Index) -> Foot:
@@ -196,6 +212,19 @@ class Segments(Sequence[Segment]):
             rows = np.flatnonzero(which == i)
             found[rows] = c.curves[i].at(along[rows])
         return found
+
+
+def _long_runs(which: Index) -> list[tuple[int, int]]:
+    """First and last row + 1 of each run of equal numbers (n,); empty if most runs are short."""
+    cuts = np.flatnonzero(which[1:] != which[:-1]) + 1
+    many = not len(which) or RUN * (len(cuts) + 1) > len(which)
+    return [] if many else [*pairwise([0, *cuts.tolist(), len(which)])]
+
+
+def _distances(segment: Segment, points: Array) -> Array:
+    if isinstance(segment, Arc):
+        return segment.own.distances(points)
+    return segment.foot(points).distance
 
 
 def _put(found: Foot, rows: Index, part: Foot) -> None:

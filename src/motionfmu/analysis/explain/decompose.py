@@ -315,7 +315,7 @@ def _blended(run: "ContourResult") -> Array:
     """Contour error of the pulses; where they blend two moves, that from the nearer one."""
     track, segments = run.command_track, run.run.path.segments
     after = np.minimum(track.segment + 1, len(segments) - 1)
-    there = segments.foot(run.run.commanded[:, :3], after).distance
+    there = segments.distances(run.run.commanded[:, :3], after)
     distance = np.minimum(track.distance, there)
     return distance if track.signed is None else np.copysign(distance, track.signed)
 

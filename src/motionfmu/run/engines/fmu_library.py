@@ -92,16 +92,17 @@ class Library:
     ) -> None:
         """Make a new instance in the place of an older one; it logs errors, or everything."""
         self.release()
+        self.listen(log)
         texts: list[Any] = [text.encode() for text in (name, token)]
         rest: tuple[Any, ...]
         off, nothing = c_bool(False), c_void_p()
         if self.fmi == 3:
-            self._log: Any = _LOG3(lambda _, status, __, text: log(status, read(text)))
+            self._log: Any = _LOG3(lambda _, status, __, text: self._tell(status, read(text)))
             make, given = self.function("InstantiateCoSimulation"), f"{resources}/".encode()
             told = (off, c_bool(everything), off, off)
             rest = (*told, nothing, c_size_t(0), nothing, self._log, nothing)
         else:
-            self._log = BindingLog.to(log)
+            self._log = BindingLog.to(lambda status, text: self._tell(status, text))
             self._callbacks = self._log.callbacks()
             make, given = self.function("Instantiate"), resources.as_uri().encode()
             texts.insert(1, c_int(1))  # for co-simulation
@@ -110,6 +111,14 @@ class Library:
         self.instance = c_void_p(make(*texts, given, *rest))
         if not self.instance:
             raise FmuRefusal("instantiate")
+
+    def listen(self, log: Log) -> None:
+        """Pass the messages of the instance to a log from now on."""
+        self._tell = log
+
+    def reset(self) -> None:
+        """Bring the instance back to where it was made; its files are closed."""
+        self.call("Reset")
 
     def warn(self) -> None:
         """Let one of our FMUs log its warnings as well as its errors."""
