@@ -99,11 +99,8 @@ def of_markdown(text: str) -> Iterator[Sentence]:
     for token in MarkdownIt("commonmark").enable("table").parse(kept):
         if token.type in ("heading_open", "th_open", "td_open", "paragraph_open"):
             within = token.type
-        elif token.type == "tr_open" and token.map:
-            row = token.map[0]
-        elif token.type == "inline":
-            first = token.map[0] if token.map else row
-            yield from sentences(plain(token), first + 1, within == "paragraph_open")
+        elif token.type == "inline" and token.map:
+            yield from sentences(plain(token), token.map[0] + 1, within == "paragraph_open")
 
 
 def first_sentence(doc: str, line: int) -> Iterator[Sentence]:

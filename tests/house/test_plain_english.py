@@ -73,6 +73,10 @@ def test_docstrings_and_helps_are_read() -> None:
     ]
 
 
+def test_of_a_docstring_only_the_first_sentence_counts() -> None:
+    assert not plain_english.breaks("a.py", f'"""{SHORT} {LONG}"""')
+
+
 def test_comments_of_headers_are_read() -> None:
     text = f"/* {SHORT} */\nint x; /* {LONG} */\n\n/* {LONG[:60]}\n * {LONG[60:]}\n */\n"
     assert [said.split(": ")[0] for said in plain_english.breaks("a.h", text)] == ["a.h:4"]
