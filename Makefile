@@ -65,11 +65,12 @@ sanitized: build                ## C tests and fuzz harnesses with AddressSaniti
 	@test -f build/asan/build.ninja || cmake --preset asan -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python > /dev/null
 	@cmake --build build/asan $(QUIET)
 
-check: needs .venv/installed          ## formatting, lint, types
+check: needs .venv/installed          ## formatting, lint, types, plain sentences
 	git ls-files '*.c' '*.h' '*.inc' | xargs $(BIN)/clang-format --dry-run --Werror
 	$(BIN)/ruff format --check src tests scenarios docs
 	$(BIN)/ruff check src tests scenarios docs
 	$(BIN)/mypy
+	$(BIN)/python tests/helpers/plain_english.py
 
 bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures
 	@cmake --build build --target fused_circle fused_six_axes count_here card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch

@@ -100,7 +100,8 @@ void card_job_slept(struct netcard *c);
 
 /* Homing, in the order of its steps: lower the priority of the task; clear the FIFO; begin the
  * search; true if the FIFO has frames enough; write the next frame, with which the player is let go
- * if `goes`; true if all origins were found, else the state is FAULT; raise the priority again. */
+ * if `goes`. Then true if all origins were found, else the state is FAULT; raise the priority
+ * again. */
 void card_home_lower(struct netcard *c);
 void card_home_clear(struct netcard *c);
 void card_home_begin(struct netcard *c);

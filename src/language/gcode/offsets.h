@@ -38,7 +38,7 @@ enum fault offsets_select(struct interpreter *in, const struct block *b, struct 
 int offsets_axis(bool angles, int letter);
 
 /* Value of a numbered parameter, in mm and degrees: from 5161 on the point of G28, from 5181 on
- * that of G30; 5210: the shift is in force, from 5211 on the shift; 5220: number of the system,
+ * that of G30; 5210: the shift is in force, from 5211 on the shift. 5220: number of the system,
  * from 5221 on the origins, 20 numbers apart, and behind the nine axes of each its turn; on Fanuc's
  * controls from 7001 and 14001 on origins of G54.1. False: it is none of these. */
 bool offsets_parameter(const struct interpreter *in, const struct program *p, int number,

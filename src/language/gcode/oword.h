@@ -61,8 +61,8 @@ void oword_label(char label[OWORD_LABEL], int32_t number);
 enum fault oword_alone(struct reading *s);
 
 /* Search a file from *place on for the first line with this label and one of `words` (bits).
- * *place becomes that of the line, and *is its word. *is is 0 if there is none in front of the end,
- * or of a line with a word of `stop` (sub, endsub, with any label). */
+ * It sets *place to that line and *is to its word. Without one in front of the end, or of a line
+ * with a word of `stop` (sub, endsub, with any label), *is becomes 0. */
 enum fault oword_seek(const struct program *p, const char *file, const char *label, int32_t words,
                       int32_t stop, struct oword_place *place, int32_t *is);
 

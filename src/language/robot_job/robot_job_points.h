@@ -80,7 +80,7 @@ int robot_job_points_read(struct robot_job_points *p, enum robot_job_outside out
 
 enum { ROBOT_JOB_POINT_TEXT = 256 };
 
-/* Write the line of one point, without a line end, to 1e-6 mm and deg: a point that was read from
+/* Write the line of one point, without a line end, to 1e-6 mm and deg. A point that was read from
  * at most six decimals is read again as the same bits. -1, and nothing written: a value or the
  * number is out of the reader's range or not finite. */
 int robot_job_point_write(int32_t number, const struct robot_job_point *p,

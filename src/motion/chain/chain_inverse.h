@@ -29,8 +29,8 @@ uint32_t chain_inverse_held(const struct chain_form *f, const struct chain_pose 
                             double joint[CHAIN_BRANCHES][CHAIN_JOINTS]);
 
 /* The branch whose joints, by whole turns and within their limits, are nearest to near[] in the
- * joint that differs most (a turning one in rad, a sliding one in lengths of the arm); its joints.
- * -1: none is within the limits. */
+ * joint that differs most (a turning one in rad, a sliding one in lengths of the arm). Gives its
+ * joints. -1: none is within the limits. */
 int chain_nearest(const struct chain_form *f, uint32_t branches,
                   const double all[CHAIN_BRANCHES][CHAIN_JOINTS], const double near[CHAIN_JOINTS],
                   const double low[CHAIN_JOINTS], const double high[CHAIN_JOINTS],
@@ -45,8 +45,9 @@ int chain_factors(const struct chain_form *f, const double joint[CHAIN_JOINTS], 
 int chain_branch(const struct chain_form *f, const double joint[CHAIN_JOINTS]);
 
 /* Angle [rad] of the elbow of an arm of kind CHAIN_SHOULDER_WRIST about the line from its shoulder
- * to its wrist, from a direction that is undefined only where the wrist is straight below the
- * shoulder, seen along axis 1 (Elias and Wen 2024, stereographic shoulder-elbow-wrist angle). */
+ * to its wrist. It counts from a direction that is undefined only where the wrist is straight
+ * below the shoulder, seen along axis 1 (Elias and Wen 2024, stereographic shoulder-elbow-wrist
+ * angle). */
 double chain_arm_angle(const struct chain_form *f, const double joint[CHAIN_JOINTS]);
 
 #endif

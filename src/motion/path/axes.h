@@ -38,7 +38,7 @@ struct axes {
 };
 
 /* Limits of an axis for motion at a speed [mm/s], at no ratio above a cap, with ramps up and down.
- * scurve has one jerk: of both ramps the smaller is taken, so that one without limit beside one
+ * An S-curve has one jerk, the smaller of both ramps', so that one without limit beside one
  * with is rounded too. */
 struct axes_limits axes_limits_of(const struct ramp_rule *up, const struct ramp_rule *down,
                                   double speed, double cap);

@@ -21,9 +21,9 @@ extern const double SCURVE_LEG_JERK[SCURVE_LEG_PHASES];
 /* The leg seen in the direction sign, 1 or -1. */
 struct scurve_leg scurve_leg_seen(const struct scurve_leg *l, double sign);
 
-/* Phases (jerk, time) that bring a, then if `speed` v, within the limits; moves the start of the
- * leg to their end. v is brought back as fast as possible, but not so that it would leave the
- * limits at the other side. */
+/* Phases (jerk, time) that bring a, then if `speed` v, within the limits; they move the start
+ * of the leg to their end. The speed v is brought back as fast as possible, but not so that it
+ * would leave the limits at the other side. */
 void scurve_leg_brake(struct scurve_leg *l, int speed, double jerk[SCURVE_LEG_BRAKES],
                       double t[SCURVE_LEG_BRAKES]);
 

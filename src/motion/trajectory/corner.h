@@ -22,9 +22,9 @@ struct corner {
 };
 
 /* Largest curve that stays within a tolerance [mm] of both paths and takes no more than `room`
- * [mm] of either, and of an arc no more than half a radian, so that one that is small against the
- * tolerance is still driven. `round`: also join paths of different curvature that touch smoothly.
- * False, and no curve, if the paths meet at an angle and the tolerance allows none. */
+ * [mm] of either. Of an arc it takes no more than half a radian, so that one that is small against
+ * the tolerance is still driven. `round`: also join paths of different curvature that touch
+ * smoothly. False, and no curve, if the paths meet at an angle and the tolerance allows none. */
 bool corner_make(struct corner *k, const struct path *a, const struct path *b, double tolerance,
                  double room, bool round);
 
