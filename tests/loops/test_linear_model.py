@@ -290,6 +290,15 @@ def test_a_changed_gain_keeps_the_plant() -> None:
     assert heavier.at == axis.at
 
 
+@pytest.mark.parametrize("speed", [0.0471746, 0.05, 0.123456789, 0.3])
+def test_a_force_between_what_moves_alike_does_not_grow(speed: float) -> None:
+    """Its rate is a difference of equal speeds, of which rounding is left."""
+    axis = linear.model(ROOT / "scenarios/square", at={"machine.table_speed": speed})
+    rates = axis.points["machine"].rates
+    assert rates["screw_force"] == 0.0
+    assert rates["table_position"] == pytest.approx(speed, rel=1e-9)
+
+
 @pytest.mark.parametrize("name", PLANTS)
 def test_an_fmu_carries_the_equation_of_its_class(name: str) -> None:
     carried = law.carried(name)

@@ -207,8 +207,10 @@ class Linearised:
         values = dict(zip((d.name for d in ode.states), x.tolist(), strict=True))
         values |= dict(zip(inputs, u.tolist(), strict=True))
         values |= dict(zip(outputs, y.tolist(), strict=True))
-        rates = self.matrices(x, u, p)[2] @ self._moving(x, u, p)
-        rates = rates if stated else np.zeros(len(outputs))
+        moving, shows = self._moving(x, u, p), self.matrices(x, u, p)[2]
+        rates = shows @ moving if stated else np.zeros(len(outputs))
+        # Of a force between two that move alike, which is only rounding.
+        rates[np.abs(rates) <= _LASTING * (np.abs(shows) @ np.abs(moving))] = 0.0
         told = dict(zip(outputs, rates.tolist(), strict=True))
         return Point(x, u, values, dict(stated), told, left, lasts)
 
