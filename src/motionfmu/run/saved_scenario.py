@@ -14,6 +14,7 @@ from motionfmu.run.program_translation import GCODE
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import package_files, record_signals
 from motionfmu.scenarios.system import Resolver
+from motionfmu.scenarios.table_sources import OF_A_SIGNAL
 from motionfmu.scenarios.toml_text import document_lines
 
 
@@ -61,7 +62,7 @@ def record_file(resolver: Resolver) -> Path:
 
 def _tables(own: Mapping[str, Any], options: Options) -> dict[str, Any]:
     """The tables of a scenario that runs as these options say."""
-    tables = {k: v for k, v in own.items() if options.stop is None or k not in ("limit", "settle")}
+    tables = {k: v for k, v in own.items() if options.stop is None or k not in OF_A_SIGNAL}
     tables["set"] = {**own.get("set", {}), **options.set}
     given = {"stop": options.stop, "step": options.step}
     tables |= {k: v for k, v in given.items() if v is not None}

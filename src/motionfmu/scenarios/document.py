@@ -17,6 +17,7 @@ from motionfmu.scenarios.foreign import is_foreign
 from motionfmu.scenarios.patterns import spread
 from motionfmu.scenarios.table_sources import (
     ARRAYS,
+    OF_A_SIGNAL,
     Source,
     Sources,
     Tables,
@@ -155,7 +156,7 @@ def parsed(sources: list[Source], name: str = "") -> Document:
         except ValidationError:  # nothing is left to look at
             Faults(ordered(wrong, (s.name for s in sources))).tell()
             raise
-    if not damaged & {"stop", "fault", "limit", "settle"} and (told := _ending(body, places)):
+    if not damaged & {"stop", *OF_A_SIGNAL} and (told := _ending(body, places)):
         wrong += told
         damaged.add("stop")
     about = next((s.about for s in sources if s.about), name)
@@ -178,7 +179,7 @@ def _ending(body: Body, sources: Sources) -> list[str]:
         text = f"stop = {body.stop!r} is a signal: limit = seconds, the longest run, is missing"
         return [f"{_place(sources, '', 'stop')}: {text}"]
     found = []
-    for key in ("fault", "limit", "settle"):
+    for key in OF_A_SIGNAL:
         if isinstance(body.stop, float) and getattr(body, key) is not None:
             text = f"{key} goes with a stop that is a signal; stop = {body.stop:g} is a time"
             found.append(f"{_place(sources, '', key)}: {text}")

@@ -20,15 +20,15 @@ ARRAYS = ("axis", "drive", "figure", "waveform", "contrary")
 KEYED = {"drive": "input", "contrary": "off"}
 # Keys that say where tables come from, and are none of theirs.
 ORIGINS = ("extends", "without")
+# Keys that go with a stop that is a signal.
+OF_A_SIGNAL = ("fault", "limit", "settle")
 # What a machine does not say, for it has no job.
 NOT_OF_A_SCENARIO = ("drawing",)  # its program is a file that the controller reads
 NOT_OF_A_MACHINE = (
     "machine",
     "begin",
     "stop",
-    "fault",
-    "limit",
-    "settle",
+    *OF_A_SIGNAL,
     "drive",
     "expect",
     "contrary",
@@ -303,7 +303,7 @@ def _over(base: Tables, own: Mapping[str, Any], adds: bool) -> Tables:
     """Two tables merged key by key; None, which a program can give, takes a key away."""
     out = dict(base)
     if "stop" in own and not isinstance(own["stop"], str):  # the limit was that of a signal
-        out = {k: v for k, v in out.items() if k not in ("fault", "limit", "settle")}
+        out = {k: v for k, v in out.items() if k not in OF_A_SIGNAL}
     for name, value in own.items():
         if name not in ORIGINS:
             out[name] = _of_both(name, out.get(name), value, adds)
