@@ -6,34 +6,16 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
+from plain_english import LONGEST, of_markdown
 
 FOLDER = ROOT / "docs/decisions"
 PAGES = sorted(FOLDER.glob("*/*.md"))
 MOST_LINES = 60  # of a page, one screen
 MOST_COLUMNS = 100  # of a line outside tables
-MOST_WORDS = 40  # of a sentence
 DAY = r"(\d{4}-\d\d-\d\d)"
 DECIDED = re.compile(rf"\*Decided {DAY}(?:; changed {DAY})?\.\*")
 SUPERSEDED = re.compile(rf"\*Superseded on {DAY} by \[[^\]]+\]\(([^)#\s]+)(?:#[^)\s]+)?\)\.?\*")
 LINK = re.compile(r"\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
-
-
-def sentences(text: str) -> list[str]:
-    """Sentences of a page's prose: no headings, tables or blocks of code."""
-    text = re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL)
-    text = re.sub(r"^\|.*$", "", text, flags=re.MULTILINE)
-    found = []
-    for paragraph in re.split(r"\n\s*\n|\n(?=\s*(?:[-*]|\d+\.) )", text):
-        if not paragraph.lstrip().startswith("#"):
-            prose = LINK.sub(r"\1", " ".join(paragraph.split()))
-            prose = re.sub(r"`[^`]*`", "code", prose).replace("*", "")
-            found += re.split(r"(?<=[.?!])\s+", prose.removeprefix("- "))
-    return [sentence for sentence in found if sentence]
-
-
-def words(sentence: str) -> int:
-    """Number of words of a sentence: what has a letter or a digit."""
-    return sum(any(c.isalnum() for c in word) for word in sentence.split())
 
 
 def faults(text: str, folder: Path) -> list[str]:
@@ -54,9 +36,9 @@ def faults(text: str, folder: Path) -> list[str]:
     if not any(line.startswith("## ") for line in lines):
         found.append("no heading above the decisions")
     found += [
-        f"{words(sentence)} words; {MOST_WORDS} at most: {sentence}"
-        for sentence in sentences(text)
-        if words(sentence) > MOST_WORDS
+        f"{sentence.words} words; {LONGEST} at most: {sentence.text}"
+        for sentence in of_markdown(text)
+        if sentence.words > LONGEST
     ]
     return found + _dead_links(text, folder)
 

@@ -63,8 +63,8 @@ def tool_gaps(run: RunRecord) -> list[ToolGap]:
 
 
 def _distance(run: RunRecord, tool: Tool) -> Read:
-    command, actual = (_in_mm(run, name) for name in tool.position)
-    base = _in_mm(run, tool.base) if tool.base else None
+    command, actual = (in_mm(run, name) for name in tool.position)
+    base = in_mm(run, tool.base) if tool.base else None
 
     def distance(first: int, last: int) -> Array:
         gap = actual(first, last) - command(first, last)
@@ -75,8 +75,10 @@ def _distance(run: RunRecord, tool: Tool) -> Read:
     return distance
 
 
-def _in_mm(run: RunRecord, name: str) -> Read:
-    unit = run.resolver.end(name, "", "").port.unit
+def in_mm(run: RunRecord, name: str) -> Read:
+    """A recorded signal in mm, block by block."""
+    component, _, variable = name.partition(".")
+    unit = run.resolver.ports[component][variable].unit
     factor, read = units.parse(unit or "1").factor / units.parse("mm").factor, reader(run[name])
     return lambda first, last: np.asarray(factor * read(first, last))
 

@@ -209,7 +209,7 @@ class Linearised:
         values |= dict(zip(outputs, y.tolist(), strict=True))
         moving, shows = self._moving(x, u, p), self.matrices(x, u, p)[2]
         rates = shows @ moving if stated else np.zeros(len(outputs))
-        # Of a force between two that move alike, which is only rounding.
+        # A rate that is only rounding is 0: that of a force between two masses that move alike.
         rates[np.abs(rates) <= _LASTING * (np.abs(shows) @ np.abs(moving))] = 0.0
         told = dict(zip(outputs, rates.tolist(), strict=True))
         return Point(x, u, values, dict(stated), told, left, lasts)

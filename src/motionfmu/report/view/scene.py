@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.collisions import Cell
 from motionfmu.analysis.iso9283.simplify import simplified
-from motionfmu.base import units
 from motionfmu.run.decimate import Read, at, ends, reader
 from motionfmu.run.run_record import RunRecord
+from motionfmu.run.tool_gap import in_mm
 from motionfmu.scenarios import limited_signals
 from motionfmu.scenarios.arm_lengths import Arm, arm_of
-from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.tool_signals import tools
 from motionfmu.scenarios.view_signals import JOINTS
 
@@ -63,7 +62,8 @@ def scene_of(
     name = tool_signal(run)
     if not view.show or name is None or len(run.time) < 2:
         return None
-    count, base, tool = len(run.time), _base(run, name), position(run, name)
+    count, base = len(run.time), _base(run, name)
+    tool = _in_world(run, name, base)
     joints = joint_signal(run, name)
     arm = None if joints is None else arm_of(run.resolver, run.parameter, joints)
     low, high = ends(count, tool)
@@ -91,7 +91,7 @@ def scene_of(
 def _base(run: RunRecord, name: str) -> Read | None:
     """Where the arm of this tool stands, if it is moved as a whole and that was recorded."""
     base = next((t.base for t in tools(run.resolver) if t.position[1] == name), None)
-    return _in_mm(run, base) if base is not None and base in run.signals else None
+    return in_mm(run, base) if base is not None and base in run.signals else None
 
 
 def rapids(
@@ -115,15 +115,15 @@ def rapids(
 
 def position(run: RunRecord, name: str) -> Read:
     """A tool's recorded position in the world in mm, block by block."""
-    tool, base = _in_mm(run, name), _base(run, name)
+    return _in_world(run, name, _base(run, name))
+
+
+def _in_world(run: RunRecord, name: str, base: Read | None) -> Read:
+    """The same for a tool whose arm stands on this base; None: the base is the world."""
+    read = in_mm(run, name)
     if base is None:
-        return tool
-    return lambda first, last: tool(first, last) + base(first, last)
-
-
-def _in_mm(run: RunRecord, name: str) -> Read:
-    read = reader(run[name])
-    return lambda first, last: millimetres(run.resolver, name, read(first, last))
+        return lambda first, last: read(first, last)[:, :3]
+    return lambda first, last: read(first, last)[:, :3] + base(first, last)
 
 
 def tool_signal(run: RunRecord) -> str | None:
@@ -148,13 +148,6 @@ def joint_signal(run: RunRecord, tool: str) -> str | None:
     name = named or f"{tool.partition('.')[0]}.{JOINTS}"
     there = name in run.signals and run.signals[name].ndim == 2 and run.signals[name].shape[1] == 6
     return name if there else None
-
-
-def millimetres(resolver: Resolver, name: str, values: Array) -> Array:
-    """The first three elements of a recorded position (n, 3) [mm]."""
-    component, _, variable = name.partition(".")
-    unit = units.parse(resolver.ports[component][variable].unit or "1")
-    return np.asarray(values[:, :3] * (unit.factor / units.parse("mm").factor))
 
 
 def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:

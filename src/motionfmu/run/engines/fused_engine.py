@@ -158,9 +158,9 @@ class _Instance:
         return fmu_messages.failure(NAME, str(refused), self._errors)
 
     def release(self) -> None:
-        """Reset the instance of a run that ended well, for the next run; free any other.
+        """Reset the instance for the next run if this one ended well, else free it.
 
-        What it takes to make one anew are the page faults of its memory, 1.7 MB for the demo.
+        A new instance costs the page faults of its memory, 1.7 MB for the demo.
         """
         if self._whole:
             self._library.reset()

@@ -163,7 +163,10 @@ class Slave:
 
 
 def ending_of(container: Slave, system: System, fmi: int) -> Ending:
-    """The `Ending` of a container's run: signals are outputs of it. Our FMUs have `fmi`."""
+    """The `Ending` of a container's run, of which the signals are outputs.
+
+    Its parts that are ours have FMI version `fmi`, by which elements of arrays are named.
+    """
     read = []
     for end in system.ending:
         inner = exposed(end, system.version(end.component, fmi))
