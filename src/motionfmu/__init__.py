@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from motionfmu.records import Record, record
     from motionfmu.run import Machine, Result, Scenario, load, machine, scenario
 
+    __version__: str
+
 __all__ = [
     "InputError",
     "Machine",
@@ -38,6 +40,10 @@ __all__ = [
 
 def __getattr__(name: str) -> "Any":
     """Import the runner, or a folder, when it is first used; the build needs descriptions only."""
+    if name == "__version__":
+        from motionfmu.base.project_version import version
+
+        return version()
     if name == "InputError":
         from motionfmu.base.errors import InputError
 

@@ -160,9 +160,9 @@ out = Out()
 
 def _version(asked: bool) -> None:
     if asked:
-        from importlib.metadata import version
+        from motionfmu.base import project_version
 
-        print(f"motionfmu {version('motionfmu')}")
+        print(f"motionfmu {project_version.version()}")
         raise typer.Exit
 
 

@@ -4,10 +4,10 @@ CMake reads no TOML and no C text: `python src/pack.py cmake` prints these lines
 configured, and CMakeLists.txt includes them.
 """
 
-import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from motionfmu.base import project_version
 from motionfmu.base.toml_lines import text_of
 from motionfmu.fmu import cores, fmu_toml
 
@@ -29,7 +29,7 @@ def lists(root: Path) -> str:
     own = [Path(__file__), Path(cores.__file__), project]
     read = [*own, *(f / "core.toml" for f in folders.values()), *fmus, *sorted(tests.files)]
     rows = [
-        ("version", [tomllib.loads(project.read_text())["project"]["version"]]),
+        ("version", [project_version.stated(root)]),
         ("cores", list(folders)),
         *_of_cores(root / "src", folders),
         ("fmus", [f.parent.name for f in fmus]),

@@ -2,9 +2,10 @@
 
 import functools
 import re
-import tomllib
 from importlib import metadata
 from pathlib import Path
+
+from motionfmu.base.project_version import version
 
 FOLDER = "documentation/licenses"
 ENTRY = f"{FOLDER}/license.txt"
@@ -16,14 +17,6 @@ The files fmi2*.h and fmi3*.h in sources/ are those of the FMI standard, (c) MOD
 and Modelica Association Project "FMI", under the 2-Clause BSD License, whose text they carry.
 """
 _ROOT = Path(__file__).resolve().parents[3]
-
-
-def version() -> str:
-    """The project's version: that of pyproject.toml in its tree, else of the installed package."""
-    file = _ROOT / "pyproject.toml"
-    if file.is_file():
-        return str(tomllib.loads(file.read_text())["project"]["version"])
-    return metadata.version("motionfmu")
 
 
 @functools.cache

@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from importlib import metadata
 from typing import Any
 
 from asyncua import ua
 
+from motionfmu.base import project_version
 from motionfmu.live.opcua.channel_watch import ChannelMode, ChannelState, ProgramState
 from motionfmu.live.opcua.controller_channel import ControllerChannel
 from motionfmu.live.opcua.node_tree import NodePlace, NodeTree, unit
@@ -106,7 +106,7 @@ class MachineNodes:
         await tree.refer(self.machine.node, notifier, self.messages.node)
 
     async def _identification(self, name: str) -> None:
-        tree, version = self._tree, metadata.version("motionfmu")
+        tree, version = self._tree, project_version.version()
         kind = "MachineTool:MachineToolIdentificationType"
         own = await tree.object(self.machine, "DI:Identification", kind, "HasAddIn")
         for what, value, data in (

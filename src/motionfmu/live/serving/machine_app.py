@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from starlette.routing import Route, WebSocketRoute
 import motionfmu.base
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import Guard, same
+from motionfmu.base.project_version import version
 from motionfmu.live.file_record import RecordHead, csv_head, csv_rows
 from motionfmu.live.serving.machine_link import MachineLink
 from motionfmu.live.serving.planned_path import planned_path
@@ -67,7 +67,7 @@ def application(link: MachineLink, token: str) -> Starlette:
         return StreamingResponse(_csv(link, begin, end), media_type="text/csv")
 
     async def documented(request: Request) -> Response:
-        return JSONResponse(openapi(version("motionfmu")))
+        return JSONResponse(openapi(version()))
 
     async def planned(request: Request) -> Response:
         if not same(request.headers.get("authorization", ""), f"Bearer {token}"):
