@@ -79,15 +79,18 @@ def _status() -> tuple[int, str]:
     import atexit
     import os
     import signal
+    import warnings
 
     # pydantic would look for plugins in all installed packages, which takes longer than the rest.
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "1")
     app = _commands(*sys.argv[1:2])
     from typer.exceptions import TyperException
 
+    from motionfmu.base.deprecation import one_line
     from motionfmu.base.errors import InputError
     from motionfmu.cli.common import STOPPED, WRONG, Stopped
 
+    warnings.formatwarning = one_line
     # At exit all work is done, and an interrupt would only print a traceback.
     atexit.register(signal.signal, signal.SIGINT, signal.SIG_IGN)
     try:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.deprecation import renamed
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.cli.card import card
@@ -34,7 +35,8 @@ FrameOption = Annotated[
     tuple[float, float, float, float] | None,
     typer.Option("--frame", metavar="X1 Y1 X2 Y2", help="P1 and P2 of the machine, for SC."),
 ]
-Output = Annotated[Path | None, typer.Option("--out", "-o", "--output", help="Job file.")]
+Output = Annotated[Path | None, typer.Option("--out", "-o", help="Job file.")]
+OldOutput = Annotated[Path | None, typer.Option("--output", hidden=True)]  # in 0.1
 PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with several.")]
 
 
@@ -43,6 +45,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     file: Annotated[Path, typer.Argument(help="Drawing: .plt, .svg or .dxf.")],
     config: Config,
     output: Output = None,
+    old_output: OldOutput = None,
     order: Order = None,
     corners: Corners = None,
     pen: Pens = None,
@@ -73,7 +76,9 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     drawing = reading.read(file, frame, page)
     found = planned(drawing, settings, options)
     numbers = figures(found, settings, options.offset)
-    target = output or file.with_suffix(".mcj")
+    if old_output is not None:
+        renamed("card plan --output", "--out", ends="0.3")
+    target = output or old_output or file.with_suffix(".mcj")
     write(found.job, target)
     told: dict[str, Any] = {"drawing": str(file), "job": str(target)} | numbers.numbers()
     told |= {"page": drawing.page, "pages": drawing.pages}

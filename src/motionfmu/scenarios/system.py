@@ -7,7 +7,7 @@ from typing import Any
 
 from motionfmu.base import units
 from motionfmu.base.errors import Faults, InputError, suggestion
-from motionfmu.scenarios import fmus
+from motionfmu.scenarios import fmus, former_names
 from motionfmu.scenarios.body import LONGEST
 from motionfmu.scenarios.document import Document
 from motionfmu.scenarios.fmus import Port
@@ -194,7 +194,7 @@ class Resolver:
             hint = (
                 f"; {whole!r} is {_extent(self.ports[component][whole])}"
                 if whole in self.ports[component]
-                else suggestion(variable, self.ports[component])
+                else former_names.hint(fmu, whole) or suggestion(variable, self.ports[component])
             )
             text = f"{name}: {fmu} has no variable {variable!r}{hint}"
             raise self.document.error(text, table, key, name)
