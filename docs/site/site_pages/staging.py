@@ -16,7 +16,7 @@ PICTURES = {".png", ".svg", ".jpg", ".gif"}
 # Folders whose Markdown is the project's; what lies at the root is taken by its name.
 FOLDERS = ("docs", "examples", "fmus", "modelica", "scenarios", "src", "tests")
 DECISIONS = "docs/decisions"  # one folder for each subject
-AT_ROOT = ("README.md", "DESIGN.md", "CONTRIBUTING.md", "CHANGELOG.md")
+AT_ROOT = ("README.md", "DESIGN.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md")
 
 
 @dataclass
