@@ -1,8 +1,12 @@
-"""The wheel in an environment outside the tree that has the packages of the base and no others."""
+"""The wheel in an environment outside the tree that has the packages of the base and no others.
+
+And in new environments of each Python that there is, with what the registry has for it.
+"""
 
 import os
 import re
 import subprocess
+import sys
 from importlib import metadata
 from pathlib import Path
 
@@ -129,6 +133,70 @@ def test_what_else_the_base_does(installed: Installed) -> None:
     assert '.whl[tune]"' in installed.run("python", "-c", code).stderr.splitlines()[-1]
     made = installed.run("motionfmu", "export", "circle", "--ssp")
     assert made.returncode == 0 and (installed.empty / "circle.ssp").is_file()
+
+
+def test_a_users_type_checker_sees_the_types(installed: Installed) -> None:
+    """mypy reads the installed package, not this checkout, and holds a user's script against it."""
+    (installed.empty / "user.py").write_text(
+        "import motionfmu\n"
+        "from motionfmu.virtual.mcc import VirtualCard\n"
+        "result = motionfmu.load('circle').run()\n"
+        "reveal_type(result.ok)\n"
+        "reveal_type(VirtualCard().mcc)\n"
+        "reveal_type(motionfmu.__version__)\n"
+        "result.contuor()\n"
+    )
+    line = [sys.executable, "-m", "mypy", "--strict", "--python-executable", "../env/bin/python"]
+    told = subprocess.run(
+        [*line, "--cache-dir", "../mypy", "user.py"],
+        cwd=installed.empty,
+        env=PLAIN | {"HOME": str(installed.home)},
+        capture_output=True,
+        text=True,
+    ).stdout.splitlines()
+    assert told[:3] == [
+        'user.py:4: note: Revealed type is "bool"',
+        'user.py:5: note: Revealed type is "motionfmu.virtual.mcc.state.Mcc"',
+        'user.py:6: note: Revealed type is "str"',
+    ]
+    assert told[3].startswith('user.py:7: error: "Result" has no attribute "contuor"')
+    assert told[4:] == ["Found 1 error in 1 file (checked 1 source file)"]
+
+
+@pytest.mark.parametrize("version", ["3.11", "3.12", "3.13", "3.14"])
+def test_each_python_installs_and_runs_it(installed: Installed, tmp_path: Path, version) -> None:
+    """With the packages that pip chooses for that Python, the demo has the bits of a run here."""
+    found = wheel.python(version)
+    if found is None:
+        pytest.skip(f"there is no Python {version}")
+    bin_ = wheel.environment(tmp_path / "env", found).parent
+    wheel.output(*wheel.PIP, "--python", bin_ / "python", "install", installed.file)
+    env = PLAIN | {"HOME": str(installed.home)}
+
+    def run(*line: str) -> str:
+        done = subprocess.run(
+            [bin_ / line[0], *line[1:]], cwd=tmp_path, env=env, capture_output=True, text=True
+        )
+        assert (done.returncode, done.stderr) == (0, "")
+        return done.stdout
+
+    assert run("python", "--version").startswith(f"Python {version}.")
+    assert run("motionfmu", "--version") == f"motionfmu {motionfmu.__version__}\n"
+    told = run("motionfmu", "run", "circle")
+    assert "circle: all 13 checks hold\n" in told and "warning" not in told
+    here = motionfmu.load("circle").run()
+    for name, values in here.signals.items():
+        there = np.load(tmp_path / f"results/circle/signals/{name}.npy")
+        assert there.tobytes() == values.tobytes(), name
+    code = "import motionfmu.virtual.mcc as m; print(m.VirtualCard(feed=1200).read().clock)"
+    assert run("python", "-c", code) == "0\n"
+
+
+def test_the_classifiers_name_the_pythons_that_are_tried() -> None:
+    (mark,) = test_each_python_installs_and_runs_it.pytestmark
+    row = r'^  "Programming Language :: Python :: (3\.\d+)",$'
+    listed = re.findall(row, (ROOT / "pyproject.toml").read_text(), re.MULTILINE)
+    assert listed and {*listed} <= {*mark.args[1]}
 
 
 def shown(library: Path) -> tuple[set[str], set[str]]:

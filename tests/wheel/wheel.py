@@ -4,10 +4,10 @@ python tests/wheel/wheel.py build/export build/wheel
 """
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
-import venv
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -63,10 +63,22 @@ def build(tree: Path, packed: Path, folder: Path) -> Path:
     return made
 
 
-def environment(folder: Path) -> Path:
-    """A new environment without pip; its Python."""
-    venv.create(folder, symlinks=True)
+def environment(folder: Path, python: str = sys.executable) -> Path:
+    """A new environment without pip, of this Python or another; its Python."""
+    output(python, "-m", "venv", "--without-pip", "--symlinks", folder)
     return folder / "bin/python"
+
+
+def python(version: str) -> str | None:
+    """The Python 3.x of this machine, on PATH or in pyenv's folder; None if there is none."""
+    pyenv = Path(os.environ.get("PYENV_ROOT") or Path.home() / ".pyenv")
+    name = f"python{version}"
+    places = [shutil.which(name), *pyenv.glob(f"versions/{version}.*/bin/{name}")]
+    for place in map(str, filter(None, places)):
+        done = subprocess.run([place, "-c", "import venv"], capture_output=True)
+        if done.returncode == 0:
+            return place
+    return None
 
 
 def site(python: Path) -> Path:
