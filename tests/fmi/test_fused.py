@@ -1,5 +1,6 @@
 """A system as one program: what every FMU must do, and what the components do one by one."""
 
+import os
 import subprocess
 import zipfile
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from fmi_tools import ERROR, OK, Instance, unpacked
 
 import motionfmu
 from motionfmu import fused
+from motionfmu.base import compiler
 from motionfmu.fused import fmu_parts
 from motionfmu.run.run_plan import Options
 from motionfmu.scenarios import fmus
@@ -356,3 +358,17 @@ def test_an_fmu_without_a_part_for_this_machine_is_compiled(
                 foreign.writestr(name, data)
     with pytest.raises(fused.NotFused, match="foreign carries no part"):
         fmu_parts.part("foreign")
+
+
+def test_an_objcopy_that_fails_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One for another processor, as beside a compiler that compiles for it."""
+    monkeypatch.delenv("MOTIONFMU_FMUS")
+    fake = tmp_path / "objcopy"
+    fake.write_text("#!/bin/sh\necho 'objcopy: unknown format' >&2\nexit 1\n")
+    fake.chmod(0o755)
+    monkeypatch.setenv("PATH", f"{tmp_path}{os.pathsep}{os.environ['PATH']}")
+    found = compiler.compiler()
+    assert found is not None
+    with pytest.raises(compiler.NotCompiled, match=r"^objcopy failed: objcopy: unknown format$"):
+        fmu_parts._compile("servo_drives", found, tmp_path)
+    assert not (tmp_path / "part.o").exists()

@@ -11,7 +11,8 @@ from few_cases import few
 from written_out import WHOLE_CIRCLE, WHOLE_TEXT
 
 import motionfmu
-from motionfmu.run.engines import ENGINES
+from motionfmu.base.platforms import Platform
+from motionfmu.run.engines import ENGINES, native
 from motionfmu.run.session import Session
 from motionfmu.scenarios import document
 
@@ -396,3 +397,10 @@ def test_a_difference_would_be_seen() -> None:
     one = fused("mismatch_line", SHORT)
     other = loaded("mismatch_line").run(stop=SHORT, set={"mcc.irq_latency": 3e-4})
     assert "card.stock" in differing(one, other)
+
+
+def test_a_processor_for_which_the_container_has_no_master_is_told(monkeypatch) -> None:
+    monkeypatch.setattr(native, "here", lambda: Platform("aarch64-linux"))
+    told = "engine native: .* has no master for aarch64-linux; --engine fused needs a C compiler"
+    with pytest.raises(motionfmu.InputError, match=told):
+        motionfmu.load("schedule").run(engine="native", stop=0.1)

@@ -9,7 +9,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from motionfmu.base import disk_cache
-from motionfmu.base.compiler import FLAGS, Compiler, compiler
+from motionfmu.base.compiler import FLAGS, Compiler, NotCompiled, compiler
 from motionfmu.base.platforms import here
 from motionfmu.fmu.archive_names import MAIN_UNIT, PART_UNIT, PARTS
 from motionfmu.scenarios.fmus import digest, opened
@@ -97,6 +97,8 @@ def _compile(name: str, cc: Compiler, folder: Path) -> None:
                 (Path(place) / Path(entry).name).write_bytes(archive.read(entry))
         files = c_files((Path(place) / "buildDescription.xml").read_bytes())
         cc.run([*FLAGS, "-O2", "-r", "-nostdlib", *files, "-o", "part.o"], Path(place))
-        done = ["objcopy", "--localize-hidden", "part.o"]
-        subprocess.run(done, cwd=place, check=True, capture_output=True)
+        line = ["objcopy", "--localize-hidden", "part.o"]
+        done = subprocess.run(line, cwd=place, capture_output=True, text=True, check=False)
+        if done.returncode:
+            raise NotCompiled(f"objcopy failed: {done.stderr.strip()}")
         shutil.copy(Path(place) / "part.o", folder)

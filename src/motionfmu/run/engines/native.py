@@ -12,6 +12,8 @@ from typing import Any
 
 from fmu_manipulation_toolbox.container import FMUContainer
 
+from motionfmu.base.errors import InputError
+from motionfmu.base.platforms import here
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.ending import shares
 from motionfmu.run.engines.engine_job import EngineJob, EngineResult, Progress
@@ -70,6 +72,16 @@ def outer(system: System, fmi: int) -> int:
     return max(system.version(component, fmi) for component in system.components)
 
 
+def _has_a_master(built: Path, fmi: int) -> None:
+    """An InputError if the container brings no library for this machine."""
+    machine = here()
+    if not (built / f"binaries/{machine.folder(fmi)}/{IDENTIFIER}{machine.suffix}").is_file():
+        raise InputError(
+            f"engine native: fmu-manipulation-toolbox has no master for {machine.name}; "
+            "--engine fused needs a C compiler, --engine python nothing"
+        )
+
+
 def _give(slave: Slave, end: End, values: tuple[Any, ...], fmi: int) -> None:
     names = exposed(end, fmi)
     parts = [values] if len(names) == 1 else [(v,) for v in values]
@@ -90,6 +102,7 @@ class Container:
         self._folder = tempfile.TemporaryDirectory(prefix="motionfmu-")
         try:
             built = build(self._scopes.system, job.fmi, Path(self._folder.name))
+            _has_a_master(built, outer(self._scopes.system, job.fmi))
             self._slave = Slave(IDENTIFIER, built, outer(self._scopes.system, job.fmi), [])
         except BaseException:
             self._folder.cleanup()
