@@ -87,9 +87,9 @@ def test_gains_that_are_not_kept_are_left_out(base, tmp_path: Path, monkeypatch)
 
 def test_an_extra_is_asked_of_the_wheels_file(tmp_path: Path, monkeypatch) -> None:
     """No index has the project: whoever took its name there would be installed by it."""
-    wheel = tmp_path / "my wheels" / "motionfmu-0.1.0-py3-none-any.whl"
+    wheel = tmp_path / "my wheels" / f"motionfmu-{PROJECT['version']}-py3-none-any.whl"
     given = {"url": wheel.as_uri(), "archive_info": {}}
-    own = SimpleNamespace(version="0.1.0", read_text=lambda name: json.dumps(given))
+    own = SimpleNamespace(version=PROJECT["version"], read_text=lambda name: json.dumps(given))
     monkeypatch.setattr(metadata, "distribution", lambda name: own)
     assert extras.install("tune") == f'pip install "{WHEEL}[tune]"', "the file is gone"
     wheel.parent.mkdir()
