@@ -49,7 +49,8 @@ struct fmu_part {
     } sizes;
     size_t size; /* [byte] of an instance */
 
-    /* Make an instance of memory that is all 0: set its variables to their start values. */
+    /* Make an instance of memory whose part in use (`rows`) is 0: set its variables to their start
+     * values. For `open` alone the memory may hold anything. */
     void (*clear)(void *part);
 
     /* Give an instance its host and its blob; take both away and return the blob. */

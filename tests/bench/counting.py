@@ -17,8 +17,9 @@ MARKS = Path(__file__).resolve().parents[2] / "build/tests/bench/count_here.so"
 _PERF = ("perf", "stat", "-x,", "-e", "instructions:u", "-o")
 _VALGRIND = ("valgrind", "--trace-children=yes", "--tool=cachegrind", "--cache-sim=no")
 _HERE = ("valgrind", "--tool=callgrind", "--instr-atstart=no", "--callgrind-out-file=/dev/null")
-# A short and a long run of a loop; their difference is the loop's alone.
-STEPS = (1000, 5000)
+# A short and a long run of a loop; their difference is the loop's alone. Both report progress
+# equally often, which a run of fewer steps does not: a report costs as much as two steps.
+STEPS = (5000, 9000)
 SLOW = 4.0  # [s]
 
 
@@ -65,8 +66,11 @@ def instructions(line: Sequence[str | Path]) -> float:
     return float("nan") if which is None else (_perf if which == "perf" else _valgrind)(line)
 
 
-def _inside(line: Sequence[str | Path]) -> float:
-    """Instructions of the loop of one_run.py alone: what is around it differs by millions."""
+def _inside(line: Sequence[str | Path], shares: set[str]) -> float:
+    """Instructions of the loop of one_run.py alone: what is around it differs by millions.
+
+    The share of the run that was seen is added to `shares`.
+    """
     if method() != "valgrind":
         return instructions(line)
     told = _run([*_HERE, *line], COUNT_HERE=str(MARKS))
@@ -74,6 +78,7 @@ def _inside(line: Sequence[str | Path]) -> float:
     count = re.search(r"Collected : (\d+)", told)
     if not share or not count:
         raise ValueError("valgrind tells no count")
+    shares.add(share[1])
     return int(count[1]) / float(share[1])
 
 
@@ -92,7 +97,12 @@ class Loop:
             return
         lines = [[str(a).format(n) for a in self.line] for n in self.steps]
         _run(lines[0])  # what is made once is there
-        short, long = map(_inside if RUN in self.line else instructions, lines)
+        shares: set[str] = set()
+        short, long = (
+            _inside(line, shares) if RUN in self.line else instructions(line) for line in lines
+        )
+        if len(shares) > 1:
+            raise ValueError(f"{self.name}: {self.steps} steps report progress unequally often")
         self.count = (long - short) / (self.steps[1] - self.steps[0])
 
 

@@ -135,3 +135,30 @@ def test_from_any_state_a_run_goes_on(
         one.free_state(state)
     one.free()
     other.free()
+
+
+@pytest.mark.more
+@pytest.mark.parametrize("name", RUNS)
+def test_a_start_reads_nothing_that_is_not_in_use(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A first start, and one behind a run and its reset, give what a start on zeroes gives."""
+    seen = {}
+    for options in ("-O1", "-DFMI_POISON"):
+        monkeypatch.setattr(layer, "OPTIMIZED", options)
+        folder = tmp_path / options
+        folder.mkdir()
+        system(name, folder)
+        monkeypatch.setenv("MOTIONFMU_FMUS", str(folder))
+        instance = Instance(name, 3)
+        for again in (False, True):
+            assert not again or instance.call("Reset") == OK
+            instance.initialize({})
+            found = seen[options, again] = [outputs(instance)]
+            for k in range(100):
+                advance(instance, k)
+                found.append(outputs(instance))
+        instance.free()
+    (wanted, *others) = seen.values()
+    assert len(set(wanted)) > 20 and len(others) == 3
+    assert all(other == wanted for other in others)

@@ -80,7 +80,7 @@ def table(rows: Sequence[Verdict], fmi: int) -> list[str]:
         if told in SHORT:
             return SHORT[told]
         why = importers.tool(folder).why(told)
-        text = f"{heads[folder].tool}: {told}" + (f": {why}." if why else "")
+        text = f"{heads[folder].tool}: {told}" + (f". {why}." if why else "")
         if text not in reasons:
             reasons.append(text)
         said = SHORT[EQUAL] if told.startswith(EQUAL) else ""
@@ -122,11 +122,11 @@ def page(rows: Sequence[Verdict]) -> str:
         "- **equal**: every output at every step has the bits that FMPy reads of the library that "
         "gcc made for this machine.",
         "- **good**: the tool looks at archives, runs nothing, and has no complaint.",
-        "- **read**: nothing here runs a Mac's libraries. Their symbols (those of the standard), "
-        "install name (`@rpath/MODEL.dylib`), oldest system (11.0), what they load (libSystem) and "
-        "ARM's ad-hoc signature were read from their bytes.",
-        "- A number in brackets is a remark below its table; an empty cell is none of the tool's.",
-        f"- The platform is {HERE} where none is named; `fmu_bits` is the C program that "
+        "- **read**: nothing here runs a Mac's libraries. Their bytes were read: symbols (those of "
+        "the standard), install name (`@rpath/MODEL.dylib`), oldest system (11.0), what they load "
+        "(libSystem) and ARM's ad-hoc signature.",
+        "- A number in brackets is a remark below its table. An empty cell is not for this tool.",
+        f"- The platform is {HERE} where none is named. `fmu_bits` is the C program that "
         "[tests/ports](../tests/ports) runs under wine and qemu.",
         "",
         f"{len(rows)} cells: {good} equal, good or read, {some} equal with a remark, "

@@ -26,6 +26,8 @@ from pathlib import Path
 
 from changes import Change, changes
 from nearest_tests import of_c, of_python
+from rich.console import Console
+from rich.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[2]
 PLACE = ROOT / "build/mutants"
@@ -204,16 +206,18 @@ def main() -> None:
     configured += [f"-D{name}={value}" for name, value in options_of_build.items()]
     subprocess.run(configured, check=True, stdout=subprocess.DEVNULL)
     known, run, fresh = accepted(), Run(), []
-    for change in draw(options.count, options.seed, options.only, options.ending):
-        if time.monotonic() > end:
-            break
-        fate = run.fate[change] = run.judge(change)
-        key = (str(change.file.relative_to(TREE)), change.was.strip(), change.became.strip())
-        if fate == "held" and key in known:
-            run.fate[change] = "accepted"
-        elif fate in ("held", "no test is near"):
-            fresh.append(change)
-            print(f"{fate}: {row(change)}", flush=True)
+    drawn = draw(options.count, options.seed, options.only, options.ending)
+    with Progress(transient=True, console=Console(stderr=True)) as bar:
+        for change in bar.track(drawn, description="changes"):
+            if time.monotonic() > end:
+                break
+            fate = run.fate[change] = run.judge(change)
+            key = (str(change.file.relative_to(TREE)), change.was.strip(), change.became.strip())
+            if fate == "held" and key in known:
+                run.fate[change] = "accepted"
+            elif fate in ("held", "no test is near"):
+                fresh.append(change)
+                print(f"{fate} ({len(run.fate)} of {len(drawn)}): {row(change)}", flush=True)
     counted = Counter(run.fate.values())
     judged = counted["caught"] + counted["held"] + counted["no test is near"]
     print(f"{len(run.fate)} changes (seed {options.seed}): {dict(counted)}")

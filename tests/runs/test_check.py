@@ -87,6 +87,13 @@ def test_contraries_are_cases_too(scenarios: Path, tmp_path: Path) -> None:
     assert done.stdout.splitlines()[-1].startswith(told)
     assert [name for name, *_ in cases(file)] == ["good, off: the lag", "good, off: 1 V: 1 % less"]
     assert list(tmp_path.iterdir()) == [file]
+    one = tmp_path / "one"
+    one.mkdir()
+    text = (scenarios / "good" / "scenario.toml").read_text()
+    (one / "scenario.toml").write_text(text[: text.rindex("[[contrary]]")])
+    done = within("check", one, "--contrary", folder=tmp_path)
+    last = done.stdout.splitlines()[-1]
+    assert last.startswith("1 scenario, 1 contrary fails as it must, "), last
 
 
 def test_what_is_no_place_is_refused_before_anything_runs(scenarios: Path, tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ class Interrupt(importlib.abc.MetaPathFinder):
 
 module = sys.argv.pop(1)
 signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored in the background
-from motionfmu.cli import main
+from motionfmu.__main__ import main
 sys.meta_path.insert(0, Interrupt())
 main()
 """

@@ -128,6 +128,7 @@ def test_a_word_of_the_command_line_is_one_value() -> None:
         ("[component]", '[component]\n_scope1 = "mcc"', "_scope1"),
         ("[component]", '[component]\na = "../fmus/mcc"', "no FMU '../fmus/mcc'"),
         ("[component]", f'[component]\na = "{"m" * 200}"', "no FMU 'mmm"),
+        ("[component]", '[component]\na = "mmc"', "(there are: axes_arm, ball_screw_axes, "),
         ("[component]", f'[component]\na = "{"m" * 300}"', "at most 200 characters"),
         ('"circle.ngc"', f'"{"m" * 1024}"', "less than 1024 bytes wanted"),
         ('"circle.ngc"', f'"{"m" * 500}"', "File name too long"),

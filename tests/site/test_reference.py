@@ -307,23 +307,30 @@ def test_decisions_are_listed_by_subject_and_superseded_ones_last(tmp_path: Path
     (folder / "left.md").write_text(f"# Left\n\n{old}")
     (folder / "signs.md").write_text("# Signs\n\n*Decided 2026-11-22; changed 2026-11-24.*\n")
     pages = [f"docs/decisions/roads/{name}.md" for name in ("left", "signs")]
-    text = decisions.page(tmp_path, pages)
+    made = decisions.pages_of(tmp_path, pages)
+    assert list(made) == ["decisions.md", "decisions/roads.md", "decisions/rails.md"]
+    assert rows(made["decisions.md"])[2:] == [
+        ["[roads](decisions/roads.md)", "Where cars go.", "2"],
+        ["[rails](decisions/rails.md)", "Where cars go.", "0"],
+    ]
+    text = made["decisions/roads.md"]
 
     def day(number: int) -> str:
         return f'<span class="day">2026-11-{number}</span>'
 
     assert rows(text)[2:] == [
-        ["[Signs](docs/decisions/roads/signs.md)", "", f"{day(22)}; changed {day(24)}"],
+        ["[Signs](../docs/decisions/roads/signs.md)", "", f"{day(22)}; changed {day(24)}"],
         [
-            "[Left](docs/decisions/roads/left.md)",
-            "on 2026-11-22 by [Right](docs/decisions/rails/right.md)",
+            "[Left](../docs/decisions/roads/left.md)",
+            "on 2026-11-22 by [Right](../docs/decisions/rails/right.md)",
             day(21),
         ],
     ]
-    assert text.index("## roads\n\nWhere cars go.") < text.index("Signs") < text.index("## rails")
+    assert text.startswith("# Roads: decisions\n\nWhere cars go.\n")
+    assert "/docs/decisions/roads/left.md" in text.split("{toctree}")[1]
     staged = staging.Staged(tmp_path, tmp_path / "out", ["DESIGN.md", *pages])
     found = staging.rewritten("[rails](../rails)", pages[0], staged)
-    assert found == "[rails](../../../decisions.md#rails)\n"
+    assert found == "[rails](../../../decisions/rails.md)\n"
 
 
 def test_what_a_cell_says_is_no_markup() -> None:

@@ -1,4 +1,4 @@
-"""The page that lists all decisions by subject, with their days."""
+"""Decisions by subject: a page that leads to each subject, and one for each with its decisions."""
 
 import os
 import re
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from site_pages.markdown import plain, table, toctree
-from site_pages.staging import DECISIONS, title
+from site_pages.staging import DECISIONS, subject_page, title
 
 _SUBJECT = re.compile(rf"^\| \[([a-z-]+)\]\({DECISIONS}/\1\) \| (.+) \|$", re.MULTILINE)
 _DAYS = re.compile(r"^\*Decided ([^*]+)\.\*$", re.MULTILINE)
@@ -20,16 +20,21 @@ def subjects(root: Path) -> dict[str, str]:
     return dict(_SUBJECT.findall((root / "DESIGN.md").read_text(encoding="utf-8")))
 
 
-def page(root: Path, pages: list[str]) -> str:
-    """The list of decisions: a heading for each subject, a row for each page."""
-    parts = [
-        "# Decisions\n\n[How the project is laid out](DESIGN.md), and why each thing is as it is."
-    ]
+def pages_of(root: Path, pages: list[str]) -> dict[str, str]:
+    """The list of subjects and the page of each, by their names in the site's source."""
+    lead = "[How the project is laid out](DESIGN.md), and why each thing is as it is."
+    rows, own = [], {}
     for subject, about in subjects(root).items():
         found = [p for p in pages if p.startswith(f"{DECISIONS}/{subject}/")]
-        rows = table(("page", "superseded", "decided"), _rows(root, found)) if found else ""
-        parts.append(f"## {subject}\n\n{about}\n\n{rows}")
-    return "\n\n".join([*parts, toctree(pages)])
+        name = subject.replace("-", " ")
+        rows.append((f"[{name}]({subject_page(subject)})", about, str(len(found))))
+        listed = table(("page", "superseded", "decided"), _rows(root, found)) if found else ""
+        head = f"# {name.capitalize()}: decisions\n\n{about}"
+        tree = toctree([f"/{p}" for p in found])
+        own[subject_page(subject)] = f"{head}\n\n{listed}\n\n{tree}"
+    subjects_table = table(("subject", "is about", "pages"), rows)
+    tree = toctree(f"{name} <{subject_page(name)}>" for name in subjects(root))
+    return {"decisions.md": f"# Decisions\n\n{lead}\n\n{subjects_table}\n\n{tree}", **own}
 
 
 def _whole(text: str) -> str:
@@ -45,8 +50,8 @@ def _rows(root: Path, pages: list[str]) -> Iterator[tuple[str, str, str]]:
         days, old = _DAYS.search(text), _SUPERSEDED.search(text)
         mark = ""
         if old:
-            by = os.path.normpath(Path(name).parent / old[3])
-            mark = f"on {old[1]} by [{plain(old[2])}]({by})"
-        link = f"[{plain(title(root / name))}]({name})"
+            by = Path(os.path.normpath(Path(name).parent / old[3])).as_posix()
+            mark = f"on {old[1]} by [{plain(old[2])}](../{by})"
+        link = f"[{plain(title(root / name))}](../{name})"
         found.append((link, mark, _whole(days[1]) if days else ""))
     yield from sorted(found, key=lambda row: (bool(row[1]), row[0].lower()))

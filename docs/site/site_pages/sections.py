@@ -101,8 +101,9 @@ def _write_notebooks(staged: Staged) -> None:
 
 
 def _write_decisions(staged: Staged) -> None:
-    text = decisions.page(staged.root, _of(f"{DECISIONS}/", staged.pages))
-    write(staged.folder / "decisions.md", text)
+    made = decisions.pages_of(staged.root, _of(f"{DECISIONS}/", staged.pages))
+    for name, text in made.items():
+        write(staged.folder / name, text)
 
 
 def _write_indexes(staged: Staged) -> None:

@@ -79,14 +79,19 @@ def _link(match: re.Match[str], name: str, staged: Staged) -> str:
         if file.is_file():
             shutil.copyfile(file, copied)
         return f"![{words}]({address})"
-    if Path(there).parent.as_posix() == DECISIONS:  # a subject: its part of the list of decisions
-        return f"[{words}]({'../' * name.count('/')}decisions.md#{Path(there).name})"
+    if Path(there).parent.as_posix() == DECISIONS:  # a subject: its list of decisions
+        return f"[{words}]({'../' * name.count('/')}{subject_page(Path(there).name)})"
     if file.is_dir() and (file / "README.md").is_file():
         return f"[{words}]({path.rstrip('/')}/README.md{'#' * bool(place)}{place})"
     if there in staged.pages or not file.exists():
         return f"[{words}]({address})"  # a page; what leads nowhere is told by the build
     staged.listed.add(there)
     return f'<a class="listing" href="{listing_address(name, there)}">{words}</a>'
+
+
+def subject_page(subject: str) -> str:
+    """Where the list of a subject's decisions stands in the site's source."""
+    return f"decisions/{subject}.md"
 
 
 def listing_address(page: str, file: str) -> str:

@@ -102,7 +102,7 @@ enum robot_status {
     ROBOT_NO_SPLINE,    /* two poses in a row are the same */
     ROBOT_TILTED,       /* the arm's joints do not turn the tool to such an attitude */
     ROBOT_NO_JOINT,     /* the arm has no such joint, 6: no external axis */
-    ROBOT_BESIDE        /* a track goes with joints and lines alone */
+    ROBOT_BESIDE        /* a track goes with joints and lines, a table with arcs, too */
 };
 
 /* Why a move is refused. */

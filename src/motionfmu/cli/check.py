@@ -122,8 +122,11 @@ def _summary(cases: "Sequence[Case]", scenarios: int, seconds: float) -> str:
     silent = sum(case.silent for case in cases)
     many = f"{scenarios} scenario{'s' * (scenarios != 1)}"
     if any(case.off for case in cases):
-        what = f"{many}, {len(cases)} contraries: {good} fail as they must"
-        return f"{what}, {failed} do not{tail}, {seconds:.0f} s"
+        if len(cases) == 1:
+            what = f"1 contrary {'fails as it must' if good else 'does not fail'}"
+        else:
+            what = f"{len(cases)} contraries: {good} fail as they must, {failed} do not"
+        return f"{many}, {what}{tail}, {seconds:.0f} s"
     tail += f", {silent} without a check" if silent else ""
     return f"{many}: {good - silent} hold, {failed} fail{tail}, {seconds:.0f} s"
 

@@ -52,6 +52,7 @@ static void fifo_timing(void)
             config.bus = 400;
             config.start = 8000000; /* at 0.2 s, when the FIFO runs steadily */
             card_start(&c, &m, &config, true);
+            CHECK_EQ(pc.shown_isr.page, -1); /* none is served before the first interrupt */
             run(&c, line_100, 400000);
             CHECK_EQ(c.sum[0], 100000);
             CHECK(pc_done(&pc));

@@ -250,6 +250,10 @@ static void overload_ends(void)
     for (int i = 0; i < 100; i++)
         go(&e, (double)(i + 1) * 0.5 + 1e15, 4000 + 400 * (i + 1));
     CHECK(llabs(e.count - 200) < 14);
+    for (int i = 1; i <= 10; i++) /* ten lines a sample, which the filter lets pass */
+        go(&e, 10.0 * i + 50.0 + 1e15, 44000 + 4000 * i);
+    CHECK(llabs(e.count - 600) < 14);
+    CHECK(e.too_fast); /* until it is cleared */
 }
 
 /* Swap turns the direction round; so does one inverted line, and two leave it. */
