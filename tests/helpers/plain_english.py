@@ -171,7 +171,14 @@ def breaks(name: str, text: str) -> list[str]:
 
 def files(root: Path = ROOT) -> list[str]:
     """Every file that is held, by its name from the root."""
-    pages = ["README.md", "CONTRIBUTING.md", "DESIGN.md", "docs/**/*.md"]
+    pages = [
+        "README.md",
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+        "DESIGN.md",
+        "SECURITY.md",
+        "docs/**/*.md",
+    ]
     pages += [f"{folder}/**/README.md" for folder in ("examples", "fmus", "modelica", "scenarios")]
     pages += ["src/**/README.md", "tests/**/README.md", "src/motionfmu/**/*.py", "src/*/*/*.h"]
     return sorted({str(path.relative_to(root)) for glob in pages for path in root.glob(glob)})
