@@ -1,68 +1,22 @@
 """The wheel in an environment outside the tree that has the packages of the base and no others."""
 
-import os
 import re
 import subprocess
-from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import pytest
-import wheel
 from conftest import ROOT
+from installed_wheel import Installed
 
 import motionfmu
 
 EXPORTED = sorted(ROOT.glob("build/export/lib/*/motionfmu_stations.so"))
-PLAIN = {"PATH": os.environ["PATH"], "COLUMNS": "160"}
-
-
-def base() -> set[str]:
-    """Distributions that the base asks for, and those that they do."""
-    found: set[str] = set()
-    text = (ROOT / "pyproject.toml").read_text()
-    waiting = re.findall(r'"([\w.-]+)', text.split("\ndependencies = [", 1)[1].split("]", 1)[0])
-    while waiting:
-        name = re.sub(r"[-_.]+", "-", waiting.pop()).lower()
-        if name not in found:
-            found.add(name)
-            rows = metadata.requires(name) or []
-            asked = [row for row in rows if "extra ==" not in row and "system ==" not in row]
-            waiting += [re.split(r"[^\w.-]", row)[0] for row in asked]
-    return found
-
-
-class Installed:
-    """An environment with the wheel."""
-
-    def __init__(self, folder: Path) -> None:
-        # from the source distribution: so that has all that a wheel needs
-        made = wheel.build(wheel.source(folder), ROOT / "build", folder / "made")
-        self.file, self.home, self.empty = made, folder / "home", folder / "empty"
-        python = wheel.environment(folder / "env")
-        self.site = wheel.site(python)
-        for name in base():
-            there = metadata.distribution(name)
-            tops = {file.parts[0] for file in there.files or ()} - {".."}
-            for top in tops - {p.name for p in self.site.iterdir()}:
-                (self.site / top).symlink_to(Path(str(there.locate_file(top))).resolve())
-        self.others = wheel.sizes(self.site)
-        wheel.output(*wheel.PIP, "--python", python, "install", "--no-deps", "--no-index", made)
-        self.own = wheel.sizes(self.site)["motionfmu"]
-        self.bin = python.parent
-        for place in (self.home, self.empty):
-            place.mkdir()
-
-    def run(self, *line: str, **more: str) -> subprocess.CompletedProcess[str]:
-        """A command of the environment, in the empty folder."""
-        whole = [self.bin / line[0], *line[1:]]
-        env = PLAIN | {"HOME": str(self.home)} | more
-        return subprocess.run(whole, cwd=self.empty, env=env, capture_output=True, text=True)
 
 
 @pytest.fixture(scope="module")
-def installed(tmp_path_factory: pytest.TempPathFactory) -> Installed:
-    return Installed(tmp_path_factory.mktemp("wheel"))
+def installed(wheel_file: Path, tmp_path_factory: pytest.TempPathFactory) -> Installed:
+    return Installed(tmp_path_factory.mktemp("wheel"), wheel_file)
 
 
 pytestmark = [pytest.mark.more, pytest.mark.xdist_group("wheel")]

@@ -1,6 +1,6 @@
 """`make wheel`: the wheel, installed from its file into a new environment and tried there.
 
-python tests/wheel/wheel.py build/export build/wheel
+python tests/helpers/wheel_making.py build/export build/wheel
 """
 
 import os
