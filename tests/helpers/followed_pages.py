@@ -123,7 +123,7 @@ class Folder:
                 stdout=printed, stderr=subprocess.STDOUT, start_new_session=True,
             )  # fmt: skip
             self.groups.append(done.pid)
-            status = done.wait(300)
+            status = done.wait(1800)  # [s] only what hangs takes so long
             printed.seek(0)
             return status, printed.read()
 

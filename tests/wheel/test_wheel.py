@@ -26,9 +26,10 @@ def test_the_base_is_small(installed: Installed) -> None:
     # 206 MB in November 2026, CMake, for FMPy, 76 of them; newer releases may grow by a twentieth.
     # Byte code would be 32 MB more, FMUs of all platforms 12.
     assert 120.0 < sum(installed.others.values()) < 217.0
-    # Ours: 35.3 MB, most of it FMUs and the parts of fused programs, 2.6 of them level_arm, a plant
-    # of its own so that other arms are a quarter quicker; a twentieth may be added.
-    assert 10.0 < installed.own < 37.1
+    # Ours: 38.9 MB, most of it FMUs and the parts of fused programs, 2.6 of them level_arm, a plant
+    # of its own so that other arms are a quarter quicker; 3.5 are the sources that `new sources`
+    # lays out. A twentieth may be added.
+    assert 10.0 < installed.own < 40.8
     assert installed.others.keys() >= {"fmpy", "numpy", "pydantic"}
     assert not installed.others.keys() & {"scipy", "matplotlib", "casadi", "plotly"}
 
