@@ -12,7 +12,7 @@ void axis_go(struct axis *a, int32_t way)
     a->left += way;
 }
 
-/* A pulse/ms faster, as fast, or slower: v (v + 1)/2 pulses are the way of a ramp from v to rest. */
+/* A pulse/ms faster, as fast, or slower: a ramp from v to rest takes v (v + 1)/2 pulses. */
 static int32_t next_speed(const struct axis *a)
 {
     int32_t v = a->speed < AXIS_TOP_SPEED ? a->speed + 1 : AXIS_TOP_SPEED;

@@ -1,5 +1,5 @@
-/* axis - firmware of one axis: a timer's interrupt plans each millisecond, the pulse generator takes
- * its commands from a FIFO. A command is the pulses of a millisecond, so it is a speed, too. */
+/* axis - firmware of one axis: a timer's interrupt plans each millisecond, and the pulse generator
+ * takes its commands from a FIFO. A command is the pulses of a millisecond, so it is a speed. */
 #ifndef AXIS_H
 #define AXIS_H
 
