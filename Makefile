@@ -35,7 +35,7 @@ export: needs .venv/exporting    ## FMUs for Linux, Windows and macOS in build/e
 	@cmake --build build --target export $(QUIET)
 
 wheel: build export             ## the wheel for pip in build/wheel, tried in a new environment
-	$(BIN)/python tests/wheel/wheel.py build/export build/wheel
+	$(BIN)/python tests/helpers/wheel_making.py build/export build/wheel
 
 docs: build .venv/documenting    ## the site in build/site, which opens from disk; its warnings are errors
 	@$(BIN)/python docs/site/build.py build/site > build/site.txt 2>&1 || { grep -E "WARNING|ERROR|rror:" build/site.txt; exit 1; }

@@ -9,7 +9,7 @@ from hypothesis.database import DirectoryBasedExampleDatabase
 
 import motionfmu
 
-pytest_plugins = ["browser", "made_arm", "skip_list"]
+pytest_plugins = ["browser", "installed_wheel", "made_arm", "skip_list"]
 ROOT = Path(__file__).resolve().parent.parent
 FMUS = Path(os.environ.setdefault("MOTIONFMU_FMUS", str(ROOT / "build" / "fmus")))
 

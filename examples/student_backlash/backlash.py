@@ -1,15 +1,12 @@
 """Backlash of a machine and what a circle shows of it, without a folder for each run."""
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 
 import motionfmu
 
-HERE = Path(__file__).resolve().parent
-base = motionfmu.load(HERE.parents[1] / "scenarios/circle").changed(stop=4.0)  # one circle
+base = motionfmu.load("circle").changed(stop=4.0)  # one circle
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(10, 4), layout="constrained")
 rows = []

@@ -1,5 +1,6 @@
 # What a wheel has beside the Python text, as a component of the installation by itself: FMUs, what a system of them is
-# compiled from on the user's machine, the bindings' library, the script of a report's plots, scenarios and projects.
+# compiled from on the user's machine, the bindings' library, the script of a report's plots, scenarios and projects,
+# and the sources that `motionfmu sources` lays out beside the package's own.
 function(put place kind what)
   install(${kind} ${what} DESTINATION motionfmu/${place} COMPONENT wheel EXCLUDE_FROM_ALL ${ARGN})
 endfunction()
@@ -28,4 +29,9 @@ put(layer FILES "${layer_files}")
 put(report/plotly FILES "${plotly}/package_data/plotly.min.js;${licence}")
 foreach(kind scenarios examples)
   put(shipped/${kind} DIRECTORY ${kind}/ PATTERN "*.png" EXCLUDE PATTERN "__pycache__" EXCLUDE PATTERN build EXCLUDE)
+endforeach()
+put(shipped/sources FILES "CMakeLists.txt;pyproject.toml;LICENSE")
+put(shipped/sources/src DIRECTORY src/ PATTERN "motionfmu" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+foreach(kind fmus modelica)
+  put(shipped/sources/${kind} DIRECTORY ${kind}/ PATTERN "*.png" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 endforeach()

@@ -127,3 +127,23 @@ def test_contributing_shows_the_template_and_every_key() -> None:
     rows = re.findall(r"^\| (`[^|]*) \|", text, re.M)
     shown = {key for row in rows for key in re.findall(r"`(\w+)`", row)}
     assert shown >= fmu_toml.HEAD | fmu_toml.MAY | describe._KEYS | set(describe.CAUSALITIES)
+
+
+def test_new_sources_are_a_tree_of_their_own_that_can_be_built(tmp_path: Path) -> None:
+    made = within("new", "sources", "mine", folder=tmp_path)
+    assert made.stdout.startswith(
+        "mine: cores in src, FMUs in fmus and modelica\nnext: cmake -S mine"
+    )
+    tree = tmp_path / "mine"
+    for place in ("src/base", "src/fmi", "src/motion", "fmus", "modelica", "src/motionfmu/fmu"):
+        kept = {f.relative_to(ROOT) for f in (ROOT / place).rglob("*") if f.is_file()}
+        kept = {f for f in kept if "__pycache__" not in f.parts and f.suffix != ".png"}
+        assert kept == {f.relative_to(tree) for f in (tree / place).rglob("*") if f.is_file()}
+        assert all((tree / f).read_bytes() == (ROOT / f).read_bytes() for f in kept)
+    line = [sys.executable, tree / "src/pack.py", "cmake"]
+    lists = subprocess.run(line, capture_output=True, text=True, check=True).stdout
+    assert str(tree / "src/base/pulse") in lists and str(ROOT) not in lists
+    assert within("new", "fmu", NAME, folder=tree).stderr.endswith("No such file or directory\n")
+    refused = within("new", "sources", "mine", folder=tmp_path)
+    assert refused.stderr == "motionfmu: mine is there already\n"
+    assert [p.name for p in tmp_path.iterdir()] == ["mine"]

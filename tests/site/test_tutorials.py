@@ -1,66 +1,53 @@
-"""Tutorials do what they say: each cell runs in an empty folder and prints what stands below it."""
+"""Tutorials do what they say: each cell runs in an empty folder and prints what stands below it.
 
-import json
+They run with the checkout's package, and with that of the wheel alone.
+"""
+
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import nbformat
-import numpy as np
 import pytest
 from conftest import FMUS, ROOT
+from installed_wheel import Installed
 from matplotlib.figure import Figure
-from matplotlib.image import imread
+from page_cells import alike, cells_printed
 from site_pages import tutorials
 
 pytestmark = pytest.mark.more
 
-# Share of the points of a picture that may be others; a curve that is moved takes more.
-POINTS = 1e-3
 PAGES = sorted((ROOT / "docs/tutorials").glob("*.md"))
-# Runs the cells in one namespace and writes what each printed.
-RUNNER = """
-import contextlib, io, json, sys
-found, space = [], {}
-for text in json.load(open("cells.json", encoding="utf-8")):
-    out = io.StringIO()
-    with contextlib.redirect_stdout(out):
-        exec(compile(text, "<cell>", "exec"), space)
-    found.append(out.getvalue())
-json.dump(found, open("printed.json", "w", encoding="utf-8"))
-"""
+WHERE = ["checkout", pytest.param("wheel", marks=pytest.mark.xdist_group("wheel"))]
 
 
 def printed(cells: list[str], folder: Path) -> list[str]:
-    """What cells print in a new process that stands in an empty folder."""
-    (folder / "cells.json").write_text(json.dumps(cells), encoding="utf-8")
-    line = [sys.executable, "-c", RUNNER]
-    told = {**os.environ, "MOTIONFMU_FMUS": str(FMUS)}
-    done = subprocess.run(line, cwd=folder, env=told, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr[-2000:]
-    return json.loads((folder / "printed.json").read_text(encoding="utf-8"))
+    """What cells print in an empty folder, with the checkout's package and FMUs."""
+    environ = {**os.environ, "MOTIONFMU_FMUS": str(FMUS)}
+    return cells_printed(cells, folder, Path(sys.executable), environ)
 
 
+@pytest.mark.parametrize("where", WHERE)
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
-def test_a_tutorial_prints_what_it_says(page: Path, tmp_path: Path) -> None:
+def test_a_tutorial_prints_what_it_says(
+    page: Path, where: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     text = page.read_text(encoding="utf-8")
     code = [cell for cell in tutorials.cells(text) if cell.kind == "code"]
     assert len(code) > 4 and sum(bool(cell.prints) for cell in code) > 3
-    found = printed([cell.text for cell in code], tmp_path)
+    texts = [cell.text for cell in code]
+    if where == "wheel":
+        bench: Installed = request.getfixturevalue("workbench")
+        found = cells_printed(texts, tmp_path, bench.python, bench.environ)
+    else:
+        found = printed(texts, tmp_path)
     for cell, out in zip(code, found, strict=True):
         assert out.split("\n") == cell.prints.split("\n"), cell.text
     assert "assert " in code[-1].text
     drawn = re.findall(r'savefig\("(.+?)"\)', text)
     assert drawn == re.findall(r"^!\[.+?\]\((.+?)\)$", text, re.MULTILINE)
     assert [name for name in drawn if not alike(tmp_path / name, page.parent / name)] == []
-
-
-def alike(made: Path, kept: Path) -> bool:
-    """Whether a picture is the one that the page shows: hardly a point is another one."""
-    new, old = imread(made), imread(kept)
-    return new.shape == old.shape and float(np.mean(np.abs(new - old) > 0.1)) < POINTS
 
 
 def test_another_picture_is_found(tmp_path: Path) -> None:

@@ -1,8 +1,9 @@
-"""The commands that make a new FMU, scenario or machine of one that works."""
+"""The commands that make a new FMU, scenario or machine of one that works, or lay out sources."""
 
 import contextlib
 import os
 import re
+import shutil
 from pathlib import Path
 from typing import Annotated
 
@@ -13,12 +14,14 @@ from motionfmu.base.new_folder import new_folder
 from motionfmu.cli.common import App, Group, app
 
 TEMPLATES = Path(__file__).parent / "templates"
+# Made of the sources, or of other packages; an installed package has them beside its Python text.
+MADE = ("fmus", "layer", "lib", "plotly", "shipped")
 Name = Annotated[str, typer.Argument(help="Small letters, digits and _; its folder's name.")]
 
 new = App(
     cls=Group,
     rich_markup_mode=None,
-    help="Make a new FMU, scenario or machine that works, to be changed.",
+    help="Make a new FMU, scenario or machine that works, to be changed; or lay out the sources.",
     no_args_is_help=True,
 )
 app.add_typer(new, name="new")
@@ -29,7 +32,10 @@ def fmu(name: Name) -> None:
     """Make a first-order filter: fmus/NAME and a test of it, in the project's folder."""
     _usable(name)
     if not (Path("fmus").is_dir() and Path("src/fmi/fmi_model.h").is_file()):
-        raise InputError("no fmus/ and src/fmi/ here: go to the folder of the project's sources")
+        raise InputError(
+            "no fmus/ and src/fmi/ here: go to the folder of the project's sources, or make one by"
+            " `motionfmu new sources FOLDER`"
+        )
     test = Path("tests/fmi") / f"test_{name}.py"
     folder = Path("fmus") / name
     _free(folder, test)
@@ -66,6 +72,27 @@ def machine(
     copy_machine(run.machine(like), folder)
     print(f"{folder}: {', '.join(sorted(p.name for p in folder.iterdir()))}")
     print(f"next: motionfmu run PROGRAM --machine {name}")
+
+
+@new.command()
+def sources(
+    folder: Annotated[Path, typer.Argument(help="It is made, with a CMakeLists.txt.")],
+) -> None:
+    """Lay out what cores and FMUs are built of: for a firmware, a C program, one's own FMU."""
+    from motionfmu.scenarios import package_files
+
+    with new_folder(folder) as part:
+        for name, place in package_files.sources().items():
+            target = part / name
+            target.parent.mkdir(exist_ok=True)
+            if place.is_file():
+                shutil.copy(place, target)
+                continue
+            made = MADE if place == package_files.PACKAGE else ()
+            left_out = shutil.ignore_patterns("__pycache__", "*.png", *made)
+            shutil.copytree(place, target, ignore=left_out)
+    print(f"{folder}: cores in src, FMUs in fmus and modelica")
+    print(f"next: cmake -S {folder} -B build -DMOTIONFMU_FMUS=OFF; cmake --build build")
 
 
 def _usable(name: str) -> None:

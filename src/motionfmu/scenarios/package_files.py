@@ -19,6 +19,15 @@ def folder(kind: str) -> Path:
     return (installed if installed.is_dir() else PACKAGE.parent.parent) / kind
 
 
+def sources() -> dict[str, Path]:
+    """What cores and FMUs are built of: each place in a tree of sources, and what stands there."""
+    installed = folder("sources")
+    root = installed if installed.is_dir() else PACKAGE.parent.parent
+    names = ("CMakeLists.txt", "pyproject.toml", "LICENSE", "fmus", "modelica")
+    inner = {f"src/{place.name}": place for place in sorted((root / "src").glob("[!_]*"))}
+    return {**{name: root / name for name in names}, **inner, "src/motionfmu": PACKAGE}
+
+
 def scenarios() -> dict[str, Path]:
     """Folders of the scenarios that have a name: those of the package and of ./scenarios."""
     return _named(SCENARIO, folder("scenarios"), Path("scenarios"))

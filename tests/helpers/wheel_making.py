@@ -1,6 +1,6 @@
 """`make wheel`: the wheel, installed from its file into a new environment and tried there.
 
-python tests/wheel/wheel.py build/export build/wheel
+python tests/helpers/wheel_making.py build/export build/wheel
 """
 
 import os
@@ -13,9 +13,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PIP = [sys.executable, "-m", "pip", "--disable-pip-version-check", "--quiet"]
-# [MB] that the base may have installed. 281 in November 2026: CMake, for FMPy, is 76 of them, ours
-# are 54 with FMUs for five platforms, and a twentieth may be added.
-BASE_MAX = 295.0
+# [MB] that the base may have installed: 285 in November 2026, and a twentieth. 76 are CMake, for
+# FMPy, 58 ours with FMUs for all platforms.
+BASE_MAX = 299.0
 MEGA = 1e6
 
 
