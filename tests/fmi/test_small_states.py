@@ -145,12 +145,13 @@ def test_a_start_reads_nothing_that_is_not_in_use(
     """A first start, and one behind a run and its reset, give what a start on zeroes gives."""
     seen = {}
     for options in ("-O1", "-DFMI_POISON"):
-        monkeypatch.setattr(layer, "OPTIMIZED", options)
         folder = tmp_path / options
         folder.mkdir()
+        monkeypatch.setattr(layer, "OPTIMIZED", options)
         system(name, folder)
-        monkeypatch.setenv("MOTIONFMU_FMUS", str(folder))
-        instance = Instance(name, 3)
+        with monkeypatch.context() as here:
+            here.setenv("MOTIONFMU_FMUS", str(folder))
+            instance = Instance(name, 3)
         for again in (False, True):
             assert not again or instance.call("Reset") == OK
             instance.initialize({})
