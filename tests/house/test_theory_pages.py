@@ -11,9 +11,15 @@ from conftest import ROOT
 FOLDER = ROOT / "docs/theory"
 PAGES = sorted(FOLDER.glob("*.md"))
 HEAD = "| claim | where in the code | test that holds it |"
-# Where files of the tables lie; names of C files and tests are unique.
-PLACES = ("src/motion/**/*.[ch]", "src/language/**/*.[ch]", "tests/**/*.c", "tests/**/*.py")
-FILES = {file.name: file for place in PLACES for file in ROOT.glob(place)}
+# Where files of the tables lie. Of two with one name the page has `folder/name.py`.
+PLACES = ("src/**/*.[ch]", "src/**/*.inc", "src/**/*.py", "modelica/**/*.mo")
+TESTS = ("tests/**/*.c", "tests/**/*.h", "tests/**/*.py")
+FILES = {
+    name: file
+    for place in PLACES + TESTS
+    for file in ROOT.glob(place)
+    for name in (file.name, f"{file.parent.name}/{file.name}")
+}
 # What links these pages.
 LINKING = [
     ROOT / name
@@ -53,10 +59,12 @@ def rows(text: str) -> Iterator[list[str]]:
 
 
 def defines(file: Path, name: str) -> bool:
-    """Whether a file defines a function, a test or a constant."""
+    """Whether a file defines a function, a class, a test or a constant; in Modelica, anything."""
     text, word = file.read_text(), re.escape(name)
+    if file.suffix == ".mo":
+        return re.search(rf"\b{word}\b", re.sub(r'"[^"]*"', "", text)) is not None
     if file.suffix == ".py":
-        return re.search(rf"^def {word}\(", text, re.MULTILINE) is not None
+        return re.search(rf"^ *(def|class) {word}\b|^{word} = ", text, re.MULTILINE) is not None
     constant = rf"^(static const|enum).*\b{word} = "
     function = rf"^[a-z][\w *]*\b{word}\("
     return re.search(rf"{constant}|{function}", text, re.MULTILINE) is not None
@@ -66,7 +74,7 @@ def missing(cell: str) -> list[str]:
     """Names in a cell whose file is not there or does not define them; each cell names some."""
     wrong, file, named = [], None, 0
     for name in re.findall(r"`([^`]+)`", cell):
-        if re.search(r"\.(c|h|py)$", name):
+        if re.search(r"\.(c|h|inc|py|mo)$", name):
             file = FILES.get(name)
             wrong += [] if file else [name]
         elif file is None or not defines(file, name):
@@ -95,10 +103,10 @@ def test_what_a_table_of_claims_names_is_there(page: Path) -> None:
 
 
 def test_every_figure_is_made_and_shown() -> None:
-    tree = ast.parse((FOLDER / "figures.py").read_text())
     made = {
         node.name
-        for node in tree.body
+        for module in (FOLDER / "figures").glob("*_figures.py")
+        for node in ast.parse(module.read_text()).body
         if isinstance(node, ast.FunctionDef)
         and any(ast.unparse(d) == "figure" for d in node.decorator_list)
     }
@@ -114,4 +122,6 @@ def test_what_is_wrong_is_told() -> None:
     assert missing("`shape_jion.c` `shape_join`")[0] == "shape_jion.c"
     assert missing("`shape_turn.c` `SHARP` `TURN`") == []
     assert missing("`test_speed.py` `test_nothing`")[0] == "test_nothing"
+    assert missing("`BallScrewAxis.mo` `nothing`")[0] == "nothing"
+    assert missing("`servo_formulas.py` `nothing`")[0] == "nothing"
     assert missing("`speed_profile.c`") == ["no function in '`speed_profile.c`'"]
