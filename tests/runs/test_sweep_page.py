@@ -94,6 +94,19 @@ def test_levels_are_round_and_span_the_cost(cost: list[float]) -> None:
     assert all(float(f"{v:.3g}") == pytest.approx(v, rel=1e-9, abs=1e-12) for v in found)
 
 
+@pytest.mark.parametrize(
+    "cost, wanted",
+    [([1.0, 31.0], False), ([1.0, 32.0], True), ([1e-9, 0.9e-9, 1e-7], True), ([0.0, 1e9], False)],
+)
+def test_a_cost_is_drawn_by_its_logarithm_from_a_decade_and_a_half_on(
+    cost: list[float], wanted: bool
+) -> None:
+    from motionfmu.report.studies.cost_field import logarithmic
+
+    assert logarithmic(np.array([*cost, math.nan])) is wanted
+    assert not logarithmic(np.array([math.nan]))
+
+
 def test_nothing_is_drawn_below_zero_of_a_cost_that_is_not_negative(tmp_path: Path) -> None:
     from motionfmu.report.studies import sweep_page
 

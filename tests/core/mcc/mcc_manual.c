@@ -470,6 +470,22 @@ static void wheel_rests(void)
     }
 }
 
+/* A software limit that is not in force holds no panel's wheel. */
+static void wheel_past_what_is_off(void)
+{
+    struct machine machine = mcc_machine();
+    struct record r = { 0 };
+
+    machine.axis[2].high_limit = 5.0;
+    machine.axis[2].check_ot = false;
+    begin(machine);
+    CHECK_EQ(manual_follow(&m, 2, 6, 1.0), 0);
+    m.signals.enc_aux[0] = 20000; /* 20 mm up */
+    steps(&r, 1500);
+    CHECK_EQ(r.sum[2], 20000);
+    CHECK_EQ(MCC_get_errcode(&m), 0);
+}
+
 /* Frames too large: a ramp to rest, the error, then nothing more is taken. */
 static void too_many_pulses(void)
 {
@@ -527,6 +543,7 @@ int main(void)
     wheel();
     wheel_limits();
     wheel_rests();
+    wheel_past_what_is_off();
     too_many_pulses();
     range();
     return check_result();
