@@ -1,6 +1,7 @@
 #include "pc_parts.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "el_extremes.h"
@@ -19,7 +20,7 @@ static void show(struct pc *pc)
 
 int pc_start(struct pc *pc, const struct machine *m, const struct pc_config *config, bool program)
 {
-    memset(pc, 0, sizeof *pc);
+    memset(&pc->pcl, 0, sizeof *pc - offsetof(struct pc, pcl)); /* the library opens itself */
     pc->config = *config;
     pc->random = (uint64_t)(int64_t)config->seed;
     pc->program = program;

@@ -174,6 +174,30 @@ static void zigzag(void)
     printf("zigzag: slowest %.3f of %.3f mm/s, %.3f s\n", slowest, turn, r.n * DT);
 }
 
+/* Whatever was in the memory of a library that opens, it makes the same points of a smooth path, of
+ * a chain with look-ahead, and of single commands. */
+static void on_any_memory(void)
+{
+    const struct axis_limits l = { { 200.0, 200.0, 200.0 }, { 500.0, 500.0, 500.0 }, { 1e5 } };
+    static double place[2][LONGEST][3];
+    struct path side[SIDES];
+
+    for (int way = 0; way < 3; way++) {
+        struct record r[2] = { { 0 } };
+        for (int again = 0; again < 2; again++) {
+            memset(&m, again ? 0xa5 : 0, sizeof m);
+            begin_curve(&l, 50.0, way < 2 ? 0.1 : 0.0, 0.1);
+            CHECK_EQ(mcc_set_curve(&m, way == 0, 0.0), 0);
+            send_zigzag(side);
+            while (r[again].n < LONGEST && point(&r[again])) {
+                memcpy(place[again][r[again].n - 1], r[again].last.place, sizeof place[0][0]);
+            }
+        }
+        CHECK(r[0].n > 1000 && r[0].n == r[1].n);
+        CHECK(memcmp(place[0], place[1], (size_t)r[0].n * sizeof place[0][0]) == 0);
+    }
+}
+
 static void calls(void)
 {
     const struct axis_limits l = { { 200.0, 200.0, 200.0 }, { 500.0, 500.0, 500.0 }, { 0.0 } };
@@ -194,6 +218,7 @@ int main(void)
     calls();
     pieces();
     zigzag();
+    on_any_memory();
     anything(false);
     anything(true);
     return check_result();
