@@ -7,7 +7,7 @@ from motionfmu.base.toml_lines import shown
 from motionfmu.base.units import spelled
 from motionfmu.scenarios.body import Body
 from motionfmu.scenarios.system import System
-from motionfmu.scenarios.values import settings, start_values
+from motionfmu.scenarios.values import start_values, written
 
 if TYPE_CHECKING:
     from motionfmu.run.run_plan import Options, RunPlan
@@ -26,16 +26,16 @@ def _value(values: tuple[Any, ...]) -> str:
 def overrides(scenario: "RunPlan", options: "Options", system: System) -> list[str]:
     """A line for each value that is not the scenario's own; none if the scenario ran as written."""
     body = scenario.document.body
-    written = {s.end.name: s for s in settings(scenario.resolver, {})}
     given = {scenario.resolver.split(name)[0] for name in options.set}
     found = []
     for end, values in ((s.end, s.values) for s in system.settings if s.end.name in given):
-        before = written[end.name].values if end.name in written else start_values(end.port)
+        own = written(scenario.resolver, end.name)
+        before = start_values(end.port) if own is None else own
         if values == before:
             continue
         unit = f" {spelled(end.port.unit)}".rstrip()
         file = f"{options.source[end.name]}: " if end.name in options.source else ""
-        place = "scenario" if end.name in written else "default"
+        place = "default" if own is None else "scenario"
         found.append(f"{file}{end.name} = {_value(values)}{unit} ({place}: {_value(before)})")
     found += _steps(options, body)
     by_steps = {d.input for d in body.drive}

@@ -104,15 +104,29 @@ def settings(resolver: Resolver, *stronger: Mapping[str, Any]) -> list[Setting]:
     A value of one element, ``component.variable[i]``, leaves the others as they are.
     """
     document, faults = resolver.document, Faults()
-    found = dict(resolver.known.get(WRITTEN, {}))
-    if not found:
-        _add(resolver, document.body.set, found, faults, lambda error: error)
-        if not faults.lines:
-            resolver.known[WRITTEN] = dict(found)
+    found = dict(_written(resolver, faults))
     for pairs in stronger:
         _add(resolver, pairs, found, faults, lambda error: unplaced(document, error))
     faults.tell()
     return [_placed(document, s) for s in found.values()]
+
+
+def written(resolver: Resolver, name: str) -> Values | None:
+    """What the scenario itself gives a variable, if anything."""
+    faults = Faults()
+    own = _written(resolver, faults).get(name)
+    faults.tell()
+    return _placed(resolver.document, own).values if own else None
+
+
+def _written(resolver: Resolver, faults: Faults) -> Mapping[str, Setting]:
+    """The scenario's own settings, read once."""
+    found: dict[str, Setting] = resolver.known.get(WRITTEN, {})
+    if not found:
+        _add(resolver, resolver.document.body.set, found, faults, lambda error: error)
+        if not faults.lines:
+            resolver.known[WRITTEN] = found
+    return found
 
 
 def _placed(document: Document, setting: Setting) -> Setting:

@@ -93,7 +93,9 @@ class _Instance:
             *((e.port.shape, KINDS[e.port.type]) for e in self._job.recorded),
         ]
         columns: list[NDArray[Any]] = [np.empty((rows + 1, *s), kind) for s, kind in shapes]
-        places = (ctypes.c_void_p * len(columns))(*(c.ctypes.data for c in columns))
+        places = (ctypes.c_void_p * len(columns))(
+            *(c.__array_interface__["data"][0] for c in columns)  # `.ctypes` makes an object first
+        )
         record = self._library.own("motionfmu_record")
         if record(self._library.instance, places, ctypes.c_int64(rows)) != 0:
             raise MemoryError
