@@ -147,7 +147,8 @@ class Run:
     def judge(self, change: Change) -> str:
         """Make a change, run its tests, take it back."""
         python = change.file.suffix == ".py"
-        tests = [t for t in (of_python if python else of_c)(TREE, change.file) if self.holds(t)]
+        near = of_python(TREE, change.file, change.line) if python else of_c(TREE, change.file)
+        tests = [t for t in near if self.holds(t)]
         if not tests:
             return "no test is near"
         whole = change.file.read_text()

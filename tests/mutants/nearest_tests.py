@@ -1,5 +1,6 @@
 """Which tests are nearest to a file, by a rule that needs no list."""
 
+import ast
 import re
 from functools import cache
 from pathlib import Path
@@ -68,27 +69,42 @@ def _module(tree: Path, file: Path) -> str:
     return ".".join(p for p in parts if p != "__init__")
 
 
-def of_python(tree: Path, file: Path) -> list[str]:
-    """Python tests of a module: those that name it or its folder, the more often the nearer.
+def _functions(text: str, line: int) -> set[str]:
+    """Names of the function, and of the class, that a line stands in; without underscores."""
+    kinds = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
+    inside = [
+        node.name
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, kinds) and node.lineno <= line <= (node.end_lineno or 0)
+    ]
+    return {name for name in inside if not name.startswith("_")}
 
-    Those follow that name a module which imports it, or type its words as a command.
+
+def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:
+    """Python tests of a line of a module, the nearest first.
+
+    Near are those that name the module, the function around the line, or a module which imports
+    it, and those that type its words as a command.
     """
     module, folder = _module(tree, file), _module(tree, file.parent / "__init__.py")
     texts, stem = _texts(tree), file.stem
+    functions = [re.compile(rf"\b{name}\b") for name in _functions(texts[file], line)]
     users = [
         _module(tree, f)
         for f, text in texts.items()
         if "src" in f.relative_to(tree).parts and f != file and _names(text, module)
     ]
-    commands = [m.rpartition(".")[2].split("_") for m in (module, *users) if ".cli." in m]
+    typed = [m.rpartition(".")[2].split("_") for m in (module, *users) if ".cli." in m]
+    commands = ['["' + '", "'.join(words) + '"' for words in typed]
     found = []
     for test, text in texts.items():
         if not test.name.startswith("test_") or "long" in test.stem:
             continue
         hits = 8 * _names(text, module) + 2 * sum(_names(text, user) > 0 for user in users)
-        hits += 4 * (stem in test.stem or file.parent.name in test.stem)
-        hits += len(re.findall(rf"\b{re.escape(folder)}\b", text))
-        hits += 2 * sum(all(f'"{w}"' in text for w in words if w) for words in commands)
-        if hits:
+        hits += 4 * (stem in test.stem) + (file.parent.name in test.stem)
+        hits += min(4, len(re.findall(rf"\b{re.escape(folder)}\b", text)))
+        hits += 6 * sum(typed in text for typed in commands)
+        if hits:  # a function alone has a name that others have, too
+            hits += 4 * sum(bool(name.search(text)) for name in functions)
             found.append((-hits, str(test.relative_to(tree))))
     return [name for _, name in sorted(found)][:3]
