@@ -33,6 +33,24 @@ def test_what_was_taken_for_granted_is_listed(arm_folder):
     assert f"next: motionfmu run {arm_folder}/example.job --machine {arm_folder}" in shown
 
 
+@pytest.mark.parametrize("low, high", [(-2.0, 0.03), (-0.03, 2.0), (-2.0, -1.2), (-0.04, 0.06)])
+def test_the_start_is_beside_the_singular_place(low: float, high: float, tmp_path: Path) -> None:
+    text = SMALL.read_text(encoding="utf-8")
+    pitch = 'lower="-2" upper="2" velocity="6"'
+    assert text.count(pitch) == 1
+    file = tmp_path / "short.urdf"
+    file.write_text(text.replace(pitch, f'lower="{low}" upper="{high}" velocity="6"'))
+    told("import", file, "-o", tmp_path / "short")
+    machine = tomllib.loads((tmp_path / "short/machine.toml").read_text(encoding="utf-8"))
+    fifth = np.radians(machine["set"]["*.start_joint"][4])
+    rounded = np.radians(1e-6)  # as the file has all angles
+    assert low - rounded <= fifth <= high + rounded
+    geometry = opw_geometry(urdf_arm(SMALL))
+    inner = geometry.signs[4] * np.array([fifth, low, high]) - geometry.offsets[4]
+    most = np.abs(np.sin(inner))
+    assert most[0] >= min(0.1, most[1:].max()) - rounded
+
+
 def test_each_value_of_the_geometry_is_written_once(arm_folder):
     given = tomllib.loads((arm_folder / "machine.toml").read_text(encoding="utf-8"))["set"]
     assert {"*.a1", "*.c3", "*.joint_sign", "*.gear_ratio", "*.start_joint"} <= given.keys()

@@ -224,6 +224,11 @@ class _Values:
         signs, offsets = np.asarray(self.geometry.signs), np.asarray(self.geometry.offsets)
         wanted = signs * (START + offsets)
         found = []
+
+        def singular(fifth: float) -> float:
+            """0 where joints 4 and 6 are in line."""
+            return abs(math.sin(signs[4] * fifth - offsets[4]))
+
         for joint, angle in zip(self.arm.driven, wanted, strict=True):
             turns = [angle + 2.0 * math.pi * n for n in (0, -1, 1, -2, 2)]
             within = [a for a in turns if joint.low <= a <= joint.high]
@@ -231,10 +236,10 @@ class _Values:
             nearest = min(max(angle, joint.low + margin), joint.high - margin)
             found.append(min(within, key=abs) if within else nearest)
         start = np.array(found)
-        fifth = signs[4] * start[4] - offsets[4]
-        if abs(math.sin(fifth)) < 0.1:
+        if singular(start[4]) < 0.1:
             joint = self.arm.driven[4]
-            start[4] = min(max(start[4] + 0.5, joint.low), joint.high)
+            beside = [min(max(start[4] + by, joint.low), joint.high) for by in (0.5, -0.5)]
+            start[4] = max(beside, key=singular)
         self._take("start pose", "soft.start_joint, arm.start_joint", in_degrees(start),
                    "°; upper arm upright, forearm level, hand down, within the ranges")  # fmt: skip
         return start
