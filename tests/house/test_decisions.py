@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from plain_english import LONGEST, of_markdown
+from plain_english import LONGEST
+from sentences import of_markdown
 
 FOLDER = ROOT / "docs/decisions"
 PAGES = sorted(FOLDER.glob("*/*.md"))
