@@ -19,6 +19,7 @@ WORD = re.compile(r"[^\W_]")
 CODE = re.compile(r"``.+?``|`[^`\n]*(?:\n[^`\n]+)*`", re.DOTALL)
 ITEM = re.compile(r"(?:[-*+•]|\d+[.)]|\(\d+\))\s+")
 TYPED = re.compile(r"\*{0,2}[\w.]+(?:, \*{0,2}[\w.]+)* : .*")  # of numpydoc: name : type
+NAME = re.compile(r"[a-z][^\sA-Z]*")
 TITLE = 60  # columns below which a line above a deeper one is a title or a term
 RULE = re.compile(r"[-=~^ ]{3,}")
 COLUMNS = re.compile(r" {2,}")  # between the columns of a drawing, a listing or a table
@@ -39,6 +40,11 @@ class Sentence:
     line: int
     text: str
     prose: bool = True
+
+    @property
+    def name(self) -> bool:
+        """Whether it is a name of code, alone or with its type, and no text."""
+        return NAME.fullmatch(self.text) is not None or TYPED.fullmatch(self.text) is not None
 
     @property
     def words(self) -> int:

@@ -65,6 +65,25 @@ def test_a_forbidden_word_is_told_with_what_to_write() -> None:
     assert not plain_english.breaks("page.md", "Run `utilize` there.")
 
 
+def test_words_that_the_glossary_replaces_are_refused() -> None:
+    """Those that stand as code in its last column, also their plural; names of code are none."""
+    page = "| word | gives way |\n|---|---|\n| **new name**, **b** | x | `old name`, other |\n"
+    assert plain_english.replaced(page) == {"old name": "new name"}
+    assert plain_english.TERMS["lag error"] == "following error"
+    for old, word in plain_english.BETTER.items():
+        told = plain_english.breaks("page.md", f"This is the {old} here.")
+        assert [f'say "{word}"' in said or not word for said in told] == [True], old
+        assert (
+            not plain_english.breaks("CHANGELOG.md", f"The {old}.")
+            or old in plain_english.FORBIDDEN
+        )
+    assert plain_english.breaks("a.py", 'x = axis("Attitude")\n')
+    assert not plain_english.breaks("a.py", 'x = {"attitude": "arm.attitude"}\n')
+    assert not plain_english.breaks(
+        "a.py", 'def f():\n    """Do.\n\n    attitude : float\n    """\n'
+    )
+
+
 HEADER = f"/* {LONG[:60]}\n * {LONG[60:]} */\n"
 DOC = f'"""{SHORT}\n\n{SHORT} {LONG}\n"""\n'
 # A numpydoc table whose entries are long together, and one entry that is long.
