@@ -239,7 +239,7 @@ def of_header(text: str) -> Iterator[Sentence]:
 
 
 def of_code(text: str) -> Iterator[Sentence]:
-    """The sentences of the texts in C or JavaScript; those in a row are one."""
+    """The sentences of the texts in C; those in a row are one."""
     bare = re.sub(
         rf"({STRING})|/\*.*?\*/|//[^\n]*", lambda m: m[1] or _blank(m), text, flags=re.DOTALL
     )
@@ -247,6 +247,16 @@ def of_code(text: str) -> Iterator[Sentence]:
         joined = "".join(each[1:-1] for each in re.findall(STRING, found.group()))
         joined = joined.replace("\\n", "\n").replace('\\"', "'")
         yield from of_literal(joined, bare.count("\n", 0, found.start()) + 1)
+
+
+def of_script(text: str) -> Iterator[Sentence]:
+    """The sentences of the texts in JavaScript; what a template works out is a word."""
+    return of_code(re.sub(r"`((?:[^`\\]|\\.)*)`", _no_template, text))
+
+
+def _no_template(found: re.Match[str]) -> str:
+    text = re.sub(r"\$\{[^{}]*\}", "X", found[1]).replace('"', "'")
+    return '"' + text.replace("\n", " ") + '"' + _blank(found)
 
 
 def of_modelica(text: str) -> Iterator[Sentence]:
@@ -285,7 +295,7 @@ READERS = {
     ".c": of_code,
     ".html": of_html,
     ".inc": of_code,
-    ".js": of_code,
+    ".js": of_script,
     ".mo": of_modelica,
     ".toml": of_toml,
 }

@@ -119,6 +119,7 @@ TABLE = "Parameters\n    ----------\n" + f"    a : int\n        {LONG[:90]}.\n" 
         ("a.mo", f'model A "{SHORT}"\n  Real x "{LONG}";\n', 2),
         ("a.mo", f'annotation(Documentation(info = "<p>{SHORT}\n{LONG}</p>"));\n', 2),
         ("a.js", f'say("{LONG[:70]}" +\n  "{LONG[70:]}");\n', 1),
+        ("a.js", f"say(`{LONG[:70]}${{name}} {LONG[70:]}`);\n", 1),
         ("a.html", f"<p>{SHORT}</p>\n<p>{LONG}</p>\n", 2),
         ("a.toml", f"# {LONG[:60]}\n# {LONG[60:]}\nx = 1\n", 1),
         ("a.toml", f"x = 1  # {LONG}\n", 1),
