@@ -244,7 +244,7 @@ forces and torques come back. The frames before and after are parallel at angle 
 slides, angle is the way, torque the force of its drive. Rates, place and
 turn are signals and no part of the connector, which has as many flows as accelerations.</p>
 <p>The joint of a palletizer's tool is on a hand that turns on a pivot of the link before, by a sum
-of the angles of other joints; the pivot's torque is asked of these in the same proportion, for the
+of the angles of other joints. The pivot's torque is asked of these in the same proportion, for the
 rods of a linkage do no work. Elsewhere the hand is nothing and the pivot is the joint.</p>
 </html>"));
 end ArmLink;

@@ -21,8 +21,8 @@ equation
   b.f = if clearance > 0 then -contact else -a.f;
   annotation(Documentation(info = "<html>
 <p>The contact is that of BacklashSpring: it never pulls. The place of a is told by that of b and
-how far a is ahead. So a rigid joint leaves the equation of b as it is without a joint, to the bit:
-all force goes to b, whose mass then is that of both, and what is left here is a damped oscillator
-that nothing moves.</p>
+how far a is ahead. So a rigid joint leaves the equation of b as it is without a joint, to the bit.
+All force goes to b, whose mass then is that of both. What is left here is a damped oscillator that
+nothing moves.</p>
 </html>"));
 end Clearance;

@@ -132,7 +132,7 @@ protected
     cos(lean[3])*cos(lean[2])*sin(lean[1]) - sin(lean[3])*sin(lean[2])*cos(lean[1]),
     cos(lean[3])*sin(lean[2])*cos(lean[1]) + sin(lean[3])*cos(lean[2])*sin(lean[1]),
     sin(lean[3])*cos(lean[2])*cos(lean[1]) - cos(lean[3])*sin(lean[2])*sin(lean[1])}
-    "Attitude of the tool on the flange: w, x, y, z";
+    "Orientation of the tool on the flange: w, x, y, z";
   parameter Real origin[6,3](each unit = "m") "Joints in the links before";
   parameter Real axis[6,3](each unit = "1") "Axes of the joints";
   parameter Real slides[6](each unit = "1") "1 of a joint that slides, in m for rad, N for N.m";

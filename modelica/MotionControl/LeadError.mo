@@ -16,7 +16,8 @@ equation
   speed = nominal_speed*(1 + (slope + amplitude*2*pi/period*cos(phase)));
   annotation(Documentation(info = "<html>
 <p>Geometry only: the table moves as if the lead were exact, and is shown where it really stands.
-What this leaves out is small: of the force on the motor the slope (1e-4; 6e-3 with a wave of 10 um
-and 10 mm), and the force that takes the table along the wave, amplitude (2 pi v/period)^2 mass.</p>
+What this leaves out is small. Of the force on the motor that is the slope (1e-4; 6e-3 with a wave
+of 10 um and 10 mm). And it is the force that takes the table along the wave, amplitude
+(2 pi v/period)^2 mass.</p>
 </html>"));
 end LeadError;

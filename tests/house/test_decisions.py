@@ -6,15 +6,23 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from plain_english import LONGEST, of_markdown
+from plain_english import LONGEST
+from sentences import of_markdown
 
 FOLDER = ROOT / "docs/decisions"
 PAGES = sorted(FOLDER.glob("*/*.md"))
 MOST_LINES = 60  # of a page, one screen
 MOST_COLUMNS = 100  # of a line outside tables
+MOST_OF_ROW = 160  # columns of a table's row: a longer one is a paragraph in a cell
 DAY = r"(\d{4}-\d\d-\d\d)"
 DECIDED = re.compile(rf"\*Decided {DAY}(?:; changed {DAY})?\.\*")
 SUPERSEDED = re.compile(rf"\*Superseded on {DAY} by \[[^\]]+\]\(([^)#\s]+)(?:#[^)\s]+)?\)\.?\*")
+# What follows the way that was rejected: two words and more behind a colon, another sentence or
+# clause. A way alone, however long, teaches nobody why not to try it again.
+REASON = re.compile(
+    r": (?:\S+ ){2}|; |[.?!]\)? [A-Z0-9`\"(]|\b(?:because|since)\b"
+    r"|, (?:\w+ )?(?:as|but|for|so|where|which|who|whose|whom)\b"
+)
 LINK = re.compile(r"\[((?:[^\[\]]|\[[^\[\]]*\])*)\]\(([^)\s]+)\)")
 
 
@@ -29,18 +37,28 @@ def faults(text: str, folder: Path) -> list[str]:
     if len(lines) > MOST_LINES:
         found.append(f"{len(lines)} lines; {MOST_LINES} are one screen")
     found += [
-        f"line {number}: {len(line)} columns; {MOST_COLUMNS} at most"
+        f"line {number}: {len(line)} columns; {most} at most"
         for number, line in enumerate(lines, 1)
-        if len(line) > MOST_COLUMNS and not line.startswith("|")
+        if len(line) > (most := MOST_OF_ROW if line.startswith("|") else MOST_COLUMNS)
     ]
-    if not any(line.startswith("## ") for line in lines):
+    if not any(line.startswith("## ") and line != "## Rejected" for line in lines):
         found.append("no heading above the decisions")
     found += [
         f"{sentence.words} words; {LONGEST} at most: {sentence.text}"
         for sentence in of_markdown(text)
         if sentence.words > LONGEST
     ]
+    found += [
+        f"rejected without a reason: {way}" for way in rejected(text) if not REASON.search(way)
+    ]
     return found + _dead_links(text, folder)
+
+
+def rejected(text: str) -> list[str]:
+    """The ways below "Rejected", a line each, code as a word."""
+    section = re.search(r"^## Rejected\n(.*?)(?=^## |\Z)", text, re.DOTALL | re.MULTILINE)
+    ways = re.findall(r"^- (.*?)(?=^- |\n\n|\Z)", section[1] if section else "", re.DOTALL | re.M)
+    return [" ".join(re.sub(r"`[^`]*`", "X", way).split()) + " " for way in ways]
 
 
 def _dead_links(text: str, folder: Path) -> list[str]:
@@ -97,6 +115,11 @@ On which side do cars drive?
 ## Decided
 
 - **Cars drive on the right.** All neighbours do.
+
+## Rejected
+
+- The left: there are more cars of the other kind.
+- The middle, which takes two turns.
 """
 
 
@@ -109,7 +132,11 @@ On which side do cars drive?
         ("## Decided\n\n", "", "no heading"),
         ("All neighbours do.", "do so\n" * 20 + "always.", "words; 40"),
         ("All neighbours do.", "`" + "x" * 100 + "`", "columns; 100"),
+        ("## Rejected", "| " + "x" * 160 + " |\n\n## Rejected", "columns; 160"),
         ("On which", "\n" * 60 + "On which", "lines; 60"),
+        (": there are more cars of the other kind", "", "without a reason: The left."),
+        (": there are more cars of the other kind", ": no", "without a reason: The left: no."),
+        ("The middle, which takes two turns", "The middle in two turns", "reason: The middle in"),
         ("All neighbours", "[All](nowhere.md) neighbours", "leads nowhere"),
         ("\nOn which", "*Superseded on 2026-11-25 by [x](other.md)*\n\nOn which", "other.md"),
         ("\nOn which", "*Superseded by another page.*\n\nOn which", "no day and page"),

@@ -4,12 +4,17 @@
  * group and card numbers behind. Where a call means something else than there, its comment says so.
  * Every call returns an int code; there, the calls that set a speed return that speed.
  *
- * Left out: MCC_InitSystem, whose cards, groups and encoders are other than struct machine
- * (MCC_init_motion); MCC_AbortMotionEx, which is given a deceleration time (MCC_motion_abort uses
- * that of the command); MCC_GoHome with its tolerance and escape time (MCC_Home); the hand wheel's
- * calls for planes and several axes (MCC_MPG_set); axis masks of MCC_Line and MCC_PtP (the one-axis
- * calls); groups, command modes and DAC outputs (the core groups); and what the document does
- * not have, from helices over custom motion to encoders and I/O.
+ * Left out, with what stands for it:
+ *  - MCC_InitSystem, whose cards, groups and encoders are other than struct machine:
+ *    MCC_init_motion.
+ *  - MCC_AbortMotionEx, which is given a deceleration time: MCC_motion_abort uses that of the
+ *    command.
+ *  - MCC_GoHome with its tolerance and escape time: MCC_Home.
+ *  - The hand wheel's calls for planes and several axes: MCC_MPG_set.
+ *  - Axis masks of MCC_Line and MCC_PtP: the one-axis calls.
+ *  - Groups, command modes and DAC outputs: the core groups.
+ * What the document does not have is left out, too, from helices over custom motion to encoders
+ * and I/O.
  */
 #ifndef MCCL_H
 #define MCCL_H

@@ -83,10 +83,10 @@ void pcl_halt(struct pcl *p, bool halted);
 /* True if an interrupt has come that pcl_notice has not seen. */
 bool pcl_interrupt(const struct pcl *p, const struct pcl_card *card);
 
-/* A look at the card, which several libraries may share, in three steps. pcl_acknowledged returns
- * the number of frames that the card has taken of the transaction it has acknowledged, -1 if there
- * is none; then pcl_release drops the points of each library; then pcl_notice looks for interrupts,
- * of which a new one gets this latency [clocks]. */
+/* A look at the card, which several libraries may share, in three steps. First pcl_acknowledged
+ * returns the number of frames that the card has taken of the transaction it has acknowledged, -1
+ * if there is none. Then pcl_release drops the points of each library. Last pcl_notice looks for
+ * interrupts, of which a new one gets this latency [clocks]. */
 int32_t pcl_acknowledged(struct pcl *p, const struct pcl_card *card);
 void pcl_notice(struct pcl *p, const struct pcl_card *card, int64_t now, int64_t latency);
 

@@ -23,7 +23,7 @@ enum { ARM_MOVES_SIZE = 320 };
 #define ARM_MOVES_LEVER 100.0
 
 enum arm_move_kind {
-    ARM_MOVE_POSE,  /* tip and attitude */
+    ARM_MOVE_POSE,  /* tip and orientation */
     ARM_MOVE_WRIST, /* tip; joints 4 to 6 are linear over the path */
     ARM_MOVE_JOINTS /* all joints are linear over the path */
 };
@@ -31,7 +31,7 @@ enum arm_move_kind {
 struct arm_move {
     enum arm_move_kind kind;
     double from, to; /* [mm] its coordinate at its start and end; equal: the tool does not turn */
-    double turn[4];  /* attitude at its start; of a move of the joints: at its end */
+    double turn[4];  /* orientation at its start; of a move of the joints: at its end */
     double by[3];    /* [rad] rotation vector of its turn, base frame */
     double joint[OPW_JOINTS]; /* [rad] at its start */
     double step[OPW_JOINTS];  /* [rad] to its end */
@@ -51,7 +51,7 @@ struct arm_geometry {
     const struct arm_moves *moves;
 };
 
-/* Begin without moves, the tool having this attitude, the external axis being there. */
+/* Begin without moves, the tool having this orientation, the external axis being there. */
 void arm_moves_start(struct arm_moves *c, const double turn[4], double external);
 
 /* Append a move whose coordinate goes on by `way` [mm]; its from and to are set here. */

@@ -32,8 +32,8 @@ bool manipulator_slides(const struct manipulator *m, int joint);
 /* What people give a joint in: [rad] of a degree, [m] of a mm. */
 double manipulator_unit(const struct manipulator *m, int joint);
 
-/* Angle by which an arm of few joints misses the attitude of a pose of the tip, wherever that is:
- * all that turns its flange are axes in parallel. 0 of other arms. [rad] */
+/* Angle by which an arm of few joints misses the orientation of a pose of the tip [rad], wherever
+ * that is: all that turns its flange are axes in parallel. 0 of other arms. */
 double manipulator_tilt(const struct manipulator *m, const struct pose *pose);
 
 /* Sum of the flags (manipulator_branch) that branches of the arm have. */

@@ -1,4 +1,4 @@
-/* quaternion - attitudes as unit quaternions (w, x, y, z).
+/* quaternion - orientations as unit quaternions (w, x, y, z).
  *
  * A program's angles A B C [deg] mean R = Rz(C) Ry(B) Rx(A).
  */

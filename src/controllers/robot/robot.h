@@ -54,14 +54,14 @@ enum robot_kind {
     ROBOT_JOINTS, /* all joints start and end together, the slowest decides */
     ROBOT_LINE,
     ROBOT_CIRCLE, /* through via.at to the target */
-    ROBOT_ARC,    /* about a centre; target.pose gives the attitude at its end only */
+    ROBOT_ARC,    /* about a centre; target.pose gives the orientation at its end only */
     ROBOT_SPLINE  /* of a row of poses as one smooth curve (tool_spline.h); it flows */
 };
 
 enum robot_singular {
     ROBOT_SLOW,   /* the tool slows so that the joints keep their limits */
     ROBOT_REFUSE, /* the move is refused if it had to */
-    ROBOT_WRIST   /* joints 4 to 6 go straight, the tip keeps its path, not the attitude */
+    ROBOT_WRIST   /* joints 4 to 6 go straight, the tip keeps its path, not the orientation */
 };
 
 struct robot_move {
@@ -100,7 +100,7 @@ enum robot_status {
     ROBOT_OFF_PLANE,    /* an arc's start is not in the plane of its centre across its normal */
     ROBOT_NO_UNIT,      /* an arc's normal is no unit vector */
     ROBOT_NO_SPLINE,    /* two poses in a row are the same */
-    ROBOT_TILTED,       /* the arm's joints do not turn the tool to such an attitude */
+    ROBOT_TILTED,       /* the arm's joints do not turn the tool to such an orientation */
     ROBOT_NO_JOINT,     /* the arm has no such joint, 6: no external axis */
     ROBOT_BESIDE        /* a track goes with joints and lines, a table with arcs, too */
 };

@@ -49,7 +49,7 @@ int robot_open_flags(const struct manipulator *arm, const struct robot_target *t
 /* Branches of the inverse kinematics that a target allows, a bit each. */
 uint32_t robot_branches(const struct manipulator *arm, const struct robot_target *t);
 
-/* Whether the arm has no joints that turn the tip to the attitude of a pose; *why says by how
+/* Whether the arm has no joints that turn the tip to the orientation of a pose; *why says by how
  * much. */
 bool robot_tilted(const struct manipulator *arm, const struct pose *pose,
                   struct robot_refusal *why);

@@ -5,7 +5,7 @@
  *                                     rises from 0 to 1 with ends of no slope and no bend.
  *
  * So at each pose the way has the slope and the bend of one parabola, on both sides. The parameter
- * is the distance from pose to pose. An attitude is a rotation vector from the middle one of its
+ * is the distance from pose to pose. An orientation is a rotation vector from the middle one of its
  * parabola's three.
  */
 #ifndef TOOL_SPLINE_H

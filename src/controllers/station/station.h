@@ -8,10 +8,10 @@
  *     station_run(s, s->clock + STATION_HZ, NULL);     one second
  *     station_read(s, &reading);
  *
- * PC and card meet on the bus grid k T_b of pc.h, as the FMUs do whose communication step is T_b:
- * at an instant the PC reads the card as it is, and the card takes what the PC publishes, which it
- * has decided by what it read one instant before. Pulses, FIFO and interrupts happen at their own
- * clock whatever T_b is, and a run in pieces gives the same bits as one without a break.
+ * PC and card meet on the bus grid k T_b of pc.h, as the FMUs do whose communication step is T_b.
+ * At an instant the PC reads the card as it is, and the card takes what the PC publishes. The PC
+ * has decided that by what it read one instant before. Pulses, FIFO and interrupts happen at their
+ * own clock whatever T_b is, and a run in pieces gives the same bits as one without a break.
  */
 #ifndef STATION_H
 #define STATION_H

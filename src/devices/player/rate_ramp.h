@@ -15,7 +15,7 @@
  *
  * where each of the last two terms of the jerk gets half of its margin. The ramp is the quickest
  * one within these bounds: r'^2 as a function of r by a forward and a backward pass over a grid of
- * r, between whose nodes r'' is constant and the bounds are those of the larger r.
+ * r. Between two of its nodes r'' is constant, and the bounds are those of the larger r.
  */
 #ifndef RATE_RAMP_H
 #define RATE_RAMP_H

@@ -1,8 +1,8 @@
 /* chain_iterate - joints of a pose by Newton's method, each time with a proof that they are there.
  *
- * With residual F(q), of the flange's place in sizes of the arm and of its turning, A a left
- * inverse of F'(q0), e = |A F(q0)| the first step and K a bound of |A F''| all over, the theorem of
- * Newton and Kantorovich says of the largest joint's way:
+ * F(q) is the residual, of the flange's place in sizes of the arm and of its turning. A is a left
+ * inverse of F'(q0), e = |A F(q0)| the first step and K a bound of |A F''| all over. Then the
+ * theorem of Newton and Kantorovich says of the largest joint's way:
  *
  *     K e <= 1/2   =>   one q* with A F(q*) = 0 within r = (1 + sqrt(1 - 2 K e)) / K of q0, and it
  *                       is no further than 2 e

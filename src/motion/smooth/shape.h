@@ -5,11 +5,11 @@
  *
  * - Long lines, arcs and cubics keep their geometry. Runs of short ones, with a part of the long
  *   ones they touch without a corner, become a spline (shape_run.h).
- * - At a corner, where the direction turns by more than 53 degrees within 15 tolerances, and where
- *   a run turns most (or is farthest out) near a place at which no spline stays within the
- *   tolerance, the path goes through the vertex with r'' = 0; there, and between long ones, a
- *   quintic joins both sides (shape_join.h). Where there is no room for one the last segment before
- *   says `rest`.
+ * - At a corner the direction turns by more than 53 degrees within 15 tolerances. There the path
+ *   goes through the vertex with r'' = 0. It also does so near a place at which no spline stays
+ *   within the tolerance, where the run turns most or is farthest out.
+ * - At such a vertex, and between long ones, a quintic joins both sides (shape_join.h). Where there
+ *   is no room for one the last segment before says `rest`.
  * - r, r' and r'' are continuous but where the motion rests. The distance from the path to the
  *   commands and back, in six coordinates, is proved to be at most the tolerance.
  * - The window is bounded: the cost of a command does not depend on how many there are.

@@ -1,8 +1,8 @@
 /* shape_join - two segments of a path joined by a quintic that stays within a tolerance.
  *
  * It has the place, r' and r'' of both where it leaves them. Between two lines it is the curve with
- * r'' ~ x (1 - x), 0.1875 of its half length times the change of direction off the corner; a corner
- * with more room has two, the first from a line to the middle, the second from there.
+ * r'' ~ x (1 - x). It is 0.1875 of its half length times the change of direction off the corner. A
+ * corner with more room has two, the first from a line to the middle, the second from there.
  * The bound is proved as in shape_run.h, for the polyline it replaces.
  */
 #ifndef SHAPE_JOIN_H

@@ -1,19 +1,21 @@
 /* shape_run - a run of short chords becomes a cubic spline with continuous r'', within a tolerance.
  *
  * Control points are those of least  integral |r'''|^2 + sum of weight |r(u_i) - vertex_i|^2  over
- * a window; weights grow and knots come closer where the curve leaves the tolerance. Five sixths
- * of the window are then made into segments, what they share with the rest holds in the next one.
+ * a window. Weights grow and knots come closer where the curve leaves the tolerance. Five sixths
+ * of the window are then made into segments. What they share with the rest holds in the next one.
  *
- * What holds of each segment that is made: a place u_i of the curve belongs to each vertex, in
- * order; (1) r(u_i) is within the tolerance of its vertex, and (2) the control points of the
- * curve's parts between u_i and u_i+1 are within the tolerance of the chord between the vertices.
- * Then - the curve is within the tolerance of the path: what lies around a chord is convex, so it
- * holds
- *   the hull of the control points;
- * - the path is within the tolerance of the curve: a point of the chord has the foot of some point
- *   of its part of the curve, by continuity, and (2) bounds their distance; or it lies before the
- *   foot of r(u_i) [behind that of r(u_i+1)], and its distance from r(u_i), convex along the chord,
- *   is bounded at that foot by (2) and at the vertex by (1).
+ * A place u_i of the curve belongs to each vertex, in order, and two things hold of each segment
+ * that is made:
+ * (1) r(u_i) is within the tolerance of its vertex.
+ * (2) The control points of the curve's parts between u_i and u_i+1 are within the tolerance of the
+ *     chord between the vertices.
+ * From that follows:
+ * - The curve is within the tolerance of the path. What lies around a chord is convex, so it holds
+ *   the hull of the control points.
+ * - The path is within the tolerance of the curve. By continuity a point of the chord is the foot
+ *   of some point of its part of the curve, and (2) bounds their distance. Else it lies before the
+ *   foot of r(u_i) [behind that of r(u_i+1)]. Its distance from r(u_i) is convex along the chord,
+ *   and bounded at that foot by (2) and at the vertex by (1).
  * All distances are those of six coordinates.
  */
 #ifndef SHAPE_RUN_H

@@ -1,10 +1,10 @@
 /* speed_cell - a short part of a segment, and what the speed along it may be.
  *
  * With x = (du/dt)^2 and a = d2u/dt2 axis k has the acceleration r''_k x + r'_k a. While a is
- * constant x runs straight over the cell, from x0 at its start to x1 at its end, so r''_k x is at
- * most a product of two straight lines and what r'' and r' bend away from theirs: a limit of an
- * axis becomes three planes g0 x0 + g1 x1 <= 1 (the coefficients in Bernstein's form). They hold at
- * every instant of the cell, and an error of the bounds falls with the square of its length.
+ * constant x runs straight over the cell, from x0 at its start to x1 at its end. So r''_k x is at
+ * most a product of two straight lines and what r'' and r' bend away from theirs. Thus a limit of
+ * an axis becomes three planes g0 x0 + g1 x1 <= 1 (the coefficients in Bernstein's form). They hold
+ * at every instant of the cell, and an error of the bounds falls with the square of its length.
  */
 #ifndef SPEED_CELL_H
 #define SPEED_CELL_H

@@ -1,5 +1,5 @@
 /* trajectory - commands become the commanded positions of all axes over time: a point for each
- * interpolation cycle, which is a frame of pulses.
+ * interpolation cycle, of which a card's frame is made.
  *
  * Motion runs in continuous time. A command that ends inside a frame hands the rest of it to the
  * next one, so no time is lost between them. Four motions take turns:

@@ -425,7 +425,7 @@ def _estimates(poses: ArmPoses, fit: PoseFit, work: _Fitting) -> dict[str, Estim
         if not why and k not in spread:
             why = "taken as known"
             if column.name in TOOL_TURN and work.record.attitudes is None:
-                why = "no attitudes were measured"
+                why = "no orientations were measured"
         found[column.name] = Estimate(float(values[k]), spread.get(k, math.inf), column.unit, why)
     return found
 

@@ -4,7 +4,7 @@ The measured place of a pose is
 
     base_place + R_base (tip(q, e) + R(q, e) tool)
 
-with the tip and the attitude R of the plant at its start, where its motors stand at the joint
+with the tip and the orientation R of the plant at its start, where its motors stand at the joint
 angles q and its links hang in their gears; e are its errors.
 """
 
@@ -90,7 +90,7 @@ class ArmPoses:
         self.scale = np.array([SIZE[c.unit] for c in self.columns])
 
     def _made(self, ode: equation_text.Ode, table: ArmPose) -> ca.Function:
-        """Place [mm] and attitude of a pose, and their slopes to all columns."""
+        """Place [mm] and orientation of a pose, and their slopes to all columns."""
         shown = [d.name.partition("[")[0] for d in ode.outputs]
         picked = [
             [k for k, n in enumerate(shown) if n == name]
@@ -129,7 +129,7 @@ class ArmPoses:
     def at(
         self, joints: Array, frames: ArmFrames, errors: Array, measured: Array | None = None
     ) -> tuple[Array, Array, Array, Array, Array]:
-        """Places (n, 3) [mm], attitudes (n, 3, 3), turns left (n, 3), slopes of places and turns.
+        """Places (n, 3) [mm], orientations (n, 3, 3), turns left (n, 3), slopes of places, turns.
 
         Slopes are (n, 3, columns); `errors` are in mm and rad.
         """

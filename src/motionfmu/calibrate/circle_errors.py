@@ -1,8 +1,8 @@
 """Squareness, scales and backlash of two axes in a circle run both ways round (ISO 230-4).
 
-The parts of a ballbar's signature (`motionfmu.analysis.explain.ballbar`) with their deviations: a
-squareness of s more than 90° is q = -s R/2, scales of the two axes that differ by d are R d/2, and
-what changes its sign with the direction (lag, gains) is no geometry.
+They are parts of a ballbar's signature (`motionfmu.analysis.explain.ballbar`), with deviations. A
+squareness of s more than 90° is q = -s R/2, and scales of the two axes that differ by d are R d/2.
+What changes its sign with the direction (lag, gains) is no geometry.
 """
 
 import math

@@ -55,7 +55,7 @@ def pose_record(
     Parameters
     ----------
     file : str or Path
-        Columns ``j1`` to ``j6`` [deg], ``X``, ``Y``, ``Z`` [mm]; with an attitude also ``A``,
+        Columns ``j1`` to ``j6`` [deg], ``X``, ``Y``, ``Z`` [mm]; with an orientation also ``A``,
         ``B``, ``C`` [deg], R = Rz(C) Ry(B) Rx(A), or ``qw``, ``qx``, ``qy``, ``qz``.
     over : mapping, optional
         Columns by these names, where they have others.

@@ -95,9 +95,9 @@ def position_record(file: str | Path) -> PositionRecord:
     Parameters
     ----------
     file : str or Path
-        A table with a row a reading (target, position or deviation, and a direction or the order in
-        which targets follow), a table with a row a target (and a column an approach: ``1 up``,
-        ``1 down``, ...), or an .rtl of Renishaw's laser software.
+        A table with a row a reading: target, position or deviation, and a direction or the order in
+        which targets follow. Or one with a row a target and a column an approach (``1 up``,
+        ``1 down``, ...). Or an .rtl of Renishaw's laser software.
 
     Returns
     -------

@@ -2,9 +2,9 @@
 
 The edge E trails the axis A by the offset d and is drawn towards it: E' = h (h . A') with the
 heading h = (A - E) / d. It follows a path C if A = C + d t with the path's unit tangent t, for then
-A - E = d t and E' = C' is along t. So the axis goes along a line d ahead of the edge; along an arc
-of radius R on one of sqrt(R^2 + d^2) about the same centre; and about a corner on an arc of radius
-d, on which the edge turns in its place.
+A - E = d t and E' = C' is along t. So along a line the axis goes d ahead of the edge. Along an arc
+of radius R it goes on one of sqrt(R^2 + d^2) about the same centre. About a corner it goes on an
+arc of radius d, on which the edge turns in its place.
 """
 
 import numpy as np

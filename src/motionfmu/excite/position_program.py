@@ -1,8 +1,8 @@
 """An excitation as a part program that a mill can run.
 
 The axis that is measured moves by a multisine about a steady speed while another one carries the
-time: the path is driven at one feed, so that a controller has no feed to change, only a smooth
-curve to follow. Look-ahead (G64 P) is wanted. Its planner says how large the multisine may be.
+time. The path is driven at one feed, so a controller has no feed to change, only a smooth curve to
+follow. Look-ahead (G64 P) is wanted. Its planner says how large the multisine may be.
 """
 
 import math

@@ -15,12 +15,14 @@ from motionfmu.fmu import cores, fmu_toml
 def lists(root: Path) -> str:
     """Every list that CMakeLists.txt uses, of the checkout in this folder.
 
-    ``version`` of the package; ``cores``, and of each ``core_X_folder``, ``core_X_uses`` and
-    ``core_X_all``, itself and all that it uses, directly or not; ``fmus``, and of each
-    ``fmu_X_identifier``, ``fmu_X_cores``, ``fmu_X_all_cores`` and ``fmu_X_modelica``, ON or OFF;
-    of each C file of a test ``test_X_cores``, whose headers it includes, ``test_X_all_cores``, and
-    ``test_X_folders``, which hold the headers of tests that it includes; ``read_files``: the lists
-    change only with one of them.
+    - ``version`` of the package.
+    - ``cores``, and of each ``core_X_folder``, ``core_X_uses`` and ``core_X_all``, itself and all
+      that it uses, directly or not.
+    - ``fmus``, and of each ``fmu_X_identifier``, ``fmu_X_cores``, ``fmu_X_all_cores`` and
+      ``fmu_X_modelica``, ON or OFF.
+    - Of each C file of a test ``test_X_cores``, whose headers it includes, ``test_X_all_cores``,
+      and ``test_X_folders``, which hold the headers of tests that it includes.
+    - ``read_files``: the lists change only with one of them.
     """
     project = root / "pyproject.toml"
     folders = cores.folders(root / "src")

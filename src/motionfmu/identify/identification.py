@@ -170,9 +170,9 @@ def identify(
 ) -> Identified:
     """Find the parameters of an axis' plant that explain a record.
 
-    Start values by inverse dynamics and least squares (Gautier 1997), then closed-loop output error
-    by multiple shooting and Gauss-Newton on the plant's own equation and the sampled laws of the
-    scenario; the friction law is the one that explains best what was kept back.
+    Start values come by inverse dynamics and least squares (Gautier 1997). Then closed-loop output
+    error follows by multiple shooting and Gauss-Newton on the plant's own equation and the sampled
+    laws of the scenario. The friction law is the one that explains best what was kept back.
 
     Parameters
     ----------

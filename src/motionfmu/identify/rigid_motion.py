@@ -1,6 +1,6 @@
 """What a plant needs to follow a measured motion: inverse dynamics of any equation.
 
-A slow motion s(t) of an axis moves all its states together: x = X + R1 s + R2 s' where R1 is the
+A slow motion s(t) of an axis moves all its states together: x = X + R1 s + R2 s'. Here R1 is the
 uniform motion that nothing resists, A R1 = 0, and R2 the speed that goes with it, A R2 + B u =
 R1. States and drive at an instant solve xdot(x, u) = R1 s' + R2 s'' and y(x) = s. The drive as a
 function of parameters is the inverse dynamic model, whose least squares Gautier (1997) gives.

@@ -1,9 +1,9 @@
 """Signals of a live machine exchanged with another program or device by UDP.
 
-A datagram, little endian, is the same both ways: ``MFX1``; a number that grows by one with each;
-the number of the latest datagram that came from the other side, 0 none yet; simulated time [ns];
-flags; how many values follow; the values as doubles. What is late, repeated, too short or of
-another count is not taken. README.md shows a peer in C and in Python.
+A datagram, little endian, is the same both ways. It begins with ``MFX1`` and a number that grows by
+one with each. Then come the number of the latest datagram from the other side, 0 none yet, and the
+simulated time [ns]. Flags, how many values follow and the values as doubles end it. What is late,
+repeated, too short or of another count is not taken. README.md shows a peer in C and in Python.
 """
 
 import math

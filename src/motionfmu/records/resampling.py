@@ -20,9 +20,9 @@ class ResamplingError:
     Attributes
     ----------
     between : float
-        Largest error of values between two samples, as far as the samples tell: of a straight line
-        h^2/8 times the second derivative, which is the second difference of the samples; of a value
-        that is held the step to the next sample. 0 if every new instant is a sample.
+        Largest error of values between two samples, as far as the samples tell. Of a straight line
+        it is h^2/8 times the second derivative, which is the second difference of the samples. Of a
+        value that is held it is the step to the next sample. 0 if every new instant is a sample.
     lost : float
         Largest distance of a sample from the curve through the new ones: what a coarser grid does
         not show.

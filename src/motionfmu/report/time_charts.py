@@ -99,8 +99,8 @@ def gap_chart(time: Array, tool: ToolGap) -> Diagram:
     )
     rows = [(_scale("Distance", name, [distance], True), [distance])]
     if tool.angle is not None:
-        angle = _curve(time, tool.angle, "Attitude", AXES[1])
-        rows.append((_scale("Attitude", "°", [angle], True), [angle]))
+        angle = _curve(time, tool.angle, "Orientation", AXES[1])
+        rows.append((_scale("Orientation", "°", [angle], True), [angle]))
     return _chart(time, rows)
 
 

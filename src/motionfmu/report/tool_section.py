@@ -33,5 +33,5 @@ def _rows(one: ToolGap) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = [(name, length(distance.largest), at, length(distance.rms))]
     if angle is not None:
         turned = (f"{figure(angle.largest)}°", f"{angle.at:.3f} s", f"{figure(angle.rms)}°")
-        rows.append(("attitude", *turned))
+        rows.append(("orientation", *turned))
     return rows

@@ -78,9 +78,9 @@ class Machine:
         Parameters
         ----------
         program : str or Path
-            File of the program, in the language of the machine's controller; or a drawing
-            (.plt, .svg, .dxf), which a mill gets as G-code, and a network card as a job, as it
-            gets a part program; or a joint trajectory (.csv, .yaml), which a robot gets as a job.
+            File of the program, in the language of the machine's controller. A drawing (.plt, .svg,
+            .dxf) becomes G-code for a mill and a job for a network card, which takes a part program
+            as a job, too. A joint trajectory (.csv, .yaml) becomes a job for a robot.
         limit : float or "planned"
             The longest run [s]; one that is not done by then has a warning. Planned: twice the
             time that its controller plans, and 600 s at least.

@@ -11,7 +11,7 @@ TOOL, ATTITUDE, BASE = "arm.tool", "arm.attitude", "arm.base" + COMMAND
 
 @dataclass(frozen=True)
 class Tool:
-    """Outputs of one tool, commanded and actual: positions, attitudes if both have them.
+    """Outputs of one tool, commanded and actual: positions, orientations if both have them.
 
     The actual position is in the arm's base, whose place the controller commands if it knows one.
     """

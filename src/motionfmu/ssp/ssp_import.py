@@ -308,9 +308,9 @@ def take(path: Path, folder: Path, stop: float | None = None, step: float | None
     Raises
     ------
     InputError
-        Of what cannot be taken over, with the component or connection: a model that is no FMU, an
-        FMU that is missing, not for co-simulation or of FMI 1, a transformation, a conversion of
-        units on a wire, a signal dictionary.
+        Of what cannot be taken over, with the component or connection. That is a model that is no
+        FMU, an FMU that is missing, not for co-simulation or of FMI 1, a transformation, a
+        conversion of units on a wire, or a signal dictionary.
     """
     if folder.exists():
         raise InputError(f"{folder}: it is there already")

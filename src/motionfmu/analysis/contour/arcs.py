@@ -249,9 +249,9 @@ class Arcs:
         With w = a - phase, R = radius + g a and `reach` from the axis to the point, half the
         squared distance D has ``D'' = reach (R cos w + 2 g sin w) + g^2 + k^2``. Its derivative
         vanishes where ``tan w = 3 g/R``: as R is not negative and tan w - 3 g/R rises, once in each
-        half turn. So D'' has one peak a turn, and between a peak and a minimum of D, where
-        D'' >= 0, it falls away from the peak: D' is concave to the right of it, convex to the left,
-        and Newton from the peak, or from the end of the arc before it, never steps over the root.
+        half turn. So D'' has one peak a turn. Between a peak and a minimum of D, where D'' >= 0, it
+        falls away from the peak: D' is concave to the right of it, convex to the left. So Newton
+        from the peak, or from the end of the arc before it, never steps over the root.
         """
         x, y, _ = own
         phase = np.arctan2(y, x)

@@ -37,10 +37,10 @@ def analyse(
 ) -> ContourResult:
     """Find the contour error of a run against the exact geometry.
 
-    First the pulses put out are followed along the path: each sample may lie on the segments
-    whose points were written to the card within the time a command can wait in the FIFO, where
-    two commands are mixed on both from the begin of the newer to the end of the older. Then
-    the tool: it may lie on the segments where the pulses have been within the servo window.
+    First the pulses put out are followed along the path. Each sample may lie on the segments
+    whose points were written to the card within the time a command can wait in the FIFO. Where
+    two commands are mixed it may lie on both, from the begin of the newer to the end of the older.
+    Then the tool: it may lie on the segments where the pulses have been within the servo window.
     Both advance along the path and never return, see `motionfmu.analysis.contour.assign`.
 
     Parameters

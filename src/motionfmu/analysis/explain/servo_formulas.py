@@ -131,11 +131,11 @@ def ellipse(radius: float, responses: tuple[complex, complex]) -> tuple[float, f
 def corner(feed: float, angle: float, gain: float, acceleration: float = 0.0) -> float:
     """Contour error [mm] of a corner that the command runs into at a feed [mm/s].
 
-    At constant feed sin(th) V/(e Kp), reached at Kp t = 1 behind the corner. With a command that
-    brakes to the feed and speeds up again [mm/s2], with u = Kp t, v = V/Kp and w = a/Kp^2, the tool
-    is ``(v + w) e^-u`` before the corner on the first move and
-    ``v (u - 1 + e^-u) + w (u^2/2 - u + 1 - e^-u)`` behind it on the second: the error is largest
-    where both are equal. From rest that is 0.2725 sin(th) a/Kp^2, at u = 1.30.
+    At constant feed sin(th) V/(e Kp), reached at Kp t = 1 behind the corner. Else the command
+    brakes to the feed and speeds up again [mm/s2]; let u = Kp t, v = V/Kp and w = a/Kp^2. On the
+    first move the tool is ``(v + w) e^-u`` before the corner, on the second
+    ``v (u - 1 + e^-u) + w (u^2/2 - u + 1 - e^-u)`` behind it. The error is largest where both are
+    equal. From rest that is 0.2725 sin(th) a/Kp^2, at u = 1.30.
     """
     v, w = feed / gain, acceleration / gain**2
     if v + w <= 0.0:

@@ -109,8 +109,8 @@ def measure(setup: Setup, excitation: Excitation) -> Response:
     where that is too fast.
 
     Where the operating point has a speed and the input's wire comes from the plant, a ramp is
-    added too, so that the FMUs move at that speed; straight drifts are taken off the outputs,
-    where more than one period is measured.
+    added too, so that the FMUs move at that speed. Where more than one period is measured, straight
+    drifts are taken off the outputs.
 
     Parameters
     ----------

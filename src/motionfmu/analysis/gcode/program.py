@@ -252,8 +252,8 @@ def defaults() -> dict[str, Any]:
     -------
     dict
         Lengths in mm, feed and max_feed in mm/min, speeds in mm/s, accelerations in mm/s^2,
-        jerks in mm/s^3 (0: unlimited); acc_time and dec_time [s] of ramps from rest to any speed,
-        which count instead of accelerations if they are not 0, with the share of them in which
+        jerks in mm/s^3 (0: unlimited). If acc_time and dec_time [s] are not 0, these times of ramps
+        from rest to any speed count instead of accelerations, with the share of them in which
         the acceleration changes.
     """
     reader = _reader({})

@@ -1,8 +1,8 @@
 """A measured response beside the linear model of its scenario, and the plant found in it.
 
 What was recorded is not the plant alone: a torque is held between samples, a speed is a difference
-of counts, a drive has a lag. The scenario's linear model has all of that, so the measured response
-is divided by how that model differs from its own two masses, and these are fitted to the rest; the
+of counts, a drive has a lag. The scenario's linear model has all of that. So the measured response
+is divided by how that model differs from its own two masses, and these are fitted to the rest. The
 values found make the model anew, until nothing moves.
 """
 

@@ -16,7 +16,7 @@ _TURN = 360.0
 
 @dataclass(frozen=True)
 class ReachSlice:
-    """Points of a plane, with one attitude of the tool.
+    """Points of a plane, with one orientation of the tool.
 
     Attributes
     ----------

@@ -4,9 +4,10 @@
     T = what the links ask + viscous speed - damping d(motor/ratio - link)/dt
 
 What the links ask is known from the equation of the links. The rest is linear in what is looked for
-once the torques are known at which a gear gets stiffer (none, those that the plant believes, or the
-one that explains the record best: the part kept back decides), but for what makes T itself, which
-is found by repetition: its signs decide on which side of the lost motion a gear is.
+once the torques are known at which a gear gets stiffer. There are none, those that the plant
+believes, or the one that explains the record best: the part kept back decides. What makes T itself
+is not linear and is found by repetition: its signs decide on which side of the lost motion a gear
+is.
 """
 
 from collections.abc import Mapping, Sequence

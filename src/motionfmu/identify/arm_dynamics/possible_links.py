@@ -1,10 +1,10 @@
 """Values of the plant that make what was found, near to those believed before.
 
 Base parameters leave most masses and centres open, and a plant has bounds; the links' products of
-inertia about their centres stay as they are. So masses, centres, second moments (moments of inertia
-are their sums in pairs, as a body has them) and inertias of motors are moved as little as possible,
-in units of what they are believed to be wrong by, until the base parameters are those found, each
-weighted by its covariance.
+inertia about their centres stay as they are. So masses, centres, second moments and inertias of
+motors are moved as little as possible, in units of what they are believed to be wrong by. They are
+moved until the base parameters are those found, each weighted by its covariance. Moments of inertia
+are sums of second moments in pairs, as a body has them.
 """
 
 from collections.abc import Mapping

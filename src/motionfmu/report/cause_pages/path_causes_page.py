@@ -25,7 +25,7 @@ BAR_HEIGHT, HEIGHT = 58, 278  # [pixel] of a cause, of the curves over the path
 SHOWN = 6  # curves over the path
 FOOTER = (
     "A cause is the change of the mean line of all cycles between the run and the same run without"
-    " it, in the same planes across the command path; its figures are those that a path with this"
+    " it, in the same planes across the command path. Its figures are those that a path with this"
     " error alone would have. A constant offset is part of AT_P and of no other. The causes"
     " interact, so their sum is not the whole: the residual says by how much. All numbers are in"
     ' <a href="result.json">result.json</a>.'

@@ -107,10 +107,11 @@ def page_text(run: DryRun) -> str:
         place = page.place("joints", reserves_chart(run), True, RUN)
         page.section("Joints and their limits", note, place)
         note = (
-            "The least of all passes of a line: the joint that comes nearest to an end of its"
-            " range, the one with the largest share of its speed; how far the arm stays from"
-            " singular: wrist centre from axis 1, elbow from stretched, joint 5 from straight;"
-            " how near parts of arm and cell come to each other."
+            "Each figure is the least of all passes of a line. The joints are the one that comes"
+            " nearest to an end of its range and the one with the largest share of its speed."
+            " How far the arm stays from singular has three figures: wrist centre from axis 1,"
+            " elbow from stretched, joint 5 from straight. The last column says how near parts of"
+            " arm and cell come to each other."
         )
         cells = [tuple(map(escape, line_cells(x, run))) for x in lines]
         page.section("Lines", note, table(HEADS, cells, numeric=0))

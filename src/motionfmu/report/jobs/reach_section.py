@@ -62,11 +62,12 @@ def add_reach(page: Page, run: DryRun) -> None:
     names = ("from axis 1", "Z")
     second = _chart(names, (across, high), upright, path @ np.stack([way, up], axis=1), top)
     note = (
-        f"Places of the tool with the attitude of line {view.line}, in the plane of its height"
+        f"Places of the tool with the orientation of line {view.line}, in the plane of its height"
         f" ({figure(view.place[2])} mm), and in the upright plane through it and axis 1. Colour is"
-        " how far the branch that the arm is in stays from singular there (least singular value of"
-        " the Jacobian, lengths as shares of the arm's; 0 is singular); grey dots are reached by"
-        " another branch only, what is blank is out of reach or beyond the ranges of the joints."
+        " how far the branch that the arm is in stays from singular there: the least singular value"
+        " of the Jacobian with lengths as shares of the arm's, of which 0 is singular. Grey dots"
+        " are reached by another branch only; what is blank is out of reach or beyond the ranges"
+        " of the joints."
     )
     plots = page.place("reach1", first) + page.place("reach2", second)
     page.section("Reach and branches", note, f'<div class="two">{plots}</div>{_branches(level)}')

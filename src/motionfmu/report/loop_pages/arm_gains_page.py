@@ -53,9 +53,10 @@ def page_text(tuned: ArmTuned) -> str:
     page.section("Loops in the worst poses", note, page.place("loops", _loops(tuned)))
     if tuned.runs:
         note = (
-            "Distance of the tool from the way that it would take at infinitely low speed, with sag"
-            " and errors of the geometry; runs of the FMUs without lost motion and transmission"
-            " errors, which no gain changes, from 1 s on, when the arm has stopped sinking."
+            "Distance of the tool from the path that it would take at infinitely low speed, with"
+            " sag and errors of the geometry. The FMUs ran without lost motion and transmission"
+            " errors, which no gain changes. Figures count from 1 s on, when the arm has stopped"
+            " sinking."
         )
         shown = page.place("tool", _tool(tuned), True) + _runs(tuned)
         page.section("Tool beside its way", note, shown)

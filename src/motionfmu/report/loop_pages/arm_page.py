@@ -148,7 +148,7 @@ def _base_note(found: IdentifiedArm) -> str:
     left = f" No torque depends on {escape(none)}." if none else ""
     return (
         "What torques tell are sums of masses m, first moments mx, my, mz, moments of inertia Ixx"
-        " to Izz about the joint and inertias J of the motors at the joint, in frames parallel to"
+        " to Izz about the joint and inertias J of the motors at the joint. Frames are parallel to"
         f" the base with the arm straight up.{left} What is known worse than to 30 % is grey."
     )
 

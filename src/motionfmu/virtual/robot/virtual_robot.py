@@ -164,10 +164,11 @@ class VirtualRobot(Commands, Station[RobotReading]):
         Returns
         -------
         (n,) structured ndarray
-            ``time`` [s]; ``joint`` (6,) [deg], ``rate`` (6,) [deg/s], ``place`` (3,) [mm] and
-            ``speed`` [mm/s] commanded; ``feed`` asked for, 0 of joints [mm/s]; ``factors`` (3,) as
-            in `RobotReading`; ``line`` that moves; ``at``, that a job reads next, 0 of a part
-            program; ``by`` and ``axis``, what limits it (`motionfmu.base.motion_rows.CAUSES`).
+            Commanded are ``joint`` (6,) [deg], ``rate`` (6,) [deg/s], ``place`` (3,) [mm] and
+            ``speed`` [mm/s] over ``time`` [s]. ``feed`` is asked for, 0 of joints [mm/s];
+            ``factors`` (3,) are as in `RobotReading`. ``line`` moves, ``at`` is the one that a job
+            reads next, 0 of a part program. ``by`` and ``axis`` say what limits it
+            (`motionfmu.base.motion_rows.CAUSES`).
 
         Raises
         ------
