@@ -20,7 +20,7 @@ import motionfmu
 from motionfmu.arms.arm_description import turn_of
 from motionfmu.report import write_report
 from motionfmu.report.html_page import Page
-from motionfmu.report.run_summary import without_leaps
+from motionfmu.report.run_summary import summary_of, without_leaps
 from motionfmu.report.view.arm import chain
 from motionfmu.report.view.deviations import from_contour
 from motionfmu.report.view.scene import no_arm, scene_of
@@ -476,3 +476,16 @@ def test_another_tool_is_no_motion() -> None:
     coarse = np.zeros((9, 3))
     coarse[4:, 0] = (2.0, 8.0, 14.0, 16.0, 16.0)  # a quick motion in few samples
     assert np.array_equal(without_leaps(coarse), coarse)
+
+
+def test_a_page_s_speed_and_way_are_without_another_tool() -> None:
+    """50 mm at up to 100 mm/s, whose tool is 150 mm longer from 0.3 s on: its step is no speed."""
+    time = np.arange(1000) * 1e-3
+    x = 0.1 * (time - 0.1).clip(0.0, 0.5)
+    tip = np.stack([x, 0.0 * x, np.where(time < 0.3, 0.0, -0.150)], axis=1)
+    run = recorded({}, **{"arm.tool_position": tip})
+    run.time, run.scenario, run.options, run.done_at = time, None, {}, None
+    found = summary_of(run, None)
+    assert found.distance == pytest.approx(50.0 - 0.1, rel=1e-9)  # without the step that leaps
+    assert found.speeds is not None
+    assert found.speeds.tool.max() == pytest.approx(100.0, rel=1e-9)
