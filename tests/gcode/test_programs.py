@@ -5,9 +5,8 @@ More: python tests/gcode/random_programs.py --count 20000
 
 from pathlib import Path
 
-import numpy as np
 import pytest
-from compare import difference, first, of_c, of_python, programs
+from compare import difference, first, mark, of_c, of_python, programs
 from conftest import ROOT
 from random_lines import TOOLS
 from random_programs import Writer, each, options
@@ -72,15 +71,6 @@ def test_the_comparison_can_fail(one: str, other: str) -> None:
     a, b = of_c(first(one)), of_python(run(other)[0])
     assert _events(a, of_python(run(one)[0])) == ""
     assert _events(a, b) != ""
-
-
-def mark(commands: np.ndarray) -> float:
-    """A sum that changes with any end, feed, kind, dwell, speed and line of the commands."""
-    lasts = (commands["type"] <= 6) | (commands["type"] >= 13)
-    weight = (np.arange(1, len(commands) + 1) % 7 + 1)[:, None] * np.arange(1, 7)
-    parts = (commands["end"] * weight)[lasts].sum(), commands["feed"].sum()
-    rest = (commands[n].sum() for n in ("dwell", "spindle", "line"))
-    return float(sum(parts) + 1e3 * commands["type"].sum() + sum(rest))
 
 
 @pytest.mark.parametrize("row", ACCEPTED, ids=lambda r: r.split()[0].replace("/", "-"))

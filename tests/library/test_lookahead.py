@@ -38,7 +38,7 @@ def points(folder: Path, words: str, ramps: str, moves: list[str]) -> Points:
     settings |= {"acc_type": ramps, "dec_type": ramps}
     result = motionfmu.load(PLATE).run(
         set={f"mcc.{name}": value for name, value in settings.items()},
-        stop=16.0 if words == "G61" else 9.0,
+        stop=9.0 if "G64" in words else 16.0,
     )
     assert result["mcc.done"][-1] and not result["mcc.error"].any()
     place = result["mcc.position"]
@@ -68,6 +68,18 @@ def test_limits_hold_at_every_point(count: int, ramps: str, tmp_path: Path) -> N
     last = np.array([float(word[1:]) for word in MOVES[count - 1].split() if word[0] in "XY"])
     assert p.place[-1][1] == last[-1]  # every move that ends here names Y
     assert p.speed[-1] <= ACC[ramps] * DDA
+
+
+def test_exact_stop_by_both_words(tmp_path: Path) -> None:
+    """At a corner under G61 and G61.1 the axes rest, and nothing is rounded; under G64 they run."""
+    few = MOVES[:3]
+    found = {words: points(tmp_path, words, "T", few) for words in ("G61", "G61.1", "G64 P0.02")}
+    stop, other, runs = found.values()
+    assert np.array_equal(stop.place, other.place) and np.array_equal(stop.speed, other.speed)
+    assert stop.deviation.max() < 1e-9 < 1e-3 < runs.deviation.max()
+    assert len(runs.time) < len(stop.time)
+    slow = ACC["T"] * DDA  # [mm/s] what a ramp has at most in the last point before rest
+    assert (other.speed[1:-1] <= slow).sum() >= 2 and (runs.speed[2:-2] > slow).all()
 
 
 def test_time_saved(tmp_path: Path) -> None:

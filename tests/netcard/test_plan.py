@@ -296,6 +296,32 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             run(app, ["card", "show", "a.mcj", *option], catch_exceptions=False)
 
 
+def test_a_job_of_a_page_of_several(tmp_path, monkeypatch) -> None:
+    """Lines of 10 mm and of 20 mm: which page was taken is told, and each has an id of its own."""
+    monkeypatch.chdir(tmp_path)
+    Path("card.toml").write_text(TEXT)
+    Path("a.plt").write_text("IN;SP1;PU0,0;PD400,0;PU;PG;PU0,0;PD800,0;PU;PG;")
+    run, ids = CliRunner().invoke, set()
+    words = ["card", "plan", "a.plt", "-c", "card.toml", "-o", "a.mcj"]
+    for page, asked in ((1, []), (2, ["--page", "2"])):
+        plain = run(app, [*words, *asked], catch_exceptions=False)
+        assert f"page {page} of 2; --page chooses another" in plain.stdout
+        assert f"pen down {10 * page:.1f} mm" in plain.stdout
+        numbers = json.loads(run(app, [*words, *asked, "--json"], catch_exceptions=False).stdout)
+        assert (numbers["page"], numbers["pages"]) == (page, 2)
+        ids.add(card_job.read(Path("a.mcj")).origin)
+        shown = run(app, ["card", "show", "a.plt", *asked], catch_exceptions=False)
+        assert f"a.plt  X 0.000 .. {10 * page:.3f}, Y 0.000 .. 0.000 mm, page {page} of 2" in (
+            shown.stdout.replace("\n", " ")
+        )
+    assert len(ids) == 2
+    for command in (words, ["card", "show", "a.plt"]):
+        with pytest.raises(InputError, match=r"a\.plt: no page 3, it has 2 pages"):
+            run(app, [*command, "--page", "3"], catch_exceptions=False)
+    Path("a.plt").write_text("IN;SP1;PU0,0;PD400,0;PU;PG;")
+    assert "page" not in run(app, words, catch_exceptions=False).stdout
+
+
 def test_the_job_of_the_scenario_is_of_its_drawing() -> None:
     folder = ROOT / "scenarios/plt_plate"
     drawing, settings = plt.read(folder / "plate.plt"), load(folder / "card.toml")

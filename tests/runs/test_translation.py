@@ -1,6 +1,7 @@
 """Programs in a language that a machine's controller does not read."""
 
 import io
+import json
 import shutil
 from pathlib import Path
 
@@ -82,6 +83,46 @@ def test_a_drawing_and_a_machine_are_kept_as_a_scenario(tmp_path: Path) -> None:
     plan = motionfmu.machine("engraver").scenario(tmp_path / "frame.plt", drawing=asked)
     direct = plan.run(stop=0.5)
     assert all(np.array_equal(of_scenario[n], direct[n]) for n in direct.signals)
+
+
+# Lines along X 20 mm and 30 mm long, each on a page of its own.
+PAGES = "IN;SP1;PU0,0;PD800,0;PU;PG;PU0,0;PD1200,0;PU;PG;"
+
+
+@pytest.mark.parametrize("machine", ["xy_table", "engraver"])
+def test_a_page_of_several_is_chosen_and_told(machine: str, tmp_path: Path) -> None:
+    """By run, check and the table: what is drawn, and how many pages there are."""
+    (tmp_path / "two.plt").write_text(PAGES)
+    for page, length in ((1, 20.0), (2, 30.0)):
+        told = f"two.plt: page {page} of 2; --page or [drawing] page chooses another"
+        asked = () if page == 1 else ("--page", "2")
+        for command in ("check", "run"):
+            words = (command, "two.plt", "--machine", machine, *asked)
+            ran = within(*words, folder=tmp_path)
+            assert ran.returncode == 0, ran.stderr
+            assert told in ran.stdout.replace("\n", " ")
+        plan = motionfmu.machine(machine).scenario(tmp_path / "two.plt", drawing={"page": page})
+        assert [note.partition("/two.plt")[2] for note in plan.notes] == [told[7:]]
+        place = plan.run()["machine.table_position"][:, 0]
+        assert place.max() == pytest.approx(length * 1e-3, abs=5e-5)
+    with pytest.raises(InputError, match=r"two\.plt: no page 3, it has 2 pages"):
+        motionfmu.machine(machine).scenario(tmp_path / "two.plt", drawing={"page": 3})
+    (tmp_path / "one.plt").write_text("IN;SP1;PU0,0;PD800,0;")
+    assert motionfmu.machine(machine).scenario(tmp_path / "one.plt").notes == ()
+
+
+def test_a_look_at_a_page_of_several(tmp_path: Path) -> None:
+    """By gcode, with and without a machine."""
+    (tmp_path / "two.plt").write_text(PAGES)
+    for on in ((), ("--machine", "mill3")):
+        for page, length in ((1, 20.0), (2, 30.0)):
+            words = ("gcode", "two.plt", "--page", str(page), *on)
+            ran = within(*words, folder=tmp_path)
+            told = f"two.plt: page {page} of 2; --page or [drawing] page chooses another"
+            assert ran.returncode == 0 and told in ran.stdout.replace("\n", " "), ran.stderr
+            assert f"X 0.0000 .. {length:.4f} mm" in ran.stdout
+            found = json.loads(within(*words, "--json", folder=tmp_path).stdout)["two.plt"]
+            assert (found["page"], found["pages"]) == (page, 2)
 
 
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="60mm" viewBox="0 0 80 60">
@@ -211,6 +252,8 @@ def test_a_fault_names_the_drawing_and_its_line(machine: str, tmp_path: Path) ->
         (("--copies", "2x2", "--pitch", "5", "0"), "--copies 2x2: --pitch X Y is missing"),
         (("--pitch", "5", "0"), "--pitch: --copies is missing"),
         (("--knife", "-1"), "--knife -1: 0 to 100 mm wanted"),
+        (("--page", "0"), "--page 0: 1 or more wanted"),
+        (("--page", "2"), "no page 2, it has one page"),
         (("--order", "far"), "--order far: file, nearest or inside wanted"),
         (("--corners", "far"), "--corners far: round or stop wanted"),
     ],

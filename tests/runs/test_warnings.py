@@ -25,7 +25,7 @@ def told(set_: dict, **options) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize(
-    ("engine", "fmi"), [("native", 2), ("native", 3), ("python", 2), ("python", 3)]
+    ("engine", "fmi"), [(e, fmi) for e in ("native", "python", "fmpy") for fmi in (2, 3)]
 )
 def test_every_engine_hears_the_warnings_of_the_fmus(engine: str, fmi: int) -> None:
     apart, late, coarse = told(COARSE | {"card.loop_period": 7.5e-5}, engine=engine, fmi=fmi)

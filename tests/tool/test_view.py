@@ -19,10 +19,11 @@ from py_mini_racer import MiniRacer
 import motionfmu
 from motionfmu.arms.arm_description import turn_of
 from motionfmu.report import write_report
-from motionfmu.report.run_summary import without_leaps
+from motionfmu.report.html_page import Page
+from motionfmu.report.run_summary import summary_of, without_leaps
 from motionfmu.report.view.arm import chain
 from motionfmu.report.view.deviations import from_contour
-from motionfmu.report.view.scene import scene_of
+from motionfmu.report.view.scene import no_arm, scene_of
 from motionfmu.report.view_section import PICTURE, SCRIPTS, add_view, quantised, view_data
 from motionfmu.scenarios.arm_lengths import Arm
 
@@ -377,15 +378,90 @@ def test_an_arm_appears_by_itself_with_the_lengths_of_its_fmu() -> None:
     assert scene is not None and scene.arm == ARMS["IRB 2600"] and scene.joints is not None
     assert np.allclose(chain(scene.arm, scene.joints)["tip"], scene.tool, atol=1e-9)
     json.dumps(view_data(scene, 1.0))
-    axes = scene_of(recorded({}, **{"arm.tool_position": tip}))
-    assert axes is not None and axes.arm is None
+    axes = recorded({}, **{"arm.tool_position": tip})
+    axes.resolver.document.body.component = {"arm": "velocity_axes"}
+    gantry = scene_of(axes)
+    assert gantry is not None and gantry.arm is None and no_arm(axes) == ""
     assert scene_of(recorded({"show": False}, **both)) is None
     still = {"arm.tool_position": 0 * tip, "arm.link_angle": 0 * joints}
     assert scene_of(recorded({}, **still)) is None
-    from motionfmu.report.html_page import Page
-
     page = Page()
     assert add_view(page, None) == {} and page.sections == []
+
+
+def test_an_arm_without_joint_angles_is_no_gantry() -> None:
+    """A record of its tool alone: words stand where the picture would."""
+    tip = np.linspace(0.0, 1.0, 400)[:, None] * [1.0, 2.0, 3.0]
+    run = recorded({}, **{"arm.tool_position": tip})
+    run.resolver.document.body.component = {"arm": "robot_arm"}
+    told = "The joint angles of arm are not recorded: there is no arm to draw."
+    assert scene_of(run) is None and no_arm(run) == told
+    page = Page()
+    assert add_view(page, None, missing=told) == {}
+    assert "The machine in motion" in page.sections[0] and told in page.sections[0]
+    run.resolver.document.body.view.show = False
+    assert no_arm(run) == ""
+
+
+OWN = """# Own robot: it writes, and nothing of it but its end is asked for.
+stop = 3.0
+{machine}
+"soft.program" = "ivu.job"
+"soft.points" = "small.txt"
+"soft.job" = "TWO"
+"soft.start_delay" = 1.0
+"*.start_joint" = [0.0, 16.543311, 27.588135, 0.0, 45.868554, 0.0]
+
+[record]
+signals = [{signals}]
+every = 20
+"""
+# The arm, or a controller and its card alone.
+MACHINE = (ROOT / "src/motionfmu/machines/robot6/machine.toml").read_text()
+WITH_ARM = MACHINE[MACHINE.index("step =") : MACHINE.index("[signals]")]
+ALONE = """
+step = 5e-5
+leave = ["card.*", "soft.*"]
+component = { soft = "soft_controller", card = "fpga_card" }
+
+[connect]
+"card.host_*" = "soft.card_*"
+"soft.card_*" = "card.*"
+
+[set]
+"soft.tool" = [0, 0, 150, 0, 0, 0]
+"""
+
+
+@pytest.mark.parametrize(
+    ("machine", "signals", "tool", "joints"),
+    [
+        (WITH_ARM, '"soft.done"', "arm.tool_position", "arm.link_angle"),
+        (ALONE, '"soft.tool_position"', "soft.tool_position", "soft.joint_command"),
+    ],
+    ids=["arm", "controller alone"],
+)
+def test_a_robot_s_page_draws_the_arm(
+    tmp_path: Path, machine: str, signals: str, tool: str, joints: str
+) -> None:
+    """Its joint angles are recorded unasked; without an arm, those commanded."""
+    for name in ("ivu.job", "small.txt"):
+        (tmp_path / name).write_text((ROOT / "scenarios/robot_ivu" / name).read_text())
+    text = OWN.format(machine=machine, signals=signals)
+    (tmp_path / "scenario.toml").write_text(text)
+    run = motionfmu.load(tmp_path).run()
+    assert {tool, joints, "soft.base_place"} <= set(run.signals)
+    scene = scene_of(run)
+    assert scene is not None and scene.arm is not None and scene.joints is not None
+    assert scene.base is not None and not scene.base.any()
+    rows = np.searchsorted(run.time, scene.time)
+    assert np.array_equal(scene.joints, run[joints][rows])
+    assert np.array_equal(scene.tool, 1e3 * run[tool][rows])
+    # The pen's spring and the arm's own give change 150 mm by little.
+    flange = chain(scene.arm, scene.joints)["flange"]
+    assert np.linalg.norm(flange - scene.tool, axis=1) == pytest.approx(150.0, abs=2.0)
+    page = write_report(run, None, tmp_path / "page").read_text()
+    assert page_data(page)["views"][0]["arm"]["lengths"] == list(scene.arm.lengths)
 
 
 def test_another_tool_is_no_motion() -> None:
@@ -400,3 +476,16 @@ def test_another_tool_is_no_motion() -> None:
     coarse = np.zeros((9, 3))
     coarse[4:, 0] = (2.0, 8.0, 14.0, 16.0, 16.0)  # a quick motion in few samples
     assert np.array_equal(without_leaps(coarse), coarse)
+
+
+def test_a_page_s_speed_and_way_are_without_another_tool() -> None:
+    """50 mm at up to 100 mm/s, whose tool is 150 mm longer from 0.3 s on: its step is no speed."""
+    time = np.arange(1000) * 1e-3
+    x = 0.1 * (time - 0.1).clip(0.0, 0.5)
+    tip = np.stack([x, 0.0 * x, np.where(time < 0.3, 0.0, -0.150)], axis=1)
+    run = recorded({}, **{"arm.tool_position": tip})
+    run.time, run.scenario, run.options, run.done_at = time, None, {}, None
+    found = summary_of(run, None)
+    assert found.distance == pytest.approx(50.0 - 0.1, rel=1e-9)  # without the step that leaps
+    assert found.speeds is not None
+    assert found.speeds.tool.max() == pytest.approx(100.0, rel=1e-9)

@@ -101,8 +101,10 @@ def _named(drawing: Drawing, options: DrawingOptions) -> dict[str, Any]:
         "speeds": options.speeds,
         "offset": options.offset,
     }
-    unused = ("up", "down")
-    return always | {k: v for k, v in options.changes.items() if k not in {*always, *unused}}
+    unused = ("up", "down", "page")
+    page = {"page": drawing.page} if drawing.page > 1 else {}
+    more = {k: v for k, v in options.changes.items() if k not in {*always, *unused}}
+    return always | more | page
 
 
 def write(job: bytes, file: Path) -> None:

@@ -19,6 +19,7 @@ from motionfmu.cli.drawing_choices import (
     Knife,
     Larger,
     Order,
+    Page,
     Pens,
     Pitch,
     drawing_options,
@@ -37,7 +38,6 @@ FrameOption = Annotated[
 ]
 Output = Annotated[Path | None, typer.Option("--out", "-o", help="Job file.")]
 OldOutput = Annotated[Path | None, typer.Option("--output", hidden=True)]  # in 0.1
-PageOption = Annotated[int, typer.Option("--page", help="Of a drawing with several.")]
 
 
 @card.command()
@@ -56,7 +56,7 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     knife: Knife = None,
     speeds: Annotated[bool, typer.Option("--speeds", help="Keep speeds of VS.")] = False,
     frame: FrameOption = None,
-    page: PageOption = 1,
+    page: Page = None,
     report: Annotated[bool, typer.Option("--report", help="Write a page and a picture.")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
@@ -70,10 +70,10 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     from motionfmu.drawings.contours import contours_of, way_between
 
     asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
-    table = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
+    table = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife, page=page)
     options = replace(drawing_options(table), speeds=speeds)
     settings = load(config)
-    drawing = reading.read(file, frame, page)
+    drawing = reading.read(file, frame, options.page)
     found = planned(drawing, settings, options)
     numbers = figures(found, settings, options.offset)
     if old_output is not None:
@@ -88,8 +88,8 @@ def plan(  # noqa: PLR0913  (each is an option of the command)
     if as_json:
         print(json.dumps(told, indent=1, allow_nan=False))
     else:
-        if drawing.pages > 1:
-            out.print(f"page {page} of {drawing.pages}; --page chooses another")
+        if drawing.paged:
+            out.print(f"{drawing.paged}; --page chooses another")
         _tell(file, target, numbers, told.get("way_up_file"))
         if drawing.notes:
             out.print(f"note: {drawing.told}", markup=False, soft_wrap=True)
@@ -145,7 +145,7 @@ def show(
     file: Annotated[Path, typer.Argument(help="Drawing (.plt, .svg, .dxf) or job (.mcj).")],
     picture: Annotated[Path | None, typer.Option(help="Write a picture, .png or .svg.")] = None,
     frame: FrameOption = None,
-    page: PageOption = 1,
+    page: Page = None,
 ) -> None:
     """Show what a drawing or a job holds."""
     from motionfmu.cards import card_job
@@ -156,11 +156,12 @@ def show(
     if picture:
         needed("report")
     if file.suffix == ".mcj":
-        if frame or page != 1:
+        if frame or page is not None:
             raise InputError(f"{file}: --frame and --page are for drawings, this is a job")
         _show_job(file, card_job.read(file), picture)
     else:
-        _show_drawing(file, reading.read(file, frame, page), picture)
+        number = drawing_options(drawing_table(page=page)).page
+        _show_drawing(file, reading.read(file, frame, number), picture)
     if picture:
         out.print(f"picture: {picture}", soft_wrap=True)
 
@@ -170,7 +171,7 @@ def _show_drawing(file: Path, drawing: "Drawing", picture: Path | None) -> None:
 
     low, high = drawing.extent
     size = f"X {low[0]:.3f} .. {high[0]:.3f}, Y {low[1]:.3f} .. {high[1]:.3f} mm"
-    several = f", page {drawing.page} of {drawing.pages}" if drawing.pages > 1 else ""
+    several = f", {drawing.paged}" if drawing.paged else ""
     out.print(f"[bold]{file}[/]  {size}{several}", soft_wrap=True)
     names = ["of"] if drawing.pens else []
     table = bare_table("pen", *names, "lines", "vertices", "way [mm]", "X [mm]", "Y [mm]")

@@ -12,6 +12,7 @@ import typer
 
 from motionfmu.base.errors import InputError
 from motionfmu.cli.common import FAILED, WRONG, OnMachine, app, give, mode, out, run_shown
+from motionfmu.cli.drawing_choices import Page, drawing_table
 from motionfmu.cli.run import Engine, Fmi, verdicts, warnings
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from motionfmu.run.suite import Case
 
 
-# CCN 16: each option of the command in the order in which it acts, with its message.
+# CCN 18: each option of the command in the order in which it acts, with its message.
 @app.command()
 def check(  # noqa: PLR0913  (each is an option of the command)
     paths: Annotated[
@@ -32,6 +33,7 @@ def check(  # noqa: PLR0913  (each is an option of the command)
     contrary: Annotated[
         bool, typer.Option("--contrary", help="Whether verdicts fail with what is shown off.")
     ] = False,
+    page: Page = None,
     jobs: Annotated[int, typer.Option("-j", "--jobs", min=1, help="Processes.")] = 1,
     junit: Annotated[Path | None, typer.Option(help="Write a JUnit XML file.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
@@ -45,11 +47,15 @@ def check(  # noqa: PLR0913  (each is an option of the command)
         raise InputError(f"--junit {junit}: a file in a folder that exists wanted")
     if machine and contrary:
         raise InputError("--contrary is for scenarios: a machine has no [[contrary]]")
+    drawing = drawing_table(page=page)
+    if drawing and not machine:
+        raise InputError(f"--page {page}: it goes with --machine and a drawing")
     chosen = _chosen(paths or [], machine)
     options = {"engine": engine, "fmi": fmi}
     started, begin = datetime.now(), time.perf_counter()
     cases: list[Case] = []
-    for some in _judged(chosen, options, suite.SuiteWays(contrary, machine), jobs):
+    ways = suite.SuiteWays(contrary, machine, drawing)
+    for some in _judged(chosen, options, ways, jobs):
         cases += some
         for case in some:
             _tell(case, quiet=as_json)

@@ -40,6 +40,8 @@ Knife = Annotated[
     float | None, typer.Option(help="A drag knife's edge trails its axis by this [mm].")
 ]
 
+Page = Annotated[int | None, typer.Option("--page", help="Of a drawing with several: 1, 2 ...")]
+
 
 def drawing_table(**given: Any) -> dict[str, Any]:
     """A table [drawing] of the options that are given, by the names of their parameters."""
@@ -52,6 +54,8 @@ def drawing_table(**given: Any) -> dict[str, Any]:
         raise InputError(f"--scale {found['scale']:g}: above 0 wanted")
     if "knife" in found and not 0.0 <= found["knife"] <= 100.0:
         raise InputError(f"--knife {found['knife']:g}: 0 to 100 mm wanted")
+    if "page" in found and found["page"] < 1:
+        raise InputError(f"--page {found['page']}: 1 or more wanted")
     if "copies" in found:
         found["copies"] = _copies(found["copies"], found.get("pitch"))
     elif "pitch" in found:

@@ -29,6 +29,7 @@ from motionfmu.cli.drawing_choices import (
     Knife,
     Larger,
     Order,
+    Page,
     Pens,
     Pitch,
     drawing_options,
@@ -78,6 +79,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     copies: Copies = None,
     pitch: Pitch = None,
     knife: Knife = None,
+    page: Page = None,
 ) -> None:
     """Check part programs: faults, cycle time, extents, tools; draw their paths.
 
@@ -99,7 +101,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     read_as |= _limits(limit, read_as.get("angles", False))
     table = text_in(tools) if tools else table
     asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
-    drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
+    drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife, page=page)
     told, good = {}, True
     for file in files:
         made = _translated(file, machine, drawing)
@@ -109,6 +111,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         planned = None if program.faults else _planned(file, machine, tables)
         told[str(file)] = found = _numbers(program, planned)
         found |= {"left_out": list(made.notes)} if made.notes else {}
+        found |= {"page": made.page, "pages": made.pages} if made.paged else {}
         if not as_json:
             target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
             _show(file, made, (program, planned), found, target)
@@ -258,7 +261,7 @@ def _show(
 
     program, planned = read
     drawn = made.file != file
-    told = [f"note: {note}" for note in made.notes]
+    told = [f"note: {note}" for note in made.told]
     told += _fault_places(made.file, program) if drawn else fault_lines(str(file), program)
     for note in program.notes:
         where = f"{made.file}: line {note.line}" if drawn else place(str(file), note)

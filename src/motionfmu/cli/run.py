@@ -34,6 +34,7 @@ from motionfmu.cli.drawing_choices import (
     Knife,
     Larger,
     Order,
+    Page,
     Pens,
     Pitch,
     drawing_table,
@@ -155,6 +156,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     copies: Copies = None,
     pitch: Pitch = None,
     knife: Knife = None,
+    page: Page = None,
 ) -> None:
     """Run a scenario, or a program on a machine, judge it and write its report."""
     from motionfmu.report import result_folder
@@ -166,7 +168,7 @@ def run(  # noqa: PLR0913  (each is an option of the command)
     if save_as and machine is None:
         raise InputError(f"--save-as {save_as}: it goes with --machine")
     asked = {"order": order, "corners": corners, "pens": pen, "at": at, "scale": scale}
-    drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife)
+    drawing = drawing_table(**asked, copies=copies, pitch=pitch, knife=knife, page=page)
     scenario = loaded(path, machine, drawing)
     if trajectory:
         from motionfmu.run.recorded_trajectory import refuse_unrecorded

@@ -89,6 +89,11 @@ class Drawing:
         return f"{self.name}: " + "; ".join(n.words for n in self.notes) if self.notes else ""
 
     @property
+    def paged(self) -> str:
+        """Which page this is, if the file has several; else empty."""
+        return f"page {self.page} of {self.pages}" if self.pages > 1 else ""
+
+    @property
     def nothing(self) -> str:
         """The message of a drawing that draws nothing."""
         why = "; ".join(n.words for n in self.notes if n.told)

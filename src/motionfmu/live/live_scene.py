@@ -9,10 +9,7 @@ from motionfmu.live.panel import panel_of
 from motionfmu.scenarios.arm_lengths import arm_of
 from motionfmu.scenarios.system import Resolver
 from motionfmu.scenarios.tool_signals import tools
-from motionfmu.scenarios.view_signals import JOINTS
-
-# Names that tell a tool by themselves.
-TOOLS = ("tool_position", "table_position")
+from motionfmu.scenarios.view_signals import TOOLS, joint_angles
 
 
 def scene(machine: LiveMachine) -> dict[str, Any] | None:
@@ -23,9 +20,9 @@ def scene(machine: LiveMachine) -> dict[str, Any] | None:
     base = found and found.base
     if tool is None or tool not in outputs:
         return None
-    component = tool.partition(".")[0]
-    joints = resolver.document.body.view.joints or f"{component}.{JOINTS}"
-    arm = arm_of(resolver, machine.parameter, joints) if joints in outputs else None
+    named = resolver.document.body.view.joints
+    joints = named or next(iter(joint_angles(resolver, tool)), None)
+    arm = arm_of(resolver, machine.parameter, joints) if joints and joints in outputs else None
     return {
         "tool": [tool, _factor(resolver, tool, "mm")],
         "base": [base, _factor(resolver, base, "mm")] if base in outputs else None,

@@ -46,7 +46,7 @@ from motionfmu.report.time_charts import (
 from motionfmu.report.tool_section import add_tools
 from motionfmu.report.typed_arrays import packed
 from motionfmu.report.view.deviations import from_contour
-from motionfmu.report.view.scene import scene_of
+from motionfmu.report.view.scene import no_arm, scene_of
 from motionfmu.report.view_section import SCRIPTS as VIEW
 from motionfmu.report.view_section import add_view
 from motionfmu.run.figures import Chart
@@ -139,7 +139,7 @@ def page_text(
     if result.warnings:
         page.section("Warnings", "", warning_list(result.warnings))
     lines = deviations(result) or [from_contour(contour)]
-    views = add_view(page, scene_of(result, lines, contour.cutting))
+    views = add_view(page, scene_of(result, lines, contour.cutting), missing=no_arm(result))
     add_performance(page, result)
     add_tools(page, result, ran.tools)
     if ran.use is not None:

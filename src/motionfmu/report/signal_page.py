@@ -16,7 +16,7 @@ from motionfmu.report.signal_chart import add_charts
 from motionfmu.report.signal_words import words_of
 from motionfmu.report.tool_section import add_tools
 from motionfmu.report.view.deviations import from_cycles
-from motionfmu.report.view.scene import DeviationLine, scene_of
+from motionfmu.report.view.scene import DeviationLine, no_arm, scene_of
 from motionfmu.report.view_section import SCRIPTS, add_view
 from motionfmu.run.checks import NOTHING, tally
 from motionfmu.run.figures import Chart
@@ -76,7 +76,7 @@ def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) ->
         page.section("Warnings", "", warning_list(result.warnings))
     if result.no_contour:
         page.section("Contour error", escape(result.no_contour), "")
-    views = add_view(page, scene_of(result, deviations(result)))
+    views = add_view(page, scene_of(result, deviations(result)), missing=no_arm(result))
     add_performance(page, result)
     add_tools(page, result, ran.tools)
     if ran.use is not None:

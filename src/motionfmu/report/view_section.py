@@ -20,6 +20,7 @@ PICTURE = (
     "camera_controls.js",
 )  # of a machine, shared
 SCRIPTS = (*PICTURE, "view.js")
+TITLE = "The machine in motion"
 LEVELS = 65535
 # From slow to fast: lightness rises, so it reads in grey as well.
 SPEED = ("#20307a", "#2a6fb0", "#2b9c95", "#7ab648", "#e8b020")
@@ -39,12 +40,15 @@ def add_view(
     scene: Scene | None,
     told: str = "The machine as it was recorded.",
     begin: float | None = None,
+    missing: str = "",
 ) -> dict[str, Any]:
     """Add the section and give the data of its script; without a scene there are none.
 
-    It begins at a time, or at the end.
+    It begins at a time, or at the end. What is missing for a scene is said in its place.
     """
     if scene is None:
+        if missing:
+            page.section(TITLE, missing, "")
         return {}
     duration = float(scene.time[-1] - scene.time[0])
     wanted = min(SPEEDS, key=lambda s: abs(np.log(s * PLAYED / max(duration, 1e-9))))
@@ -58,7 +62,7 @@ def add_view(
         what = "its line" if count == 1 else f"its {count} lines, one colour each,"
         note += f" Beside the path {what} with the deviation magnified."
     page.section(
-        "The machine in motion",
+        TITLE,
         note,
         _html(wanted, factor, deviates, _scale(scene, rapid, fastest)),
     )

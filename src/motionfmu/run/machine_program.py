@@ -121,7 +121,7 @@ class Machine:
             given["drive"] = [{"input": self.signals.start, "at": [START], "value": [1]}]
         about = f"{file.name} on {self.name}"
         found = Scenario(self._made(given | tables | {"set": values}, file.stem, about))
-        found.notes = ready.notes
+        found.notes = ready.told
         return found
 
     def translated(

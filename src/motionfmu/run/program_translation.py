@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 GCODE = (".ngc", ".nc", ".tap", ".gcode")  # endings of part programs
 JOB, ROWS = ".mcj", ".npy"
+ANOTHER = "--page or [drawing] page chooses another"
 CHORD = 1e-3  # [mm] a chord is off an arc of a part program by no more, where a card draws it
 
 
@@ -34,6 +35,14 @@ class MachineProgram:
     values: dict[str, Any] = field(default_factory=dict)
     seconds: float | None = None
     notes: tuple[str, ...] = ()  # what of a drawing is left out
+    page: int = 1  # which of a drawing's
+    pages: int = 1  # that it has
+    paged: str = ""  # the same in words, of a drawing with several
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """All that is to be known of it."""
+        return (*((self.paged,) if self.paged else ()), *self.notes)
 
 
 def program_for(
@@ -107,7 +116,7 @@ def drawing_as_gcode(file: Path, options: DrawingOptions, has_z: bool) -> Machin
     from motionfmu.drawings.contours import contours_of
     from motionfmu.drawings.gcode_text import gcode_of
 
-    drawing = reading.read(file)
+    drawing = reading.read(file, page=options.page)
     contours = contours_of(drawing, options)
     if not contours:
         raise InputError(drawing.nothing)
@@ -120,8 +129,16 @@ def drawing_as_gcode(file: Path, options: DrawingOptions, has_z: bool) -> Machin
         target.write_text(made.text, encoding="utf-8")
         write_places(target, file, places)
 
+    return MachineProgram(
+        _made(name, make, made.text, str(file), "\n".join(places)), **_told(drawing)
+    )
+
+
+def _told(drawing: "Drawing") -> dict[str, Any]:
+    """What a `MachineProgram` says of the drawing that it was made of."""
     notes = (drawing.told,) if drawing.notes else ()
-    return MachineProgram(_made(name, make, made.text, str(file), "\n".join(places)), notes=notes)
+    paged = drawing.paged and f"{drawing.name}: {drawing.paged}; {ANOTHER}"
+    return {"notes": notes, "page": drawing.page, "pages": drawing.pages, "paged": paged}
 
 
 def _made(name: str, make: Callable[[Path], Any], *parts: str | bytes) -> Path:
@@ -144,25 +161,25 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
         raise document.error(f"config = {name!r}: no such file", "signals", "config")
     config = load(place)
     values = {f"{component}.{k}": v for k, v in config.as_parameters().items()}
-    notes: tuple[str, ...] = ()
+    told: dict[str, Any] = {}
     if file.suffix.lower() != JOB:
         options = options_of(document)
         if is_drawing(file):
-            drawing = reading.read(file)
+            drawing = reading.read(file, page=options.page)
         elif file.suffix.lower() in GCODE:
             drawing, options = _drawing_of(file), DrawingOptions()
         else:
-            told = f"a drawing ({', '.join(ENDINGS)}), a job ({JOB}) or a part program wanted"
-            raise InputError(f"{file}: {told}")
+            wanted = f"a drawing ({', '.join(ENDINGS)}), a job ({JOB}) or a part program wanted"
+            raise InputError(f"{file}: {wanted}")
         planned = plan(drawing, config, options)
-        notes = (drawing.told,) if drawing.notes else ()
+        told = _told(drawing)
 
         def make(target: Path) -> None:
             write(planned.job, target)
             np.save(motion_file(target), plan_rows(planned, config))
 
         file = _made(f"{file.stem}{JOB}", make, planned.job, ROWS)
-    return MachineProgram(file, values, card_job.read(file).time, notes)
+    return MachineProgram(file, values, card_job.read(file).time, **told)
 
 
 def motion_file(job: str | Path) -> Path:

@@ -8,7 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -20,7 +20,7 @@ from motionfmu.base.toml_lines import is_file
 from motionfmu.run import contrary
 from motionfmu.run.checks import Verdict
 from motionfmu.run.machine_program import machine
-from motionfmu.run.runner import load
+from motionfmu.run.runner import Scenario, load
 from motionfmu.scenarios import package_files
 
 FILE = "scenario.toml"
@@ -34,6 +34,7 @@ class SuiteWays:
 
     contraries: bool = False  # each [[contrary]] instead of the scenario
     machine: str | None = None  # the paths are programs on this machine
+    drawing: Mapping[str, Any] = field(default_factory=dict)  # what is asked of those that draw
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,11 @@ def _run(scenario: Any, **options: Any) -> Any:
     return scenario.run(**options)
 
 
+def _put_on(name: str, program: Path, drawing: Mapping[str, Any]) -> Scenario:
+    tables: dict[str, Any] = {"drawing": drawing} if drawing else {}
+    return machine(name).scenario(program, **tables)
+
+
 def judged(
     path: Path, options: Mapping[str, Any], ways: SuiteWays = SuiteWays(), run: Run = _run
 ) -> list[Case]:
@@ -94,7 +100,7 @@ def judged(
     bare = Case(path.stem, str(path)) if ways.machine else Case(folder.resolve().name, str(folder))
     start = time.perf_counter()
     try:
-        scenario = machine(ways.machine).scenario(path) if ways.machine else load(path)
+        scenario = _put_on(ways.machine, path, ways.drawing) if ways.machine else load(path)
         bare = replace(bare, scenario=scenario.name)
         if not ways.contraries:
             result = run(scenario, **options)

@@ -161,6 +161,7 @@ class DrawingTable(BaseModel):
     knife: float = Field(default=0.0, ge=0, le=100)  # [mm]
     up: float = 0.0  # [mm] Z of a mill above a drawing
     down: float = -1.0  # [mm] and in it
+    page: int = Field(default=1, ge=1)  # which one of a file of HP-GL with several, from 1
 
 
 def _bound(x: Any) -> Any:

@@ -29,13 +29,18 @@ def tools(resolver: Resolver) -> list[Tool]:
     except InputError:  # told where components and wires are checked
         return []
     turns = {pair[0].partition(".")[0]: pair for pair in found[ATTITUDE]}
-    components = resolver.document.body.component
     made = []
     for pair in found[TOOL]:
         controller = pair[0].partition(".")[0]
-        base = quantities(components[controller]).get(BASE)
-        made.append(Tool(pair, turns.get(controller), base and f"{controller}.{base}"))
+        made.append(Tool(pair, turns.get(controller), base_of(resolver, controller)))
     return made
+
+
+def base_of(resolver: Resolver, controller: str) -> str | None:
+    """The output with the place that a controller commands its arm's base to; None if none has."""
+    fmu = resolver.document.body.component.get(controller)
+    base = quantities(fmu).get(BASE) if fmu else None
+    return base and f"{controller}.{base}"
 
 
 def wanted(resolver: Resolver) -> list[str]:

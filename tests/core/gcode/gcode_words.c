@@ -59,6 +59,24 @@ static void tolerance(void)
     CHECK_EQ(next(&x), -1);
 }
 
+/* Both words of the exact stop end path mixing, and say nothing of a tolerance. */
+static void exact_stop(void)
+{
+    static const char *const words[] = { "G61", "G61.1" };
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        struct reader x;
+        char text[64];
+        snprintf(text, sizeof text, "G64 P0.1 G1 X1\n%s X2\nX3\nG64 X4\n", words[i]);
+        begin(&x, text);
+        for (int k = 0; k < 4; k++) {
+            CHECK_EQ(next(&x), COMMAND_LINE);
+            CHECK_EQ(x.c.blend, k == 0 || k == 3);
+            CHECK_NEAR(x.c.tolerance, k == 0 ? 0.1 : 0.0, 0.0);
+        }
+        CHECK_EQ(next(&x), -1);
+    }
+}
+
 static void shifts(void)
 {
     struct reader x;
@@ -282,6 +300,7 @@ int main(void)
     block_delete();
     home();
     tolerance();
+    exact_stop();
     shifts();
     origins_and_local();
     turns();

@@ -14,7 +14,7 @@ from motionfmu.run.tool_gap import in_mm
 from motionfmu.scenarios import limited_signals
 from motionfmu.scenarios.arm_lengths import Arm, arm_of
 from motionfmu.scenarios.tool_signals import tools
-from motionfmu.scenarios.view_signals import JOINTS
+from motionfmu.scenarios.view_signals import joint_angles, of_arm, shown_tool, standing
 
 Array = NDArray[np.float64]
 FRAMES = 2000  # of the machine, evenly over the run
@@ -23,8 +23,6 @@ POINTS = 3000  # of the path
 COARSE = 3e-4
 # An axis that moves by less than this does not [mm].
 STANDS = 1e-6
-# Names that tell a tool and an arm by themselves.
-TOOLS = ("tool_position", "table_position")
 
 
 @dataclass(frozen=True)
@@ -60,12 +58,13 @@ def scene_of(
     """The moving picture of a run; None where nothing moves that it could show."""
     view = run.resolver.document.body.view
     name = tool_signal(run)
-    if not view.show or name is None or len(run.time) < 2:
+    if not view.show or name is None or len(run.time) < 2 or no_arm(run):
         return None
     count, base = len(run.time), _base(run, name)
     tool = _in_world(run, name, base)
     joints = joint_signal(run, name)
     arm = None if joints is None else arm_of(run.resolver, run.parameter, joints)
+    stands = base or _standing(run, joints)
     low, high = ends(count, tool)
     moved = high - low > STANDS
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
@@ -83,7 +82,7 @@ def scene_of(
         at(tool, kept),
         way / (run.time[after] - run.time[before]),
         tuple(lines),
-        at(base, frames) if arm and base else None,
+        at(stands, frames) if arm and stands else None,
         rapids(run, kept, works),
     )
 
@@ -92,6 +91,12 @@ def _base(run: RunRecord, name: str) -> Read | None:
     """Where the arm of this tool stands, if it is moved as a whole and that was recorded."""
     base = next((t.base for t in tools(run.resolver) if t.position[1] == name), None)
     return in_mm(run, base) if base is not None and base in run.signals else None
+
+
+def _standing(run: RunRecord, joints: str | None) -> Read | None:
+    """Where the arm of these commanded joint angles stands, if that was recorded."""
+    place = standing(run.resolver, joints) if joints else None
+    return in_mm(run, place) if place in run.signals and place else None
 
 
 def rapids(
@@ -128,26 +133,29 @@ def _in_world(run: RunRecord, name: str, base: Read | None) -> Read:
 
 def tool_signal(run: RunRecord) -> str | None:
     """The signal that is the tool's position; None if there is none."""
-    body = run.resolver.document.body
-    if body.view.tool:
-        return body.view.tool
-    if body.iso9283:
-        return body.iso9283.position
-    for ending in TOOLS:
-        for name in run.signals:
-            component, _, variable = name.partition(".")
-            port = run.resolver.ports[component][variable]
-            if variable == ending and port.shape in ((3,), (6,)):
-                return name
-    return body.contour.position if body.contour else None
+    return shown_tool(run.resolver, run.signals)
 
 
 def joint_signal(run: RunRecord, tool: str) -> str | None:
-    """The recorded signal of six joint angles: named, or the tool's own component has it."""
+    """The recorded signal of six joint angles: named, or of the arm that has this tool."""
     named = run.resolver.document.body.view.joints
-    name = named or f"{tool.partition('.')[0]}.{JOINTS}"
-    there = name in run.signals and run.signals[name].ndim == 2 and run.signals[name].shape[1] == 6
-    return name if there else None
+    names = [named] if named else joint_angles(run.resolver, tool)
+    there = [n for n in names if n in run.signals]
+    return next((n for n in there if run.signals[n].shape[1:] == (6,)), None)
+
+
+def no_arm(run: RunRecord) -> str:
+    """Why the arm of this run cannot be drawn; empty if it can, or if there is none."""
+    name = tool_signal(run)
+    if not run.resolver.document.body.view.show or name is None or not of_arm(run.resolver, name):
+        return ""
+    joints = joint_signal(run, name)
+    arm = name.partition(".")[0]
+    if joints is None:
+        return f"The joint angles of {arm} are not recorded: there is no arm to draw."
+    if arm_of(run.resolver, run.parameter, joints) is None:
+        return f"The lengths of {arm} are not known: there is no arm to draw."
+    return ""
 
 
 def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
