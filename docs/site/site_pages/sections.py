@@ -27,6 +27,12 @@ SECTIONS = (
     ("src/", "cores", "C cores", "What the FMUs compute with, free of FMI."),
     ("modelica/", "cores", "", ""),
     ("docs/tour.md", "package", "", ""),
+    (
+        "docs/architecture/",
+        "architecture",
+        "Architecture",
+        "Three drawings: the parts, the package, one communication step.",
+    ),
     ("docs/theory/", "theory", "Theory", "Each claim names its code and the test that holds it."),
     (
         "docs/tutorials/",
