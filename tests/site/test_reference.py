@@ -20,6 +20,7 @@ from site_pages import (
     faults,
     file_keys,
     fmus,
+    gallery,
     key_words,
     python_modules,
     staging,
@@ -331,6 +332,13 @@ def test_decisions_are_listed_by_subject_and_superseded_ones_last(tmp_path: Path
     staged = staging.Staged(tmp_path, tmp_path / "out", ["DESIGN.md", *pages])
     found = staging.rewritten("[rails](../rails)", pages[0], staged)
     assert found == "[rails](../../../decisions/rails.md)\n"
+
+
+def test_theory_is_what_a_readme_links() -> None:
+    line = "Theory: [a](../../docs/theory/two-words.md), [b](../../../../docs/theory/one.md#place)."
+    assert gallery.theory_of(f"{line}\n{line}") == ("two words", "one")
+    other = "`docs/theory/x.md` [x](../../docs/theory.md) [y](docs/theory/figures/make.py)"
+    assert gallery.theory_of(other) == ()
 
 
 def test_what_a_cell_says_is_no_markup() -> None:
