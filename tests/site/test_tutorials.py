@@ -88,5 +88,15 @@ def test_cells_are_told_from_words() -> None:
     assert [(c.kind, c.prints) for c in tutorials.cells(text)] == kinds
 
 
+def test_a_page_that_takes_too_long_is_told(tmp_path: Path) -> None:
+    own, childs = (
+        "sum(range(10**7))",
+        "import subprocess, sys\nsubprocess.run([sys.executable, '-V'])",
+    )
+    for cell, limit in ((own, 0.02), (childs, 0.001)):
+        with pytest.raises(AssertionError, match="s of processor time"):
+            cells_printed([cell], tmp_path, Path(sys.executable), ENVIRON, limit)
+
+
 def test_a_wrong_number_is_found(tmp_path: Path) -> None:
     assert printed(["a = 2", "print(a + 1)"], tmp_path) == ["", "3\n"]
