@@ -2,9 +2,9 @@
 
     .venv/bin/python docs/architecture/drawings.py
 
-Arrows of `parts.svg` are the `#include` lines, `fmu.toml` and `storey.toml`; the order in
-`package.svg` is the table of the package's README. What `step.svg` names is written here, and
-`tests/house/test_architecture.py` finds each name in its file.
+Arrows between C files of `parts.svg` are their `#include` lines and `storey.toml`. The order in
+`python-package.svg` is the table of the package's README. Other arrows, and what `step.svg` names,
+are written here; `tests/house/test_architecture.py` holds them against the tree.
 """
 
 import re
@@ -39,7 +39,7 @@ PARTS: tuple[dict[str, tuple[int, str]], ...] = (
     {"src/base": (380, "functions, pulses, links, tasks")},
 )
 
-# Who calls whom beside what C files include: the folder, and where it is told.
+# Who uses whom beside what C files include.
 BESIDE: Edges = {
     "src/motionfmu": {"scenarios", "src/python"},
     "scenarios": {"fmus: model.c", "fmus: Modelica"},
@@ -300,7 +300,7 @@ def _times(made: Drawing, top: float) -> None:
         made.text(begin + k * width, top + 178, f"t + {k} H" if k else "t", "small")
 
 
-DRAWINGS = {"parts": parts, "package": package, "step": step}
+DRAWINGS = {"parts": parts, "python-package": package, "step": step}
 
 
 def main() -> None:

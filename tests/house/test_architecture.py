@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+import tomllib
 from pathlib import Path
 from types import ModuleType
 
@@ -60,6 +61,12 @@ def test_every_part_that_is_drawn_is_a_folder() -> None:
     code = {f"src/{Path(n).parts[1]}" for n in listed() if re.fullmatch(r"src/\w+/.+", n)}
     assert storeys < code
     assert code - {"src/cmake"} == {part for part in shown if part.startswith("src/")}
+
+
+def test_an_fmu_is_of_one_of_the_kinds_that_are_drawn() -> None:
+    files = sorted(ROOT.glob("fmus/*/fmu.toml"))
+    plants = {f for f in files if "modelica" in tomllib.loads(f.read_text(encoding="utf-8"))}
+    assert plants == {f for f in files if not f.with_name("model.c").is_file()}
 
 
 def test_arrows_that_others_make_up_are_left_out() -> None:
