@@ -47,7 +47,7 @@ PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25
 CTEST = ctest --test-dir $(1) -j 2 --output-on-failure > $(1)/tests.txt || { grep -v -e " Passed " -e " Start " $(1)/tests.txt; \
   echo "C tests failed in $(1)" >&2; exit 1; }; grep "tests passed" $(1)/tests.txt
 
-test: build check               ## what every change needs, in six minutes: style, C tests, most Python tests
+test: build check               ## what every change needs: style, C tests, most Python tests
 	@$(call CTEST,build)
 	$(PYTEST) --durations-min=5
 

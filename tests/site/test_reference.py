@@ -20,6 +20,7 @@ from site_pages import (
     faults,
     file_keys,
     fmus,
+    gallery,
     key_words,
     python_modules,
     staging,
@@ -74,6 +75,13 @@ def test_every_option_of_every_command_is_on_the_page() -> None:
         assert options, name
         options.discard("--help")
         assert {o for o in options if f"`{o}`" not in part + head} == set(), name
+
+
+def test_every_argument_and_option_of_every_command_has_its_words() -> None:
+    found = [(f"{name} {p.name}", p) for name, c in commands.commands(cli.app).items()
+             for p in c.params if not getattr(p, "hidden", False)]  # fmt: skip
+    assert len(found) > 200
+    assert [name for name, p in found if not (p.help or "").strip()] == []
 
 
 class Inner(BaseModel):
@@ -142,7 +150,10 @@ def test_keys_that_scenarios_use_are_on_the_page() -> None:
     origins = set(ORIGINS)
     assert all(f" {name} " in page for name in origins)
     files = sorted(ROOT.glob("scenarios/*/scenario.toml"))
-    assert len(files) > 50
+    machines = [f for kind in ("machines", "rigs") for f in ROOT.glob(f"src/motionfmu/{kind}/*/*")]
+    machines = [file for file in machines if file.name == "machine.toml"]
+    assert len(files) > 50 and len(machines) > 10
+    files += machines
     for file in files:
         tables = tomllib.loads(file.read_text(encoding="utf-8"))
         for name, value in tables.items():
@@ -153,6 +164,25 @@ def test_keys_that_scenarios_use_are_on_the_page() -> None:
                 for key in part if isinstance(part, dict) else ():
                     there = f"`{key}`" in page or f"[[{name}.{key}]]" in page
                     assert there or name == "record_file", f"{file}: {name}.{key}"
+
+
+@pytest.mark.parametrize(
+    ("name", "places"),
+    [
+        ("identify.toml", ("examples/*/*/identify.toml", "scenarios/*/identify.toml")),
+        ("identify.toml of an FMU", ("fmus/*/identify.toml",)),
+    ],
+)
+def test_keys_that_an_identification_uses_are_on_the_page(name: str, places: tuple[str]) -> None:
+    page = file_keys.page(next(f for f in file_keys.files() if f.name == name))
+    files = [file for place in places for file in sorted(ROOT.glob(place))]
+    assert files
+    for file in files:
+        told = tomllib.loads(file.read_text(encoding="utf-8"))
+        assert [k for k in told if f"`{k}`" not in page and f"[{k}" not in page] == [], file
+        parts = {f"[arm.{k}]" if isinstance(v, dict) else f"`{k}`"
+                 for k, v in told.get("arm", {}).items()}  # fmt: skip
+        assert {p for p in parts if p not in page} == set(), file
 
 
 def test_every_variable_is_on_its_fmus_page() -> None:
@@ -331,6 +361,13 @@ def test_decisions_are_listed_by_subject_and_superseded_ones_last(tmp_path: Path
     staged = staging.Staged(tmp_path, tmp_path / "out", ["DESIGN.md", *pages])
     found = staging.rewritten("[rails](../rails)", pages[0], staged)
     assert found == "[rails](../../../decisions/rails.md)\n"
+
+
+def test_theory_is_what_a_readme_links() -> None:
+    line = "Theory: [a](../../docs/theory/two-words.md), [b](../../../../docs/theory/one.md#place)."
+    assert gallery.theory_of(f"{line}\n{line}") == ("two words", "one")
+    other = "`docs/theory/x.md` [x](../../docs/theory.md) [y](docs/theory/figures/make.py)"
+    assert gallery.theory_of(other) == ()
 
 
 def test_what_a_cell_says_is_no_markup() -> None:

@@ -168,6 +168,20 @@ def test_the_gallery_shows_what_fits(site: Path, browser: Any) -> None:
     fewer = sum(c.is_visible() for c in cards.all())
     assert 0 < fewer < len(shown)
     assert page.inner_text("#shown") == f"{fewer} of {everything}"
+    for name in ("controller", "subject"):
+        page.select_option(f"select[name={name}]", "")
+    choices = page.locator("select[name=theory] option").all_inner_texts()[1:]
+    assert {"smooth paths", "speed"} <= set(choices)
+    for choice in choices:
+        file = f"docs/theory/{choice.replace(' ', '-')}.md"
+        assert (ROOT / file).is_file()
+        page.select_option("select[name=theory]", choice)
+        shown = [c.get_attribute("href") for c in cards.all() if c.is_visible()]
+        texts = {f: (ROOT / f.replace(".html", ".md")).read_text("utf-8") for f in shown}
+        assert shown and [f for f, text in texts.items() if f"{file})" not in text] == []
+    linking = [f for f in files if "docs/theory/speed.md)" in f.with_name("README.md").read_text()]
+    page.select_option("select[name=theory]", "speed")
+    assert sum(c.is_visible() for c in cards.all()) == len(linking) > 2
     broken = "[...document.images].filter((i) => i.complete && !i.naturalWidth).map((i) => i.src)"
     assert page.evaluate(broken) == [] and page.told == []
     page.context.close()

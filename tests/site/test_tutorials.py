@@ -11,6 +11,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from conftest import FMUS, ROOT
+from followed_pages import Folder
 from installed_wheel import Installed
 from matplotlib.figure import Figure
 from page_cells import alike, cells_printed
@@ -19,13 +20,13 @@ from site_pages import tutorials
 pytestmark = pytest.mark.more
 
 PAGES = sorted((ROOT / "docs/tutorials").glob("*.md"))
+ENVIRON = {**os.environ, "MOTIONFMU_FMUS": str(FMUS)}
 WHERE = ["checkout", pytest.param("wheel", marks=pytest.mark.xdist_group("wheel"))]
 
 
 def printed(cells: list[str], folder: Path) -> list[str]:
     """What cells print in an empty folder, with the checkout's package and FMUs."""
-    environ = {**os.environ, "MOTIONFMU_FMUS": str(FMUS)}
-    return cells_printed(cells, folder, Path(sys.executable), environ)
+    return cells_printed(cells, folder, Path(sys.executable), ENVIRON)
 
 
 @pytest.mark.parametrize("where", WHERE)
@@ -40,14 +41,25 @@ def test_a_tutorial_prints_what_it_says(
     if where == "wheel":
         bench: Installed = request.getfixturevalue("workbench")
         found = cells_printed(texts, tmp_path, bench.python, bench.environ)
+        folder = Folder(tmp_path, bench.python, bench.environ)
     else:
         found = printed(texts, tmp_path)
+        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        folder = Folder(tmp_path, Path(sys.executable), {**ENVIRON, "PATH": path})
     for cell, out in zip(code, found, strict=True):
         assert out.split("\n") == cell.prints.split("\n"), cell.text
     assert "assert " in code[-1].text
     drawn = re.findall(r'savefig\("(.+?)"\)', text)
     assert drawn == re.findall(r"^!\[.+?\]\((.+?)\)$", text, re.MULTILINE)
     assert [name for name in drawn if not alike(tmp_path / name, page.parent / name)] == []
+    shell = re.findall(r"^```sh\n.*?^```\n", text, re.MULTILINE | re.DOTALL)
+    assert folder.follow("".join(shell)) is None
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
+def test_all_code_of_a_tutorial_is_in_blocks_that_run(page: Path) -> None:
+    words = re.sub(r"^```.*?^```\n", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    assert [line for line in words.splitlines() if line.startswith("    ")] == []
 
 
 def test_another_picture_is_found(tmp_path: Path) -> None:
@@ -74,6 +86,16 @@ def test_cells_are_told_from_words() -> None:
     )
     kinds = [("markdown", ""), ("code", "1\n"), ("markdown", ""), ("markdown", "")]
     assert [(c.kind, c.prints) for c in tutorials.cells(text)] == kinds
+
+
+def test_a_page_that_takes_too_long_is_told(tmp_path: Path) -> None:
+    own, childs = (
+        "sum(range(10**7))",
+        "import subprocess, sys\nsubprocess.run([sys.executable, '-V'])",
+    )
+    for cell, limit in ((own, 0.02), (childs, 0.001)):
+        with pytest.raises(AssertionError, match="s of processor time"):
+            cells_printed([cell], tmp_path, Path(sys.executable), ENVIRON, limit)
 
 
 def test_a_wrong_number_is_found(tmp_path: Path) -> None:

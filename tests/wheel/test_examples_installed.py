@@ -8,6 +8,7 @@ import json
 import re
 import shutil
 from pathlib import Path
+from xml.etree import ElementTree
 
 import nbformat
 import pytest
@@ -21,6 +22,10 @@ pytestmark = [pytest.mark.more, pytest.mark.xdist_group("wheel")]
 NAMES = sorted(file.parent.name for file in (ROOT / "examples").glob("*/README.md"))
 # Where libraries and headers are installed as this one's README says.
 CORES = "virtual_card"
+NOTEBOOK = "*.ipynb"
+JUNIT = "check.xml"
+# What a README shows.
+PICTURE = re.compile(r"!\[[^\]]*\]\(([\w./-]+)\)")
 OF_A_CI = (".gitlab-ci.yml", ".github/workflows/*.yml")
 
 
@@ -50,12 +55,28 @@ class Copies:
         page = page_of(place)
         copy = Folder(place, self.installed.python, self.installed.environ)
         told = copy.follow(page)
-        for pattern in OF_A_CI:
-            for file in sorted(place.glob(pattern)):
-                told = told or copy.follow_ci(str(file.relative_to(place)), (0,))
-        for file in sorted(place.glob("*.ipynb")):
-            told = told or notebook(file, self.installed)
+        for file in files_of(name, *OF_A_CI):
+            (place / JUNIT).unlink(missing_ok=True)
+            told = told or copy.follow_ci(file, (0,)) or verdicts(place / JUNIT)
+        for file in files_of(name, NOTEBOOK):
+            told = told or notebook(place / file, self.installed)
         return told
+
+
+def files_of(name: str, *patterns: str) -> list[str]:
+    """Files of an example in the tree, which its copy must have."""
+    folder = ROOT / "examples" / name
+    found = [file for pattern in patterns for file in sorted(folder.glob(pattern))]
+    return [file.relative_to(folder).as_posix() for file in found]
+
+
+def verdicts(file: Path) -> str | None:
+    """What is wrong with the verdicts that a CI keeps; None if nothing."""
+    if not file.is_file():
+        return f"no {file.name} was written"
+    cases = list(ElementTree.parse(file).getroot().iter("testcase"))
+    failed = [c.get("name") for c in cases if c.find("failure") is not None]
+    return None if cases and not failed else f"{file.name}: {len(cases)} cases, failed: {failed}"
 
 
 def page_of(folder: Path) -> str:
@@ -105,6 +126,33 @@ def copies(workbench: Installed, tmp_path_factory: pytest.TempPathFactory) -> Co
 @pytest.mark.parametrize("name", NAMES)
 def test_an_example_does_what_it_says(name: str, copies: Copies) -> None:
     assert copies.follow(name) is None
+
+
+def test_files_of_a_ci_and_notebooks_are_found() -> None:
+    for pattern in (*OF_A_CI, NOTEBOOK):
+        assert any(files_of(name, pattern) for name in NAMES), pattern
+
+
+def test_what_a_ci_keeps_is_read(tmp_path: Path) -> None:
+    file = tmp_path / JUNIT
+    assert verdicts(file) == "no check.xml was written"
+    for case, told in (
+        ("<testcase name='a'/>", None),
+        ("", "check.xml: 0 cases, failed: []"),
+        ("<testcase name='a'><failure/></testcase>", "check.xml: 1 cases, failed: ['a']"),
+    ):
+        file.write_text(f"<testsuites><testsuite>{case}</testsuite></testsuites>")
+        assert verdicts(file) == told
+
+
+@pytest.mark.parametrize("name", [*NAMES, "circle", "robot_line"])
+def test_a_copy_shows_no_dead_picture(name: str, workbench: Installed, tmp_path: Path) -> None:
+    done = workbench.run("motionfmu", "examples", "--copy", name, str(tmp_path))
+    assert done.returncode == 0, done.stderr
+    readme = (tmp_path / name / "README.md").read_text(encoding="utf-8")
+    own = (ROOT / ("examples" if name in NAMES else "scenarios") / name / "README.md").read_text()
+    assert [p for p in PICTURE.findall(readme) if not (tmp_path / name / p).is_file()] == []
+    assert (readme == own) == (name in NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)

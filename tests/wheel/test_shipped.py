@@ -69,6 +69,17 @@ def test_examples_are_listed_and_copied(tmp_path: Path) -> None:
     assert "--copy" in told("examples", "circle", "folder", folder=tmp_path)
 
 
+def test_a_copy_shows_a_picture_or_its_words(tmp_path: Path, monkeypatch) -> None:
+    whole = tmp_path / "there/scenarios/a"
+    whole.mkdir(parents=True)
+    (whole / "scenario.toml").write_text("")
+    (whole / "README.md").write_text("# a\n\n![A path](a.png) ![Its error](b.png)\n")
+    (whole / "a.png").write_bytes(b"a")
+    monkeypatch.setattr(package_files, "folder", lambda kind: tmp_path / "there" / kind)
+    within("examples", "--copy", "a", folder=tmp_path)
+    assert (tmp_path / "a/README.md").read_text() == "# a\n\n![A path](a.png) *Its error*\n"
+
+
 def test_a_folder_that_cannot_be_written_to_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     text = told("examples", "--copy", "circle", "file", folder=tmp_path)

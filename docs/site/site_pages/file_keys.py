@@ -32,6 +32,10 @@ def files() -> list[TomlFile]:
     from motionfmu.analysis.explain.cause_switches import Switch
     from motionfmu.arms import arm_table
     from motionfmu.cards.config import CardConfig
+    from motionfmu.identify.arm_dynamics.arm_options import ArmTables
+    from motionfmu.identify.arm_dynamics.arm_plant import ArmTable
+    from motionfmu.identify.free_parameters import Identifiable
+    from motionfmu.identify.identify_file import AxisTables
     from motionfmu.live.panel import OperatorPanel
     from motionfmu.scenarios.body import Body
     from motionfmu.study import study_axes
@@ -54,6 +58,22 @@ def files() -> list[TomlFile]:
         ),
         TomlFile("sweep.toml", "A study: one scenario with many values.", StudyBody, axis),
         TomlFile("tune.toml", "A tuning: which gains are found, and what they must keep.", Problem),
+        TomlFile(
+            "identify.toml",
+            "An identification of an axis, beside its scenario: what the record's columns are.",
+            AxisTables,
+        ),
+        TomlFile(
+            "identify.toml for an arm",
+            "An identification of an arm, beside its scenario: what the record's columns are.",
+            ArmTables,
+        ),
+        TomlFile(
+            "identify.toml of an FMU",
+            "What a record of a motion can tell of an FMU.",
+            Identifiable,
+            {"arm": ArmTable},
+        ),
         TomlFile("cell.toml", "What stands around an arm.", cell._CellFile),
         TomlFile("arm.toml", "An arm as a table of its geometry.", arm_table._TableFile),
         TomlFile("card.toml", "A card in a network, its axes and tasks.", CardConfig),

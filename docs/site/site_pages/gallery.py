@@ -1,4 +1,7 @@
-"""The gallery: scenarios and machines by picture, chosen by controller, FMU and subject."""
+"""The gallery: scenarios and machines by picture.
+
+They are chosen by controller, FMU, subject, and the page of theory that their README links.
+"""
 
 import re
 from collections.abc import Sequence
@@ -11,6 +14,8 @@ if TYPE_CHECKING:
     from motionfmu.scenarios.body import Body
 
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+\.(?:png|svg))\)")
+# A link to a page of theory, which an example of it has in its README.
+THEORY = re.compile(r"\]\((?:\.\./)+docs/theory/([\w-]+)\.md[)#]")
 # A subject by what a scenario's tables or files have.
 SUBJECTS = {
     "contour error": ("contour.",),
@@ -33,6 +38,7 @@ class Card:
     fmus: tuple[str, ...]
     controllers: tuple[str, ...]
     subjects: tuple[str, ...]
+    theory: tuple[str, ...]  # pages, by the words of their file names
     kind: str  # scenario or machine
 
 
@@ -70,6 +76,7 @@ def _card(root: Path, file: Path, control: set[str]) -> Card:
         fmus,
         tuple(n for n in fmus if n in control),
         _subjects(body, folder),
+        theory_of((folder / "README.md").read_text(encoding="utf-8")),
         "machine" if file.name == "machine.toml" else "scenario",
     )
 
@@ -93,6 +100,11 @@ def _subjects(body: "Body", folder: Path) -> tuple[str, ...]:
     return tuple(found) or (OTHER,)
 
 
+def theory_of(readme: str) -> tuple[str, ...]:
+    """The pages of theory that a README links, by the words of their file names."""
+    return tuple(name.replace("-", " ") for name in dict.fromkeys(THEORY.findall(readme)))
+
+
 def _picture(folder: Path) -> Path | None:
     """The first picture of the README, else the first in the folder."""
     readme = folder / "README.md"
@@ -102,14 +114,15 @@ def _picture(folder: Path) -> Path | None:
 
 
 def page(found: Sequence[Card]) -> str:
-    """The page: three choices, then a card for each scenario and machine."""
+    """The page: its choices, then a card for each scenario and machine."""
     choices = {
         "kind": sorted({c.kind for c in found}, reverse=True),
         "controller": sorted({n for c in found for n in c.controllers}),
         "fmu": sorted({n for c in found for n in c.fmus}),
         "subject": [s for s in (*SUBJECTS, OTHER) if any(s in c.subjects for c in found)],
+        "theory": sorted({name for c in found for name in c.theory}),
     }
-    names = {"kind": "Kind", "controller": "Controller", "fmu": "FMU", "subject": "Subject"}
+    names = {key: "FMU" if key == "fmu" else key.capitalize() for key in choices}
     picked = "".join(
         f'<label>{names[key]} <select name="{key}"><option value="">all</option>'
         + "".join(f"<option>{escape(v)}</option>" for v in values)
@@ -131,6 +144,7 @@ def _html(card: Card) -> str:
         "controller": "|".join(card.controllers),
         "fmu": "|".join(card.fmus),
         "subject": "|".join(card.subjects),
+        "theory": "|".join(card.theory),
     }
     told = " ".join(f'data-{key}="{escape(value)}"' for key, value in data.items())
     return (

@@ -1,5 +1,6 @@
 """The sections of the site: which page belongs to which, and the pages that are made."""
 
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -27,6 +28,12 @@ SECTIONS = (
     ("src/", "cores", "C cores", "What the FMUs compute with, free of FMI."),
     ("modelica/", "cores", "", ""),
     ("docs/tour.md", "package", "", ""),
+    (
+        "docs/architecture/",
+        "architecture",
+        "Architecture",
+        "Three drawings: the parts, the package, one communication step.",
+    ),
     ("docs/theory/", "theory", "Theory", "Each claim names its code and the test that holds it."),
     (
         "docs/tutorials/",
@@ -126,7 +133,7 @@ def reference(root: Path) -> Iterator[tuple[str, str]]:
     from motionfmu import cli
 
     yield "commands", commands.page(commands.commands(cli.app))
-    files = {f"files/{file.name.replace('.', '_')}": file for file in file_keys.files()}
+    files = {f"files/{re.sub('[. ]', '_', file.name)}": file for file in file_keys.files()}
     for name, file in files.items():
         yield name, file_keys.page(file)
     rows = [(f"[{f.name}]({name}.md)", plain(f.about)) for name, f in files.items()]

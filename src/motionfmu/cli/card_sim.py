@@ -15,7 +15,9 @@ SPEED = (0.001, 1000.0)
 
 @card.command()
 def sim(  # noqa: PLR0913  (each is an option of the command)
-    server: Annotated[str, typer.Option(metavar="HOST:PORT")] = "127.0.0.1:8765",
+    server: Annotated[
+        str, typer.Option(metavar="HOST:PORT", help="Where card serve listens.")
+    ] = "127.0.0.1:8765",
     cards: Annotated[int, typer.Option(help="How many; ids count up from --id.")] = 1,
     id: Annotated[int, typer.Option(help="Id of the first.")] = 1,
     speed: Annotated[float, typer.Option(help="So much faster than the clock.")] = 1.0,

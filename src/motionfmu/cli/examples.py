@@ -1,6 +1,7 @@
 """The command that shows and copies what comes with the package to work on."""
 
 import os
+import re
 import shutil
 from pathlib import Path
 from typing import Annotated
@@ -11,6 +12,8 @@ from motionfmu.base.errors import InputError
 from motionfmu.cli.common import app
 from motionfmu.cli.console_text import print_rows
 from motionfmu.cli.list import first_line
+
+_PICTURE = re.compile(r"!\[([^\]]*)\]\(([\w./-]+)\)")
 
 
 @app.command()
@@ -36,6 +39,19 @@ def examples(
     _copy(places, target or Path())
 
 
+def _without_dead_pictures(readme: Path) -> None:
+    """Write the words of a picture where it would be, if it did not come with the package."""
+    if not readme.is_file():
+        return
+    text = readme.read_text(encoding="utf-8")
+
+    def shown(found: re.Match[str]) -> str:
+        return found[0] if (readme.parent / found[2]).is_file() else f"*{found[1]}*"
+
+    if (told := _PICTURE.sub(shown, text)) != text:
+        readme.write_text(told, encoding="utf-8")
+
+
 def _copy(places: list[Path], target: Path) -> None:
     """Copy folders into one, all or none."""
     if there := [t for p in places if os.path.lexists(t := target / p.name)]:
@@ -45,6 +61,7 @@ def _copy(places: list[Path], target: Path) -> None:
     try:
         for place in places:
             shutil.copytree(place, part / place.name, ignore=shutil.ignore_patterns("__pycache__"))
+            _without_dead_pictures(part / place.name / "README.md")
         for place in places:
             (part / place.name).rename(target / place.name)
             made.append(target / place.name)

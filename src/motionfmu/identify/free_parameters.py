@@ -23,15 +23,16 @@ class FrictionLaw(BaseModel):
     """An extension of the plant's law: what becomes free with it."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    title: str
-    free: list[str]
+    title: str  # what a page calls it
+    free: list[str]  # parameters, of which the first says how much of the law there is
 
 
 class Identifiable(BaseModel):
     """The tables of an identify.toml."""
 
     model_config = ConfigDict(extra="forbid", strict=True)
-    free: list[str] = Field(default_factory=list)
+    free: list[str] = Field(default_factory=list)  # parameters that a record of a motion can tell
+    # parameters that another one limits from below, with which they move
     ties: dict[str, str] = Field(default_factory=dict)
     law: dict[str, FrictionLaw] = Field(default_factory=dict)
     # values of other parameters that are tried, unless the scenario says them

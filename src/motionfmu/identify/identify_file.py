@@ -15,21 +15,27 @@ FILE = "identify.toml"
 
 
 class _UseTable(BaseModel):
+    """A column of the record, by its name; a text alone is its signal."""
+
     model_config = ConfigDict(extra="forbid", strict=True)
-    signal: str
-    scale: float | None = None
-    offset: float = 0.0
+    signal: str  # component.variable: an input is driven by the column, an output compared with it
+    scale: float | None = None  # the signal's unit per unit of the column; else units say it
+    offset: float = 0.0  # added behind the scale
 
 
-class _Asked(BaseModel):
+class AxisTables(BaseModel):
+    """Which axis is identified, and what of it."""
+
     model_config = ConfigDict(extra="forbid", strict=True)
     columns: dict[str, str | _UseTable] = Field(default_factory=dict)
-    axis: int = Field(default=1, ge=1)
-    free: list[str] | None = None
-    fix: list[str] = Field(default_factory=list)
+    axis: int = Field(default=1, ge=1)  # of the scenario, from 1
+    free: list[str] | None = None  # parameters to find, instead of those that the plant proposes
+    fix: list[str] = Field(default_factory=list)  # parameters that stay as the scenario has them
+    # extensions of the friction law that are taken, instead of those that validation chooses
     laws: list[str] | None = None
+    # share of the record, at its end, that is kept back for validation
     keep: float = Field(default=0.3, gt=0.05, lt=0.8)
-    controller: bool = True
+    controller: bool = True  # gains of the controller may be taken from the record
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -40,7 +46,7 @@ def read(path: Path) -> dict[str, Any]:
 def options(tables: Mapping[str, Any], place: str) -> IdentifyOptions:
     """Check tables and make options of them; `place` is named in messages."""
     try:
-        asked = _Asked.model_validate(dict(tables))
+        asked = AxisTables.model_validate(dict(tables))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(p) for p in first["loc"] if not str(p).startswith("_"))

@@ -52,18 +52,27 @@ class ArmOptions:
 
 
 class _ColumnTable(BaseModel):
+    """A column of the record, by its name, with all joints; a text alone is its signal."""
+
     model_config = ConfigDict(extra="forbid", strict=True)
-    signal: str
+    signal: str  # component.variable of the arm: torque, motor or link angle, encoder phase
+    # the signal's unit per unit of the column, or one for each joint; else units say it
     scale: float | list[float] | None = None
-    unit: str | None = None
+    unit: str | None = None  # of the column, if the record does not say it
 
 
-class _ArmTables(BaseModel):
+class ArmTables(BaseModel):
+    """What is taken of the record; an arm is identified as a whole."""
+
     model_config = ConfigDict(extra="forbid", strict=True)
     columns: dict[str, str | _ColumnTable] = Field(default_factory=dict)
+    # extensions of the law of torque that all joints take; else validation chooses for each
     laws: list[str] | None = None
+    # share of the record, at its end, that is kept back for validation
     keep: float = Field(default=0.3, gt=0.05, lt=0.8)
+    # [Hz] low pass of the angles before they are differentiated; else chosen by the motion
     low_pass: float | None = Field(default=None, gt=0.0)
+    # how the record's file is laid out: keys of a scenario's [record_file]
     record: dict[str, Any] = Field(default_factory=dict)
 
 
@@ -78,7 +87,7 @@ class ArmAsked:
 def asked_of(tables: Mapping[str, Any], place: str) -> ArmAsked:
     """Check tables and make options of them; `place` is named in messages."""
     try:
-        asked = _ArmTables.model_validate(dict(tables))
+        asked = ArmTables.model_validate(dict(tables))
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(p) for p in first["loc"] if not str(p).startswith("_"))

@@ -23,57 +23,67 @@ class _NamedParts(BaseModel):
 
 
 class _ArmSignals(_NamedParts):
-    torque: str
-    motor: str
-    speed: str
-    link: str
-    phase: str
-    lines: str
+    """Inputs and outputs, all joints of each."""
+
+    torque: str  # of the motors
+    motor: str  # angles of the motors
+    speed: str  # of the motors
+    link: str  # angles of the links
+    phase: str  # of the motors' encoders
+    lines: str  # parameter: lines of these encoders
 
 
 class _ArmLinks(_NamedParts):
-    mass: str
-    center: str
-    inertia: str
-    product: str
-    viscous: str
+    """Parameters of the links."""
+
+    mass: str  # of each link
+    center: str  # of mass, in the link's frame
+    inertia: str  # xx, yy, zz about the centre
+    product: str  # xy, yz, zx, taken as known
+    viscous: str  # friction of the joint behind its gear
 
 
 class _ArmLoad(_NamedParts):
-    mass: str
-    center: str
-    inertia: str
+    """Parameters of the load on the last link, which a record does not move."""
+
+    mass: str  # of the load
+    center: str  # of mass, in the last link's frame
+    inertia: str  # about the centre
 
 
 class _ArmMotors(_NamedParts):
-    inertia: str
-    coulomb: str
-    static: str
-    stribeck: str
-    viscous: str
+    """Parameters of the motors."""
+
+    inertia: str  # of each motor
+    coulomb: str  # friction at speed
+    static: str  # friction at rest
+    stribeck: str  # speed at which friction falls from the one to the other
+    viscous: str  # friction by speed
 
 
 class _ArmGears(_NamedParts):
-    stiffness: list[str]
-    knees: list[str]
-    damping: str
-    lost: str
-    zero: str
-    amplitudes: list[str]
-    phases: list[str]
+    """Parameters of the gears."""
+
+    stiffness: list[str]  # slopes of the torque over the wind-up, one more than knees
+    knees: list[str]  # torques at which the slope changes
+    damping: str  # of the gear
+    lost: str  # lost motion
+    zero: str  # error of the joint's zero
+    amplitudes: list[str]  # of the transmission error, once and twice per turn of the motor
+    phases: list[str]  # likewise
 
 
 class ArmTable(_NamedParts):
     """The table [arm] of an identify.toml: names of the class for what an arm has."""
 
-    axes: list[str]
-    origins: list[list[str]]
-    moved: str
-    sign: str
-    offset: str
-    ratio: str
-    gravity: str
-    start: str
+    axes: list[str]  # of the joints: x, y or z, in frames parallel to the base at inner angle 0
+    origins: list[list[str]]  # x, y, z of each joint in the link before; "" for none
+    moved: str  # what is added to the origins
+    sign: str  # inner angle = sign * joint angle - offset
+    offset: str  # likewise
+    ratio: str  # of the gears
+    gravity: str  # acceleration
+    start: str  # joint angles at the start
     signals: _ArmSignals
     links: _ArmLinks
     load: _ArmLoad
