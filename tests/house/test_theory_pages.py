@@ -28,6 +28,8 @@ LINKING = [
         "CONTRIBUTING.md",
         "src/motion/smooth/README.md",
         "src/motion/path/README.md",
+        "src/motionfmu/analysis/explain/README.md",
+        "src/motionfmu/analysis/linear/README.md",
     )
 ]
 

@@ -70,6 +70,29 @@ def test_software_law_has_two_samples_more() -> None:
     assert "mcc/card_dac_volts" in axis.loop(ENC).state_labels
 
 
+@pytest.mark.parametrize("share", [0.0, 0.6, 1.0])
+@pytest.mark.parametrize("lag", [0.0, 3e-3])
+def test_feed_forward_makes_a_circle_grow(lag: float, share: float) -> None:
+    """|H| - 1 = -(w/K)^2/2 (1 - kf^2 - 2 c K), c = tau + 3.5 T less what kf comes earlier, T/2.
+
+    It goes beside the error's three samples, and without the half sample of the hold.
+    """
+    gain, pulse = 40.0, 1e-6
+    axis = theory(
+        mcc__output_mode=2, mcc__position_gain=gain, mcc__velocity_ff=share, machine__tau=lag
+    )
+    closed = axis.system("card.pulses", "machine.table_position")
+    if lag == 0.0:
+        z, kt = np.exp(1j * np.array([0.01, 0.3, 1.0])), gain * T
+        whole = (kt / (z - 1.0) + share) / z**3 / (1.0 + kt / (z**3 * (z - 1.0)))
+        assert closed(z) / pulse == pytest.approx(whole, rel=1e-6)
+    w = 0.5  # [rad/s]
+    size = abs(closed(np.exp(1j * w * T))) / pulse
+    late = lag + 3.5 * T - 0.5 * share * T
+    said = -0.5 * (w / gain) ** 2 * (1.0 - share**2 - 2.0 * late * gain)
+    assert size - 1.0 == pytest.approx(said, rel=2e-3)
+
+
 @pytest.mark.parametrize("d", [1, 2, 3, 6])
 def test_stability_limit_with_extra_samples(d: int) -> None:
     """Kp T < 2 sin(pi/(2 (2 d + 1)))."""
@@ -189,6 +212,92 @@ def test_two_masses_fed_back_from_the_load(tmp_path: Path, k: float, c: float, m
         found[source] = largest_gain(axis, ENC).gain * kp
     assert found["table_phase"] == pytest.approx(c * k / (m * k - c * c), rel=0.01)
     assert found["motor_phase"] > 20.0 * found["table_phase"]
+
+
+@pytest.mark.parametrize("damping", [1e4, 1e3])
+def test_two_masses_between_torque_and_speed(damping: float) -> None:
+    """Motor m s^2 + c s + k, table r (c s + k), over s (J m s^2 + (J + r^2 m)(c s + k)), held."""
+    still = {"machine.motor_viscous": 0.0, "machine.table_viscous": 0.0}
+    axis = linear.model(DEMO, set=SMOOTH | still | {"machine.screw_damping": damping})
+    m, c, k, j, lag, lead = (
+        axis.value(f"machine.{n}")
+        for n in (
+            "table_mass",
+            "screw_damping",
+            "screw_stiffness",
+            "motor_inertia",
+            "current_time",
+            "lead",
+        )
+    )
+    r = lead / (2.0 * math.pi)
+    below = np.polymul([lag, 1.0], [j * m, (j + r * r * m) * c, (j + r * r * m) * k, 0.0])
+    z = np.exp(1j * np.array([1e-3, 0.03, 0.1, 0.11, 0.4, 3.0]))
+    cut = "machine.torque_command"
+    for name, above in (("motor_speed", [m, c, k]), ("table_speed", [r * c, r * k])):
+        found = axis.system(cut, f"machine.{name}", cut)
+        wanted = control.c2d(control.tf(above, below), found.dt, "zoh")
+        assert found(z) == pytest.approx(wanted(z), rel=1e-5)
+    # without damping it rings at sqrt(k/m) sqrt(1 + r^2 m/J)
+    bare = axis.changed({"machine.screw_damping": 0.0}).system(cut, "machine.motor_speed", cut)
+    ringing = np.abs(np.log(bare.poles())) / bare.dt
+    resonance = math.sqrt(k / m * (1.0 + r * r * m / j))
+    assert np.abs(ringing - resonance).min() < 1e-4 * resonance
+
+
+@pytest.mark.parametrize("damping", [1.0, math.sqrt(0.5), 0.5])
+def test_damping_of_a_loop_behind_a_lag(damping: float) -> None:
+    """Kp tau = 1/(4 zeta^2): overshoot exp(-pi zeta/sqrt(1 - zeta^2)), and the phase it leaves."""
+    axis = theory(mcc__p_gain=200)
+    kp = kp_of(axis)
+    k = 0.25 / damping**2
+    axis = axis.changed({"machine.tau": k / kp})
+    closed = axis.system("card.pulses", "machine.table_position")
+    y = control.step_response(closed, closed.dt * np.arange(4000)).outputs
+    over = math.exp(-math.pi * damping / math.sqrt(1.0 - damping**2)) if damping < 1.0 else 0.0
+    assert y.max() / closed.dcgain() - 1.0 == pytest.approx(over, abs=0.01)
+    crossing = math.sqrt(0.5 * (math.sqrt(1.0 + 4.0 * k * k) - 1.0))  # w tau
+    lag = crossing / (k / kp) * 1.5 * T
+    found = margins(axis.loop(ENC))
+    said = 90.0 - math.degrees(math.atan(crossing) + lag)
+    assert found.phase == pytest.approx(said, abs=0.02)
+    assert found.omega_phase == pytest.approx(crossing * kp / k, rel=1e-3)
+
+
+def test_a_velocity_loop_by_its_parts() -> None:
+    """Kv/(J s) (1 + 1/(Ti s)), the current loop's lag and two samples; it crosses at Kv/J."""
+    still = {"machine.motor_viscous": 0.0, "machine.table_viscous": 0.0}
+    axis = linear.model(DEMO, set=SMOOTH | still)
+    m, j, lag, lead = (
+        axis.value(f"machine.{n}") for n in ("table_mass", "motor_inertia", "current_time", "lead")
+    )
+    gain, time = axis.value("drives.velocity_gain"), axis.value("drives.velocity_time")
+    crossing = gain / (j + m * (lead / (2.0 * math.pi)) ** 2)
+    found = margins(axis.loop("drives.phase", ENC))
+    assert found.omega_phase == pytest.approx(crossing, rel=0.03)
+    phase = math.atan(crossing * time) - crossing * (lag + 2.0 * T)
+    assert found.phase == pytest.approx(math.degrees(phase), abs=1.0)
+
+
+def test_an_axis_at_rest_is_held_by_its_friction() -> None:
+    """There the velocity loop acts on the slope f of friction at rest, and inertia hardly counts.
+
+    The table's slope F is behind the screw: r^2 F (k + c s)/(k + (c + F) s).
+    """
+    axis = linear.model(DEMO, at={"machine.motor_speed": 0.0})
+    static, rest, lead, k, c = (
+        axis.value(f"machine.{n}")
+        for n in ("motor_static", "motor_rest_speed", "lead", "screw_stiffness", "screw_damping")
+    )
+    table = axis.value("machine.table_static") / axis.value("machine.table_rest_speed")
+    behind = (lead / (2.0 * math.pi)) ** 2 * table * control.tf([c, k], [c + table, k])
+    gain, time = axis.value("drives.velocity_gain"), axis.value("drives.velocity_time")
+    (kp,) = (g.kp for g in linear.gain_of(DEMO, axis=1) if g.name == "mcc.p_gain")
+    pi = control.tf([gain, gain / time], [1.0, 0.0])
+    loop = kp * control.tf([1.0], [1.0, 0.0]) * pi / (static / rest + behind + pi)
+    found, said = margins(axis.loop(ENC)), margins(loop)
+    assert found.phase == pytest.approx(said.phase, abs=0.5) and found.phase < 15.0
+    assert found.omega_phase == pytest.approx(said.omega_phase, rel=0.02)
 
 
 @pytest.mark.parametrize("speed", [0.05, -3.0, 60.0])

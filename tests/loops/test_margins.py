@@ -18,7 +18,7 @@ from motionfmu.analysis.freq import limit
 from motionfmu.analysis.freq.limit import RingingTest, simulated_gain, small_signal_gain, usual_kick
 from motionfmu.analysis.freq.loop_study import LoopStudyOptions, study
 from motionfmu.analysis.linear.loops import Limit, boundary, feedbacks, largest_gain
-from motionfmu.analysis.linear.stability import closed_poles, margins
+from motionfmu.analysis.linear.stability import closed_poles, margins, response
 from motionfmu.cli import app
 from motionfmu.report.loop_pages.margin_page import point_line
 
@@ -87,6 +87,30 @@ def test_a_loop_rings_with_the_dead_time_of_its_margin(late: int) -> None:
     whole, n = margins(loop).delay, round(margins(loop).delay / 1e-3)
     assert margins(loop * shift**late).delay == pytest.approx(whole - late * 1e-3, rel=1e-9)
     assert margins(loop * shift ** (n - 1)).stable and not margins(loop * shift ** (n + 1)).stable
+
+
+@pytest.mark.parametrize("loop", LOOPS)
+def test_a_peak_of_the_sensitivity_bounds_gain_and_phase(loop: control.TransferFunction) -> None:
+    """|1 + L| >= 1/Ms: gain at least Ms/(Ms - 1), phase at least 2 asin(1/(2 Ms)); and the disk."""
+    found = margins(loop)
+    peak = found.sensitivity
+    assert found.gain >= peak / (peak - 1.0) * (1.0 - 1e-6)
+    assert found.phase >= math.degrees(2.0 * math.asin(0.5 / peak)) - 1e-6
+    assert found.gain >= found.disk_gain * (1.0 - 1e-6)
+    assert found.phase >= found.disk_phase - 1e-6
+    half = 0.5 * found.disk
+    assert found.disk_gain == pytest.approx((1.0 + half) / (1.0 - half))
+
+
+@pytest.mark.parametrize("gain", [200, 2000, 6000])
+def test_what_the_sensitivity_gains_it_loses(gain: int) -> None:
+    """The mean of ln |S| up to half the sampling rate is 0, whatever the gain (Bode, discrete)."""
+    loop = theory(mcc__p_gain=gain).loop(ENC)
+    count = 100_000
+    omega = (np.arange(count) + 0.5) * math.pi / count / loop.dt
+    size = np.log(np.abs(1.0 + response(loop, omega)))
+    assert size.mean() == pytest.approx(0.0, abs=1e-5)
+    assert size.max() > 0.1 and size.min() < -0.005
 
 
 def test_a_gain_beyond_its_margin_is_unstable() -> None:

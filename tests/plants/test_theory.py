@@ -230,3 +230,15 @@ def test_chord_error_of_the_interpolation(tmp_path, radius, feed, divider) -> No
     theory = radius * (1.0 - math.cos(feed * dda_time / (2.0 * radius)))
     assert agrees(radius - r.min(), theory), (radius - r.min(), theory)
     assert abs(r.max() - radius) < 0.2e-3
+
+
+@pytest.mark.parametrize("gain", [10, 3, 40])
+def test_counts_that_the_dac_rounds_away(tmp_path, gain) -> None:
+    """An error of less than 2^scale/(2 gain) counts asks for less than half a code: the axis rests.
+
+    Only X has an error that is left; it comes from one side.
+    """
+    program = "G21 G17 G90 G61\nG1 X1 Y0 F300\nG4 P1.5\nM30\n"
+    result = run(tmp_path, program, 1e-4, mcc__p_gain=gain)
+    left = result["card.err_count"][-1, 0]
+    assert left == math.ceil(2**P_SCALE / (2.0 * gain)) - 1

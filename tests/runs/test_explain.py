@@ -306,6 +306,44 @@ def test_published_figures_of_controls() -> None:
     assert polygon == pytest.approx(2.0 / 3.0 * servo_formulas.chord(radius, feed, 0.01), rel=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("inner", "late"),
+    [
+        ({}, 0.0),
+        ({"lag": 2e-3}, 2e-3),
+        ({"lag": 2e-3, "period": 1e-3, "delay": 2e-3}, 4.5e-3),
+        ({"velocity_gain": 0.5, "inertia": 2e-3}, 4e-3),
+        ({"velocity_gain": 0.5, "velocity_time": 0.02, "inertia": 2e-3}, 0.0),
+    ],
+)
+def test_a_circle_to_second_order(inner: dict[str, float], late: float) -> None:
+    """V^2/(2 R) (2 c/Kp - 1/Kp^2): c is lag, delay and half a sample; an integral takes the lag
+    of the speed away."""
+    gain, radius, feed = 40.0, 10.0, 1.0
+    change = servo_formulas.radius_change(radius, ServoAxis(gain, **inner).response(feed / radius))
+    said = feed**2 / (2.0 * radius) * (2.0 * late / gain - 1.0 / gain**2)
+    assert change == pytest.approx(said, rel=2e-4)
+
+
+@pytest.mark.parametrize(("kx", "ky"), [(40.0, 44.0), (50.0, 30.0)])
+def test_unequal_lags_to_first_order(kx: float, ky: float) -> None:
+    """Half an axis of the oval is V/2 (1/Kx - 1/Ky) longer, the other one shorter."""
+    radius, feed = 50.0, 20.0
+    x, y = (ServoAxis(k).response(feed / radius) for k in (kx, ky))
+    large, small = servo_formulas.ellipse(radius, (x, y))
+    oval = 0.5 * feed * abs(1.0 / kx - 1.0 / ky)
+    assert 0.5 * (large - small) == pytest.approx(oval, rel=1e-3)
+
+
+def test_a_reversal_without_inertia() -> None:
+    """2 Fc/Kv (e^-at - e^-bt)/(b - a), a = Kp, b = 1/Ti: a peak of k^(1/(1 - k)), k = Kp Ti."""
+    axis = ServoAxis(50.0, velocity_gain=0.5, inertia=1e-7, friction=0.2, travel=10.0)
+    step = servo_formulas.reversal(axis)[0]
+    for ratio in (1.001, 3.0, 0.4):  # Kp Ti
+        peak = servo_formulas.reversal(replace(axis, velocity_time=ratio / 50.0))[1]
+        assert peak / step == pytest.approx(ratio ** (1.0 / (1.0 - ratio)), rel=2e-3)
+
+
 def first_order(command: np.ndarray, gain: float, step: float) -> np.ndarray:
     out, x = np.empty_like(command), command[0]
     for i, goal in enumerate(command):
@@ -339,6 +377,36 @@ def test_corners_against_a_simulated_loop(kind: str, angle: float) -> None:
     x, y = -first_order(one, gain, step), first_order(two, gain, step)
     error = math.sin(th) * float(np.minimum(x, y).max())
     assert said == pytest.approx(error, rel=0.02)
+
+
+@pytest.mark.parametrize("lags", [0.01, 0.5, 1.5, 1.999, 2.001, 4.0])
+def test_a_blend_of_any_length_against_a_simulated_loop(lags: float) -> None:
+    """A ramp of so many servo lags: the shorter it is, the sharper the corner."""
+    feed, gain, th, step = 50.0, 40.0, math.radians(70.0), 2e-5
+    ramp = lags / gain
+    t = np.arange(-0.1, 0.3, step)
+    left, gone = np.clip(ramp - t, 0.0, None), np.clip(t, 0.0, None)
+    one, two = (
+        np.where(u < ramp, 0.5 * feed / ramp * u**2, feed * (u - 0.5 * ramp)) for u in (left, gone)
+    )
+    behind = [c - lag_error(c, gain, step) for c in (-one, two)]
+    behind[0] -= feed / gain * np.exp(-gain * (t + 0.1))  # a steady lag from the start on
+    error = math.sin(th) * float(np.minimum(-behind[0], behind[1]).max())
+    said = servo_formulas.blended_corner(feed, th, gain, feed / ramp)
+    assert said == pytest.approx(error, rel=2e-3)
+
+
+@pytest.mark.parametrize("gain", [1e7, 400.0, 20.0])
+def test_chords_behind_a_servo_against_a_simulated_loop(gain: float) -> None:
+    """A servo that follows all shows the sag, a slow one two thirds of it."""
+    period, count = 0.01, 4000
+    t = np.arange(60 * count) / count  # chords
+    sag = 4.0 * (t % 1.0) * (1.0 - t % 1.0)
+    seen = sag - lag_error(sag, gain, period / count)
+    largest = float(seen[-count:].max())
+    said = servo_formulas.chord_behind_servo(1.0, period, ServoAxis(gain))
+    assert said == pytest.approx(largest, rel=0.005)
+    assert 2.0 / 3.0 < said < 1.0
 
 
 def test_ellipse_and_reversal_against_brute_force() -> None:

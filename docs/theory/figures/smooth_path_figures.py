@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 from matplotlib import pyplot as plt
-from matplotlib.axes import Axes
-from plots import BLUE, GREEN, GREY, ORANGE, RED, Array, figure, panels
+from plots import BLUE, GREEN, GREY, ORANGE, RED, Array, figure, panels, tube
 from shape_paths import Segment, lines, shaped
 
 
@@ -23,16 +22,6 @@ def curvature(slope: Array, bend: Array) -> Array:
     """Signed curvature in X Y. [1/mm]"""
     cross = slope[:, 0] * bend[:, 1] - slope[:, 1] * bend[:, 0]
     return cross / np.linalg.norm(slope[:, :2], axis=1) ** 3
-
-
-def tube(ax: Axes, points: Array, radius: float) -> None:
-    """What is within a radius of a polyline, as a band of that width in data units."""
-    from shapely.geometry import LineString
-
-    band = LineString(points).buffer(radius, quad_segs=24)
-    x, y = band.exterior.xy
-    ax.fill(x, y, color="#dfe9f5", zorder=0)
-    ax.plot(x, y, color="#9db8d9", linewidth=0.7, zorder=1)
 
 
 @figure

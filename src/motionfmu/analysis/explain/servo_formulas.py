@@ -16,8 +16,9 @@ from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
 
-# Terms of the Fourier series of a chord's sag; they fall with the square of their number.
-CHORD_TERMS = 50
+# Terms of the Fourier series of a chord's sag, which fall with the square of their number, and
+# places of a chord at which their sum is looked at.
+CHORD_TERMS, CHORD_PLACES = 50, 401
 # Steps over which a step response is searched for its peak; its length in slowest time constants.
 PEAK_STEPS, PEAK_LENGTH = 2000, 8.0
 
@@ -100,15 +101,16 @@ def chord(radius: float, feed: float, time: float) -> float:
 def chord_behind_servo(sag: float, time: float, axis: ServoAxis) -> float:
     """Largest distance inwards [mm] that a table shows of the sag of chords, each a time [s] long.
 
-    The sag is a parabola of time: its mean, 2/3, passes the servo, its ripple
-    ``4/(pi k)^2 cos(2 pi k t/T)`` does as far as the response lets it.
+    The sag is a parabola of time: its mean, 2/3, passes the servo, of its ripple
+    ``-4/(pi k)^2 cos(2 pi k t/T)`` the table shows what the response makes of it.
     """
     terms = np.arange(1, CHORD_TERMS + 1)
-    size = [abs(axis.response(2.0 * math.pi * k / time)) for k in terms.tolist()]
+    passed = np.array([axis.response(2.0 * math.pi * k / time) for k in terms.tolist()])
     # Ripple frequencies beyond half the sampling rate do not exist for a sampled servo.
-    seen = terms / time <= (0.5 / axis.period if axis.period > 0.0 else math.inf)
-    share = np.where(seen, size, 0.0) * 4.0 / (math.pi * terms) ** 2
-    return sag * (2.0 / 3.0 + float(share.sum()))
+    passed[terms / time > (0.5 / axis.period if axis.period > 0.0 else math.inf)] = 0.0
+    turned = np.exp(2j * math.pi * np.outer(np.linspace(0.0, 1.0, CHORD_PLACES), terms))
+    ripple = (turned @ (passed * 4.0 / (math.pi * terms) ** 2)).real
+    return sag * (2.0 / 3.0 - float(ripple.min()))
 
 
 def line_mismatch(feed: float, angle: float, gains: tuple[float, float]) -> float:
@@ -153,9 +155,15 @@ def blended_corner(feed: float, angle: float, gain: float, acceleration: float) 
 
     One brakes while the next speeds up [mm/s2]. Both distances, ``a (T - t)^2/2 + a (T - t)/Kp``
     and ``a t^2/2 - a t/Kp``, each with ``a/Kp^2 (1 - e^(-Kp t))`` more, are equal at t = T/2 +
-    1/Kp, with T = V/a.
+    1/Kp, with T = V/a. If the ramp is over by then (Kp T < 2), both are
+    ``V/(e Kp) sinh(Kp T/2)/(Kp T/2)`` there, which a short ramp makes the error of a sharp corner.
     """
-    time = 0.5 * feed / acceleration + 1.0 / gain
+    ramp = feed / acceleration
+    half = 0.5 * gain * ramp
+    if half < 1.0:
+        own = math.sinh(half) / half if half > 0.0 else 1.0
+        return abs(math.sin(angle)) * feed / (math.e * gain) * own
+    time = 0.5 * ramp + 1.0 / gain
     own = 0.5 * time * time - time / gain - math.expm1(-gain * time) / gain**2
     return abs(math.sin(angle)) * acceleration * own
 
