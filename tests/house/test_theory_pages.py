@@ -28,6 +28,11 @@ LINKING = [
         "CONTRIBUTING.md",
         "src/motion/smooth/README.md",
         "src/motion/path/README.md",
+        "src/base/pulse/README.md",
+        "src/base/tasks/README.md",
+        "src/devices/epcio/README.md",
+        "src/devices/fpga/README.md",
+        "src/devices/player/README.md",
     )
 ]
 
