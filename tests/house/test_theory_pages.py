@@ -33,6 +33,9 @@ LINKING = [
         "src/devices/epcio/README.md",
         "src/devices/fpga/README.md",
         "src/devices/player/README.md",
+        "src/devices/msp430/README.md",
+        "src/controllers/robot_controller/README.md",
+        "fmus/hydraulic_axis/README.md",
     )
 ]
 
