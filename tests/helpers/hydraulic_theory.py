@@ -10,6 +10,7 @@ LEAK_VALVE, LEAK_PISTON = 3e-13, 1e-12
 ROUNDING, RATED_FLOW, RATED_DROP, LAMINAR = 2e-3, 1.667e-4, 35e5, 1e5
 STRIBECK, VISCOUS, REST = 1e-2, 1000.0, 2e-4
 COUNT = 5e-6  # [m]
+BULK = 1.2e9  # [Pa]
 
 
 def creep(stroke: float, overlap: float, coulomb: float, static: float) -> float:
@@ -34,6 +35,60 @@ def creep(stroke: float, overlap: float, coulomb: float, static: float) -> float
         return float(into - out - LEAK_PISTON * p - AREA * v)
 
     return float(brentq(rest, -0.3, 0.3, xtol=1e-12))
+
+
+def speed_under(stroke: float, overlap: float, force: float) -> float:
+    """Speed of a table without friction and leakage, a force pushing it on [m/s]."""
+    gain = RATED_FLOW / (1.0 - overlap) / np.sqrt(RATED_DROP)
+    drops = AREA * (SUPPLY - TANK) + force
+    return float(gain * (stroke - overlap) * np.sqrt(drops / (2.0 * AREA**3)))
+
+
+def oil_and_mass(
+    volumes: tuple[float, float], mass: float, leak: float, edges: float, viscous: float
+) -> tuple[float, float]:
+    """Natural frequency [rad/s] and damping ratio of a mass between two chambers of oil.
+
+    Exact for equal volumes, else to the first order of the damping.
+
+    Parameters
+    ----------
+    volumes : tuple of float
+        Oil in the chambers [m3], whose pistons have `AREA`.
+    mass, viscous : float
+        [kg], [N.s/m]
+    leak, edges : float
+        Slopes of the flow past the piston and out of each chamber [m3/s/Pa].
+    """
+    each = [BULK / v for v in volumes]
+    both = sum(each)
+    omega = np.sqrt(both * (AREA**2 + viscous * (leak + edges / 2.0)) / mass)
+    decay = viscous / mass + both * leak + sum(x * x for x in each) / both * edges
+    return float(omega), float(decay / (2.0 * omega))
+
+
+def largest_gain(
+    oil: tuple[float, float], valve: tuple[float, float], lags: tuple[float, ...], dead: float
+) -> tuple[float, float]:
+    """Velocity gain at which the loop rings, and at which frequency [1/s], [rad/s].
+
+    K e^(-s dead)/s behind oil and mass, the valve's spool (frequency and damping ratio each) and
+    first-order lags [s].
+    """
+
+    def behind(omega: float) -> complex:
+        value = np.exp(1j * omega * dead)
+        for frequency, damping in (oil, valve):
+            x = omega / frequency
+            value *= 1.0 - x * x + 2j * damping * x
+        return complex(value * np.prod([1.0 + 1j * omega * lag for lag in lags]))
+
+    def phase(omega: float) -> float:
+        grid = np.linspace(0.0, omega, 200)
+        return float(np.unwrap(np.angle([behind(w) for w in grid]))[-1] - 0.5 * np.pi)
+
+    omega = float(brentq(phase, 1.0, 1.5 * oil[0]))
+    return omega * abs(behind(omega)), omega
 
 
 def left_by_p(kc: float, friction: tuple[float, float, float]) -> int:

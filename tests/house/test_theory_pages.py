@@ -30,6 +30,14 @@ LINKING = [
         "src/motion/path/README.md",
         "src/motionfmu/analysis/explain/README.md",
         "src/motionfmu/analysis/linear/README.md",
+        "src/base/pulse/README.md",
+        "src/base/tasks/README.md",
+        "src/devices/epcio/README.md",
+        "src/devices/fpga/README.md",
+        "src/devices/player/README.md",
+        "src/devices/msp430/README.md",
+        "src/controllers/robot_controller/README.md",
+        "fmus/hydraulic_axis/README.md",
     )
 ]
 

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from hydraulic_theory import AREA, LEAK_VALVE, SUPPLY, TANK, oil_and_mass
+from hydraulic_theory import largest_gain as theory_gain
 from typer.testing import CliRunner
 
 from motionfmu import InputError
@@ -93,6 +95,40 @@ def test_a_register_at_its_limit() -> None:
     literal = model(controller__law=1, controller__i_gain=1, controller__i_shift=16)
     again = largest_gain(literal, SCALE, (), "controller.p_gain")
     assert by_register.gain - again.gain == pytest.approx(32767 / 2**16 * 2**8, abs=1.0)
+
+
+GAIN = ROOT / "scenarios/hydraulic_gain"
+OWN = P | {"controller.p_gain": 1200, "axis.start_position": 0.0}
+QUICK = {
+    "controller.timer_period": 2e-4,
+    "controller.filter_time": 1e-4,
+    "axis.valve_frequency": 5000.0,
+    "axis.current_time": 2e-5,
+}
+
+
+@pytest.mark.parametrize("leakage", [0.0, 1e-12, 6e-12])
+@pytest.mark.parametrize("quick", [True, False])
+def test_largest_gain_by_its_phase(leakage: float, quick: bool) -> None:
+    """Oil, mass, spool, coil, filter and a dead time, within 3 %; none of it needs the FMU."""
+    more = QUICK if quick else {}
+    given = OWN | more | {"axis.cylinder_leakage": leakage}
+    axis = linear.model(GAIN, at=AT | {"axis.force": 0.0}, set=given)
+    loop, low = axis.loop(SCALE), 0.05
+    found = largest_gain(axis, SCALE)
+    kp = abs(loop(np.exp(1j * low * loop.dt))) * low
+    # At the middle, through an edge that is open for 50 mm/s.
+    volume, drop = 5e-5 + AREA * 0.1, (SUPPLY - TANK) / 2
+    edge = AREA * 0.05 / (2.0 * drop)
+    oil = oil_and_mass((volume, volume), 100.0, leakage, 2.0 * LEAK_VALVE + edge, 1000.0)
+    spool, coil, lag = (5000.0, 2e-5, 1e-4) if quick else (500.0, 2e-4, 2e-3)
+    # Half a timer period, a PWM period, and an instant of the pins that its mean takes.
+    dead = (2e-4 if quick else 1e-3) / 2 + 1e-4 + 1e-4
+    gain, omega = theory_gain(oil, (spool, 0.8), (coil, lag), dead)
+    assert kp * found.gain == pytest.approx(gain, rel=0.03)
+    assert found.omega == pytest.approx(omega, rel=0.03)
+    if quick and leakage == 0.0:
+        assert gain == pytest.approx(2.0 * oil[0] * oil[1], rel=0.03)
 
 
 def test_gain_of_the_loop_at_low_frequency() -> None:

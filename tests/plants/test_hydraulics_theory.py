@@ -7,6 +7,7 @@ Esposito, "Fluid Power with Applications", chapter 17, electrohydraulic servo sy
 import numpy as np
 import pytest
 from hydraulic_rig import Case, drive, started
+from hydraulic_theory import oil_and_mass, speed_under
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from plant_library import ROOT, Library
@@ -86,6 +87,24 @@ def test_damping_by_leakage_friction_and_valve(opening):
     assert 0.05 < zeta < 0.9
 
 
+@pytest.mark.parametrize("opening", [0.0, 0.2])
+@pytest.mark.parametrize("place", [-0.08, -0.03, 0.0, 0.06])
+def test_natural_frequency_and_damping_at_any_place(place, opening):
+    """2 z w = B/M + b (1/V_a + 1/V_b) C + b (1/V_a^2 + 1/V_b^2)/(1/V_a + 1/V_b) k_e."""
+    case = Case(
+        table_coulomb=0.0, table_static=0.0, valve_rounding=1e-7, laminar_drop=1.0,
+        start_position=place,
+    )  # fmt: skip
+    x = np.array(case.start)
+    x[[0, 1]] = opening
+    gain, drop = 1.667e-4 / 0.97 / np.sqrt(35e5), 69e5
+    edges = gain * max(opening - 0.03, 0.0) / (2 * np.sqrt(drop)) + 2 * 3e-13
+    volumes = 5e-5 + 9.46e-4 * (0.1 + place), 5e-5 + 9.46e-4 * (0.1 - place)
+    expected = oil_and_mass(volumes, 100.0, 1e-12, edges, 1000.0)
+    found = resonance(case.slope(x, [10 * opening, 0]).full())
+    assert found == pytest.approx(expected, rel=3e-3 if place else 1e-5)
+
+
 def test_the_fmu_carries_its_linear_model():
     """At a speed: oil and mass as in the README, too little damped for a gain of w/3."""
     ode = carried("hydraulic_axis")
@@ -109,6 +128,39 @@ def test_no_load_speed(library, areas):
         )  # fmt: skip
         v = drive(run, 0.2, 1e-3, ("table_speed",), voltage=sign * 10.0)[-1, 0]
         assert v == pytest.approx(sign * gain * np.sqrt(force / (a**3 + b**3)), rel=1e-5)
+
+
+@pytest.mark.parametrize("force", [3000.0, -5000.0, -12_000.0])
+def test_speed_under_a_load(library, force):
+    """Times the root of what is left of the stall force."""
+    run = started(
+        library, **NO_FRICTION, valve_leakage=0.0, cylinder_leakage=0.0, laminar_drop=1e3,
+        valve_rounding=1e-6,
+    )  # fmt: skip
+    v = drive(run, 0.3, 1e-3, ("table_speed",), voltage=5.0, force=force)[-1, 0]
+    assert v == pytest.approx(speed_under(0.5, 0.03, force), rel=1e-5)
+    free = speed_under(0.5, 0.03, 0.0)
+    assert v == pytest.approx(free * np.sqrt(1.0 + force / (138e5 * 9.46e-4)), rel=1e-5)
+
+
+def test_a_load_on_the_shut_valve_creeps_through_the_leakages(library):
+    """(C + c) F/A^2: past the piston, and over the closed edges."""
+    for force in (500.0, -2000.0):
+        run = started(library, **NO_FRICTION, valve_rounding=1e-7)
+        s = drive(run, 4.0, 1e-2, ("table_position",), force=force)[:, 0]
+        speed = (s[-1] - s[-101]) / 1.0
+        assert speed == pytest.approx((1e-12 + 3e-13) * force / 9.46e-4**2, rel=1e-3)
+
+
+def test_a_rounded_corner_passes_oil_at_the_centre(library):
+    """K w^2/(4 o) per root of the drop over each of the four edges; a soft root is short of it."""
+    run = started(library, **NO_FRICTION, valve_leakage=0.0, cylinder_leakage=0.0)
+    q = drive(run, 0.5, 1e-2, ("supply_flow",))[-1, 0]
+    gain, drop = 1.667e-4 / 0.97 / np.sqrt(35e5), 69e5
+    opening = 0.5 * (np.hypot(0.03, 2e-3) - 0.03)
+    assert opening == pytest.approx(2e-3**2 / (4 * 0.03), rel=2e-3)
+    short = 1.0 - (1e5 / drop) ** 2 / 4.0
+    assert q == pytest.approx(2 * gain * opening * np.sqrt(drop) * short, rel=1e-6)
 
 
 def test_stall_force(library):
