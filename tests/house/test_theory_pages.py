@@ -28,6 +28,8 @@ LINKING = [
         "CONTRIBUTING.md",
         "src/motion/smooth/README.md",
         "src/motion/path/README.md",
+        "src/controllers/robot/README.md",
+        "fmus/robot_arm/README.md",
     )
 ]
 
