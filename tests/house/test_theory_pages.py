@@ -30,6 +30,10 @@ LINKING = [
         "src/motion/path/README.md",
         "src/controllers/robot/README.md",
         "fmus/robot_arm/README.md",
+        "src/motionfmu/identify/README.md",
+        "src/motionfmu/identify/arm_dynamics/README.md",
+        "src/motionfmu/calibrate/README.md",
+        "src/motionfmu/analysis/measured_response/README.md",
     )
 ]
 
