@@ -38,6 +38,12 @@ LINKING = [
         "src/devices/msp430/README.md",
         "src/controllers/robot_controller/README.md",
         "fmus/hydraulic_axis/README.md",
+        "src/controllers/robot/README.md",
+        "fmus/robot_arm/README.md",
+        "src/motionfmu/identify/README.md",
+        "src/motionfmu/identify/arm_dynamics/README.md",
+        "src/motionfmu/calibrate/README.md",
+        "src/motionfmu/analysis/measured_response/README.md",
     )
 ]
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from noisy_loop import STEP, loop_of, multisine, plant_of
 from scipy import signal
 
 import motionfmu
@@ -27,33 +28,8 @@ from motionfmu.analysis.measured_response.period_of_signal import period_of, who
 from motionfmu.analysis.measured_response.plant_response import axis_of, model_response
 from motionfmu.identify import AxisRecord, ColumnUse
 
-STEP = 1e-3
 TRUE = MassModel(5e-4, 3e-4, 200.0, 0.01, 2e-3, 5e-4, 2e-4)
 OFF = [False] * 5
-
-
-def multisine(n, lines, rng):
-    spectrum = np.zeros(n // 2 + 1, dtype=complex)
-    spectrum[lines] = np.exp(2j * np.pi * rng.random(len(lines)))
-    x = np.fft.irfft(spectrum, n)
-    return x / x.std()
-
-
-def loop_of(reference, noise, seed):
-    """A sampled plant of one lag under a proportional law, with noise of its own: r, u, y."""
-    rng = np.random.default_rng(seed)
-    e = noise * signal.lfilter([1.0], [1.0, -0.7], rng.standard_normal(len(reference)))
-    x, u, y = 0.0, np.zeros(len(reference)), np.zeros(len(reference))
-    for k, r in enumerate(reference):
-        y[k] = x + e[k]
-        u[k] = 0.8 * (r - y[k])
-        x = 0.9 * x + 0.5 * u[k]
-    return LoopSignals(reference, u, y, STEP, "loop")
-
-
-def plant_of(omega):
-    z = np.exp(1j * omega * STEP)
-    return 0.5 / (z - 0.9)
 
 
 @pytest.mark.parametrize(("period", "drift"), [(250, 0.0), (377, 3e-2), (1000, -1e-2)])

@@ -9,10 +9,10 @@ from conftest import ROOT
 from eaik.IK_HP import HPRobot
 from numpy.typing import NDArray
 from public_arms import ARMS, PublicArm, turned_at_zero
-from test_robot import ARMS as OPW_ARMS
-from test_robot import Arm as OpwArm
-from test_robot import inverse as opw_inverse
-from test_robot import pointer
+from robot_batch import ARMS as OPW_ARMS
+from robot_batch import Arm as OpwArm
+from robot_batch import inverse as opw_inverse
+from robot_batch import pointer
 
 Array = NDArray[np.float64]
 LIBRARY = ctypes.CDLL(str(ROOT / "build/lib/chain_batch.so"))

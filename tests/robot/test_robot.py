@@ -1,90 +1,14 @@
 """Kinematics of the arm, attitudes and moves of its joints against other people's libraries."""
 
 import ctypes
-from dataclasses import dataclass
 
 import numpy as np
-import py_opw_kinematics as opw
 import pytest
 import ruckig
-from conftest import ROOT
-from eaik.IK_HP import HPRobot
-from numpy.typing import NDArray
+from robot_batch import ARMS, BRANCHES, LIBRARY, Array, forward, inverse, pointer
 from scipy.spatial.transform import Rotation, Slerp
 
-Array = NDArray[np.float64]
-LIBRARY = ctypes.CDLL(str(ROOT / "build/lib/robot_batch.so"))
 POSES = 100_000
-BRANCHES = 8
-
-
-@dataclass(frozen=True)
-class Arm:
-    """An arm; lengths in m, angles in rad."""
-
-    lengths: tuple[float, ...]
-    offsets: tuple[float, ...]
-    signs: tuple[int, ...]
-
-    def parameters(self) -> ctypes.Array[ctypes.c_double]:
-        """What struct opw holds."""
-        return (ctypes.c_double * 19)(*self.lengths, *self.offsets, *self.signs)
-
-    def axes(self) -> HPRobot:
-        """The same arm by its axes and the places between them, at inner zeros."""
-        a1, a2, b, c1, c2, c3, c4 = self.lengths
-        x, y, z = np.eye(3)
-        turns = np.array([z, y, y, z, y, z]) * np.array(self.signs)[:, None]
-        ways = [c1 * z, a1 * x + b * y, c2 * z, a2 * x + c3 * z, 0 * x, 0 * x, c4 * z]
-        return HPRobot(turns, np.array(ways))
-
-    def turned(self, joints: Array) -> Array:
-        """Joints from inner zeros on, in the maker's directions [rad]."""
-        return joints - np.array(self.offsets) * np.array(self.signs)
-
-    def other(self) -> opw.Robot:
-        """The same arm of the other library."""
-        names = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
-        lengths = dict(zip(names, self.lengths, strict=True))
-        flips = tuple(s < 0 for s in self.signs)
-        model = opw.KinematicModel(**lengths, offsets=self.offsets, flip_axes=flips)
-        return opw.Robot(model, degrees=False)
-
-
-ARMS = {
-    "IRB 2600": Arm(
-        (0.150, -0.115, 0, 0.445, 0.7, 0.795, 0.085), (0, 0, -np.pi / 2, 0, 0, 0), (1,) * 6
-    ),
-    "KR 6": Arm(
-        (0.025, -0.035, 0, 0.4, 0.315, 0.365, 0.08),
-        (0, -np.pi / 2, 0, 0, 0, 0),
-        (-1, 1, 1, -1, 1, -1),
-    ),
-    "lateral": Arm((0.1, 0.05, 0.035, 0.3, 0.4, 0.35, 0.06), (0.1, 0.2, 0.3, 0, 0.1, 0), (1,) * 6),
-}
-
-
-def pointer(values: NDArray[np.generic]) -> ctypes.c_void_p:
-    return values.ctypes.data_as(ctypes.c_void_p)
-
-
-def forward(arm: Arm, joints: Array) -> Array:
-    """Poses (n, 12): place, rows of the rotation."""
-    poses = np.empty((len(joints), 12))
-    count = ctypes.c_int64(len(joints))
-    LIBRARY.robot_batch_forward(arm.parameters(), count, pointer(joints), pointer(poses))
-    return poses
-
-
-def inverse(arm: Arm, poses: Array, near: Array) -> Array:
-    """Joints of all branches (n, 8, 6), NaN where there is none."""
-    joints = np.full((len(poses), BRANCHES, 6), np.nan)
-    there = np.zeros(len(poses), np.uint32)
-    count = ctypes.c_int64(len(poses))
-    places = (pointer(poses), pointer(near), pointer(joints), pointer(there))
-    LIBRARY.robot_batch_inverse(arm.parameters(), count, *places)
-    joints[(there[:, None] >> np.arange(BRANCHES) & 1) == 0] = np.nan
-    return joints
 
 
 def apart(a: Array, b: Array) -> Array:

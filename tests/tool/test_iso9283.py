@@ -165,6 +165,16 @@ def test_poses() -> None:
         assert pose.RP_l == pytest.approx(spread, rel=1e-12)
 
 
+def test_a_round_scatter_is_repeated_within_so_many_deviations() -> None:
+    """Of 1 mm in each direction: Maxwell's mean and deviation in space, Rayleigh's in a plane."""
+    drawn = np.random.default_rng(9).normal(size=(200_000, 1, 3))
+    space = pose_performance(drawn, np.zeros((1, 3)))[0].RP_l
+    assert space == pytest.approx(np.sqrt(8 / np.pi) + 3 * np.sqrt(3 - 8 / np.pi), rel=5e-3)
+    drawn[:, :, 0] = 0.0
+    plane = pose_performance(drawn, np.zeros((1, 3)))[0].RP_l
+    assert plane == pytest.approx(np.sqrt(np.pi / 2) + 3 * np.sqrt(2 - np.pi / 2), rel=5e-3)
+
+
 def test_the_best_line_is_the_one_that_a_search_finds() -> None:
     rng = np.random.default_rng(8)
     points = np.outer(np.linspace(-50, 50, 40), [0.6, 0.48, 0.64]) + rng.normal(0, 0.2, (40, 3))
