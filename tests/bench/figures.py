@@ -4,6 +4,7 @@ import json
 import math
 import platform
 from dataclasses import dataclass
+from datetime import date
 from enum import Enum, auto
 from pathlib import Path
 
@@ -75,5 +76,5 @@ def show(figures: list[Figure], method: str | None, kept: Kept) -> None:
         found = [f for f in figures if not math.isnan(f.value)]
         values = {f.name: float(f"{f.value:.5g}") for f in found}
         asked = {f.name: f.asked for f in found if f.asked}
-        text = json.dumps({"machine": here, "figures": values, "asked": asked}, indent=1)
-        LAST.write_text(text + "\n")
+        head = {"day": date.today().isoformat(), "machine": here}
+        LAST.write_text(json.dumps(head | {"figures": values, "asked": asked}, indent=1) + "\n")

@@ -22,6 +22,8 @@ from motionfmu.cards import messages as m
 from motionfmu.cards.card_job import FrameEvent, Job, encode
 from motionfmu.cards.keys import OPEN_KEY
 from motionfmu.cards.wire import PcEnd
+from motionfmu.scenarios import fmus as built
+from motionfmu.scenarios.fault_advice import advice, meanings
 
 ROOT = Path(__file__).parents[2]
 RUNS = settings(
@@ -90,6 +92,16 @@ class Card:
                 return
             self.step()
         assert self.get("state") == state
+
+
+def test_homing_that_cannot_be_planned_is_a_fault_with_its_meaning() -> None:
+    card = Card(reserve=1.0)  # leaves no acceleration
+    card.order(HOME)
+    card.until(FAULT, 100)
+    number = card.get("error")
+    assert number == 6
+    assert meanings(built.ports("network_card")["error"])[number].startswith("settings of homing")
+    assert "reserve" in advice("network_card")["error"][number]
 
 
 def test_the_parameters_are_the_settings_of_the_card() -> None:

@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from datetime import date
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,7 @@ def test_what_is_missed_is_marked_and_kept_so(last: Path, capsys) -> None:
         "instructions / limit": "at most 1.1 MISSED",
     }
     assert list(kept["figures"]) == [f.name for f in FOUND[:4]]
+    assert kept["day"] == date.today().isoformat() and kept["machine"] == figures.machine("perf")
 
 
 def test_one_round_gives_no_figures_of_time(last: Path, capsys) -> None:

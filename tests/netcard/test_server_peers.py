@@ -247,7 +247,7 @@ def test_a_killed_server_goes_on_where_the_card_is(tmp_path: Path) -> None:
             (("settings", 3), 0, "Highest speed"),
             (("settings", 4), 1, "card 4: the card is not connected"),
             (("start", 3), 0, "card 3: done (RUNNING)"),
-            (("home", 3, "--axes", "XY"), 1, "card 3: not in this state (RUNNING)"),
+            (("home", 3, "--axes", "XY"), 1, "card 3: not in this state (RUNNING)\nLook at"),
             (("stop", 3), 0, "card 3: done (READY)"),
             (("home", 3, "--axes", "XY"), 0, "card 3: done (READY)"),
             (("home", 3, "--axes", "XV"), 2, "--axes XV: letters of XYZU wanted"),

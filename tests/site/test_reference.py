@@ -1,5 +1,6 @@
 """The site's reference says what the code has: what changes there changes on the page."""
 
+import json
 import re
 import tomllib
 from dataclasses import replace
@@ -23,6 +24,7 @@ from site_pages import (
     gallery,
     key_words,
     python_modules,
+    speed,
     staging,
 )
 from site_pages.markdown import plain, table
@@ -212,32 +214,49 @@ def test_a_changed_variable_changes_its_row() -> None:
     assert ["`max_feed`", "real", "mm/min"] == rows(before)[2][:3]
 
 
-def test_every_fault_says_what_its_panel_advises() -> None:
+# Numbers that tell of no fault.
+NONE = {0: "it is none", -1: "none yet"}
+
+
+def test_every_fault_says_what_to_do() -> None:
     found = list(faults.tables())
     page = faults.page(found)
-    advised = 0
-    for file in sorted(ROOT.glob("fmus/*/panel.toml")):
-        for number, text in tomllib.loads(file.read_text("utf-8")).get("advice", {}).items():
-            assert any(r[0] == number and r[-1] == plain(text) for r in rows(page)), file
-            advised += 1
-    assert advised > 15
-    one = next(t for t in found if t.advice)
+    script = (ROOT / "src/motionfmu/live/serving/page/words.js").read_text("utf-8")
+    live = MiniRacer()
+    live.eval(re.sub("^export ", "", script, flags=re.MULTILINE))
+    nothing = live.eval("advice({}, 1)")
+    assert sum(len(one.meanings) for one in found) > 140
+    for one in found:
+        faulty = one.meanings.keys() - NONE
+        assert faulty, one.fmu
+        for number in faulty:
+            told = one.advice.get(number, "")
+            assert len(told) > 20 and told.endswith(".") and told != nothing, (one, number)
+            assert any(r[0] == str(number) and r[-1] == plain(told) for r in rows(page))
+            shown = {"advice": {str(number): told}}
+            assert live.eval(f"advice({json.dumps(shown)}, {number})") == told
+    assert {one.fmu for one in found} >= {f.parent.name for f in ROOT.glob("fmus/*/advice.toml")}
+    one = next(t for t in found if t.fmu == "card_host")
     changed = replace(one, advice=dict.fromkeys(one.advice, "Do nothing."))
     assert "Do nothing." in faults.page([changed]) and "Do nothing." not in page
 
 
-def test_advice_by_words_is_that_of_the_live_page() -> None:
-    script = (ROOT / "src/motionfmu/live/serving/page/words.js").read_text("utf-8")
-    page = MiniRacer()
-    page.eval(re.sub("^export ", "", script, flags=re.MULTILINE))
-    tables_ = [t for t in faults.tables() if t.fmu in ("mcc", "mcc_groups")]
-    assert {t.variable for t in tables_} == {"error"} and len(tables_) == 2
-    for one in tables_:
-        told = {n: text for n, text in one.meanings.items() if n}
-        assert len(told) > 18 and len(set(one.advice.values())) > 4
-        assert one.advice == {n: page.eval(f"advice({text!r})") for n, text in told.items()}
-    rules = faults.AdviceRules.read(script.replace("jog away", "walk away"))
-    assert rules.of("axis 1 at a limit") == "Reset, then walk away from the switch."
+def test_the_page_of_speed_has_what_the_benchmark_has_kept() -> None:
+    kept = json.loads((ROOT / "tests/bench/last.json").read_text("utf-8"))
+    page = speed.page(kept)
+    found = {row[0]: row[1:] for row in rows(page)[2:]}
+    assert list(found) == [plain(name) for name in kept["figures"]] and len(found) > 60
+    for name, value in kept["figures"].items():
+        figure, asked, bound = found[plain(name)]
+        assert float(figure.replace(",", "")) == pytest.approx(value, rel=1e-3), name
+        words = kept["asked"].get(name, "")
+        assert asked == plain(words.removesuffix(" MISSED")), name
+        assert bound == ("missed" if "MISSED" in words else "met" if words else ""), name
+    assert kept["day"] in page and "x86\\_64" in page
+    name = next(iter(kept["figures"]))
+    other = kept | {"figures": kept["figures"] | {name: 12345.6}}
+    assert [plain(name), "12,346", "", ""] in rows(speed.page(other))
+    assert "12,346" not in page and "2001-02-03" in speed.page(kept | {"day": "2001-02-03"})
 
 
 HEADER = """/* thing - a thing that counts.

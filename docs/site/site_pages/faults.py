@@ -1,20 +1,17 @@
 """The page of faults: each number that an FMU tells, its meaning, and what to do."""
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from importlib import resources
 
 from site_pages.markdown import code, plain, table
 
-# Beside the alarm of a panel: outputs that tell of a fault have one of these words in their names.
-ALARMS = ("alarm", "error")  # about these the live page advises by words, if the panel does not
+# Outputs that tell of a fault have one of these words in their names, or advice on some numbers.
 NAMES = ("alarm", "error", "fault", "code", "refus", "result")
 
 
 @dataclass(frozen=True)
 class FaultTable:
-    """The numbers of one variable: meaning, and what to do about those that have advice."""
+    """The numbers of one variable: meaning, and what to do about those that are faults."""
 
     fmu: str
     variable: str
@@ -23,45 +20,19 @@ class FaultTable:
     advice: Mapping[int, str]
 
 
-@dataclass(frozen=True)
-class AdviceRules:
-    """What the live page advises by the words of a fault: patterns, and what to do."""
-
-    rules: tuple[tuple[re.Pattern[str], str], ...]
-    otherwise: str
-
-    @classmethod
-    def read(cls, script: str) -> "AdviceRules":
-        """The rules of the page's script."""
-        part = script[script.index("const ADVICE = [") :]
-        rows = re.findall(r'\[/(.+?)/i,\s*"(.+?)"\]', part[: part.index("\n];")])
-        last = re.search(r'\[, "(.+?)"\]', part)
-        assert rows and last
-        return cls(tuple((re.compile(about, re.I), text) for about, text in rows), last[1])
-
-    def of(self, words: str) -> str:
-        """What to do about a fault."""
-        return next((t for about, t in self.rules if about.search(words)), self.otherwise)
-
-
 def tables() -> Iterator[FaultTable]:
     """All variables of the built FMUs that tell a fault."""
-    from motionfmu.live.machine_about import meanings
-    from motionfmu.live.panel import panel_of
     from motionfmu.scenarios import fmus
+    from motionfmu.scenarios.fault_advice import advice, meanings
 
-    script = resources.files("motionfmu.live.serving") / "page/words.js"
-    rules = AdviceRules.read(script.read_text(encoding="utf-8"))
     for fmu in fmus.fmu_names():
-        panel = panel_of(fmu)
+        advised = advice(fmu)
         for name, port in fmus.ports(fmu).items():
-            alarm = panel is not None and name == panel.alarm
-            if port.causality != "output" or not (alarm or any(word in name for word in NAMES)):
-                continue
-            if told := meanings(port):
-                own = {int(k): v for k, v in panel.advice.items()} if panel and alarm else {}
-                words = {n: rules.of(t) for n, t in told.items() if n} if name in ALARMS else {}
-                yield FaultTable(fmu, name, port.doc.split(": ")[0], told, words | own)
+            told, own = meanings(port), advised.get(name, {})
+            named = any(word in name for word in NAMES)
+            if port.causality == "output" and told and (own or named):
+                shown = told if named else {n: text for n, text in told.items() if n in own}
+                yield FaultTable(fmu, name, port.doc.split(": ")[0], shown, own)
 
 
 def page(found: list[FaultTable]) -> str:

@@ -1,5 +1,6 @@
 """The sections of the site: which page belongs to which, and the pages that are made."""
 
+import json
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -13,6 +14,7 @@ from site_pages import (
     fmus,
     gallery,
     python_modules,
+    speed,
     tutorials,
 )
 from site_pages.markdown import code, plain, table, toctree
@@ -139,6 +141,7 @@ def reference(root: Path) -> Iterator[tuple[str, str]]:
     rows = [(f"[{f.name}]({name}.md)", plain(f.about)) for name, f in files.items()]
     yield "files", "# Files\n\n" + table(("file", "is"), rows) + "\n" + toctree(files)
     yield "faults", faults.page(list(faults.tables()))
+    yield "speed", speed.page(json.loads((root / "tests/bench/last.json").read_text("utf-8")))
     package, *modules = python_modules.modules(root / "src/motionfmu")
     for module, text in python_modules.pages(modules).items():
         yield f"python/{module}", text

@@ -53,6 +53,13 @@ TEXTS = {
 }
 
 
+def advice_on(code: int) -> str:
+    """What to do about a code of a card, as its FMU says it; empty if there is nothing to do."""
+    from motionfmu.scenarios.fault_advice import advice
+
+    return advice("network_card")["result"].get(code, "")
+
+
 @dataclass(frozen=True)
 class CommandResult:
     """How a command or an upload ended."""
@@ -65,6 +72,11 @@ class CommandResult:
     def ok(self) -> bool:
         """Whether it was done."""
         return self.code == Code.DONE
+
+    @property
+    def advice(self) -> str:
+        """What to do about a refusal of the card; empty if it has done what it was told."""
+        return advice_on(self.code)
 
     @classmethod
     def of(cls, code: int, state: str = "") -> "CommandResult":

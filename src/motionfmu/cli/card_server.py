@@ -106,11 +106,14 @@ def _page(
 def _ask(folder: Path, request: dict[str, Any], file: bytes = b"") -> None:
     """Ask the server, print how it ended; status 1 if it was refused or failed."""
     from motionfmu.cards.control import ask
+    from motionfmu.cards.views import advice_on
 
     answer = ask(folder, request, file)
     state = f" ({answer['state']})" if answer["state"] else ""
     out.print(f"card {request['card']}: {answer['text']}{state}", soft_wrap=True)
     if answer["code"]:
+        if told := advice_on(answer["code"]):
+            out.print(told, soft_wrap=True)
         raise typer.Exit(FAILED)
 
 

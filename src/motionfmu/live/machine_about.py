@@ -3,7 +3,6 @@
 import ctypes
 import itertools
 import math
-import re
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +11,10 @@ from motionfmu.live.live_machine import LiveMachine
 from motionfmu.live.live_scene import scene
 from motionfmu.live.panel import panel_of
 from motionfmu.live.sample_ring import CHANNELS
+from motionfmu.scenarios.fault_advice import advice, meanings
 from motionfmu.scenarios.port import Port
 
 LINES_MAX = 200_000  # of a program, that a page is given
-# Meanings of numbers as a type's description has them: "0 running, 1 hold".
-_MEANING = re.compile(r"(-?\d+) (.*?)(?=, -?\d+ |$)")
 
 
 def about(machine: LiveMachine) -> dict[str, Any]:
@@ -26,12 +24,12 @@ def about(machine: LiveMachine) -> dict[str, Any]:
     components: dict[str, Any] = {}
     for component, ports in scenario.resolver.ports.items():
         fmu = scenario.document.body.component[component]
-        panel = panel_of(fmu)
+        panel, told = panel_of(fmu), advice(fmu)
         components[component] = {
             "fmu": fmu,
             "panel": panel.model_dump(exclude_none=True) if panel else None,
             "variables": {
-                port.name: _variable(port, name in settable)
+                port.name: _variable(port, name in settable, told.get(port.name, {}))
                 for port in ports.values()
                 for name in [f"{component}.{port.name}"]
                 if name in outputs or name in settable
@@ -64,7 +62,7 @@ def _parameter(machine: LiveMachine, component: str, port: Port) -> list[Any]:
     return list(values * port.count if len(values) == 1 else values)
 
 
-def _variable(port: Port, settable: bool) -> dict[str, Any]:
+def _variable(port: Port, settable: bool, told: dict[int, str]) -> dict[str, Any]:
     return {
         "type": port.type,
         "shape": list(port.shape),
@@ -76,14 +74,8 @@ def _variable(port: Port, settable: bool) -> dict[str, Any]:
         "set": settable,
         "tunable": port.tunable,
         "words": meanings(port),
+        "advice": told,
     }
-
-
-def meanings(port: Port) -> dict[int, str]:
-    """What the numbers of a variable mean, if its type says it."""
-    if port.type != "Int32" or port.declared is None:
-        return {}
-    return {int(number): word for number, word in _MEANING.findall(port.declared[1])}
 
 
 def _faults() -> dict[int, str]:

@@ -143,7 +143,6 @@ class OperatorPanel(_PanelTable):
     dial: dict[str, Dial] = Field(default_factory=dict)
     lamp: dict[str, Lamp] = Field(default_factory=dict)
     fault: dict[str, Lamp] = Field(default_factory=dict)
-    advice: dict[str, str] = Field(default_factory=dict)  # by value of `alarm`, what to do
 
     def names(self) -> list[str]:
         """All variables that it names."""

@@ -181,4 +181,4 @@ class _CardPage:
 
 def _result(result: CommandResult) -> Response:
     said = {"code": result.code, "ok": result.ok, "text": result.text, "state": result.state}
-    return JSONResponse(said)
+    return JSONResponse(said | {"advice": result.advice})

@@ -133,7 +133,8 @@ part("send").addEventListener("click", async () => {
   part("send").disabled = true;
   try {
     const result = await post(`/cards/${id}/job`, { job });
-    sendings.set(id, result.ok ? `${name} is in the card.` : `${name} was refused: ${result.text}.`);
+    const refused = `${name} was refused: ${result.text}. ${result.advice}`;
+    sendings.set(id, result.ok ? `${name} is in the card.` : refused.trim());
   } catch (error) {
     sendings.set(id, error.message);
   }

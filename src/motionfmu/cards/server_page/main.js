@@ -71,7 +71,8 @@ async function command(name) {
     const result = await post(`/cards/${id}/command`, { name });
     const state = result.state ? ` (${result.state})` : "";
     const end = result.ok ? ": done" : ` refused: ${result.text}`;
-    if (id === shown) tell(`${words}${end}${state}`, result.ok ? "good" : "bad");
+    const advice = result.advice ? `. ${result.advice}` : "";
+    if (id === shown) tell(`${words}${end}${state}${advice}`, result.ok ? "good" : "bad");
   } catch (error) {
     if (id === shown) tell(`${words}: ${error.message}`, "bad");
   }

@@ -95,8 +95,8 @@ function alarmsOf(panel) {
   const told = codes.map(([code, row]) => alarmWords(panel, own, code, row)).filter(Boolean);
   const state = panel.state && value(panel.full(panel.state));
   if (told.length || !panel.monitor?.fault?.includes(state)) return told;
-  const words = meaning(variable(panel.full(panel.state)), state);
-  return [[capital(words), advice(words)]];
+  const tells = variable(panel.full(panel.state));
+  return [[capital(meaning(tells, state)), advice(tells, state)]];
 }
 
 function alarmWords(panel, own, code, row) {
@@ -104,7 +104,7 @@ function alarmWords(panel, own, code, row) {
   if (word === "none") return null;
   const where = row ? `${panel.title}, ${axisOf(row)?.name ?? `axis ${row}`}: ` : "";
   const text = where + byName(word ?? `error ${code}`);
-  return [capital(text), panel.advice?.[code] ?? advice(word ?? own.doc)];
+  return [capital(text), advice(own, code)];
 }
 
 // The same words are not told twice by a screen reader.

@@ -35,22 +35,7 @@ export function meaning(variable, value) {
 
 export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
-// An alarm: what happened decides what to do.
-const ADVICE = [
-  [/emergency/i, "Release the emergency stop, then reset."],
-  [/limit/i, "Reset, then jog away from the switch."],
-  [/following error|not in position/i,
-    "The axis did not follow: look for a load, a brake, a drive or an encoder that fails; then reset."],
-  [/card has stopped/i, "Look for what stopped the card: a limit switch, a drive's alarm, the emergency stop. Once it is gone, reset."],
-  [/encoder|scale|unplugged/i, "Plug the encoder in again, reset, and home."],
-  [/probe/i, "Take the probe off what it touches, then reset."],
-  [/dda|max_dda_acc|too many pulses/i, "The command changes too fast for the axis: a lower feed or override; then reset."],
-  [/invalid|refused|syntax/i, "Mend the line, then reset."],
-  [/home|switch|index/i, "Look at the home switches, reset, and home again."],
-  [/drive|servo|overload|current/i, "Find out what loads the drive; reset it, then the controller."],
-  [/link|connection|timeout|late/i, "Look at the link, then reset."],
-];
-
-export function advice(words) {
-  return (ADVICE.find(([about]) => about.test(words)) ?? [, "Find the cause, then reset."])[1];
+// What to do about the number of a variable.
+export function advice(variable, value) {
+  return variable?.advice?.[value] ?? "Find the cause, then reset.";
 }
