@@ -1,17 +1,19 @@
 """Speed of the engines, as ratios measured in one run: `make bench`.
 
-Every time is processor time, the best of several rounds, and the rounds take turns, so that a busy
+Every time is processor time, the median of several rounds, and the runs take turns, so that a busy
 machine slows all of them alike; instructions are counted beside. README.md beside this file says
 what each line means and where the time goes. `--renew` keeps the figures as those to compare with,
-`--quick` takes one round, a rough look that is never kept; `--long` does long work alone.
+`--quick` takes one round, a rough look that is never kept; `--long` does long work alone,
+`--profile` tells where the instructions of a step go.
 """
 
+import math
 import subprocess
 import sys
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -24,12 +26,15 @@ import long_run
 import network
 import numpy as np
 import plans
+import profiles
 import scope_cost
 import scurve_moves
 import segments
+import sessions
 import states
 import studies
 from figures import Figure
+from medians import Medians
 from rich.console import Console
 from rich.progress import Progress
 
@@ -41,6 +46,8 @@ DEMO = ROOT / "scenarios/circle"
 SIX_AXES = Path(__file__).parent / "six_axes"
 ROBOT = ROOT / "scenarios/robot_line"
 PULSE_AXES = Path(__file__).parent / "pulse_axes"
+FOURTEEN = ROOT / "scenarios/fourteen_axes"
+PLATE = ROOT / "scenarios/plt_plate"
 BUILT = ROOT / "build/tests/bench"
 CARD_COST = BUILT / "card_cost"
 INTERPRETER_COST = BUILT / "interpreter_cost"
@@ -66,19 +73,27 @@ class Clock:
 
 
 class Timed:
-    """A scenario under one engine: seconds of its loop and of the whole run, best of all rounds."""
+    """A scenario under one engine: seconds of its loop and of the whole run."""
 
     def __init__(self, scenario: Path, **options: Any) -> None:
         self.scenario, self.options = motionfmu.load(scenario), options
-        self.loop = self.whole = float("inf")
+        self._rounds = Medians()
         self.result: motionfmu.Result | None = None
 
     def __call__(self) -> None:
         clock = Clock()
         start = time.process_time()
         self.result = self.scenario.run(progress=clock, **self.options)
-        self.whole = min(self.whole, time.process_time() - start)
-        self.loop = min(self.loop, clock.seconds())
+        self._rounds.add("whole", time.process_time() - start)
+        self._rounds.add("loop", clock.seconds())
+
+    @property
+    def loop(self) -> float:
+        return self._rounds["loop"]
+
+    @property
+    def whole(self) -> float:
+        return self._rounds["whole"]
 
     @property
     def steps(self) -> int:
@@ -100,7 +115,7 @@ class Fused:
     """The loop of a scenario fused by hand, without FMI: tests/bench/fused.c."""
 
     def __init__(self, scenario: Path, part_program: str, steps: int) -> None:
-        self.steps, self.loop = steps, float("inf")
+        self.steps, self._rounds = steps, Medians()
         self.line = [BUILT / f"fused_{scenario.name}", scenario / part_program]
         layout = subprocess.check_output([self.line[0], "--layout"], text=True).split("\n")
         *rows, size = [line.split() for line in layout if line]
@@ -119,8 +134,12 @@ class Fused:
         with tempfile.TemporaryDirectory() as folder:
             file = Path(folder) / "rows"
             told = subprocess.check_output([*self.line, str(self.steps), file], text=True)
-            self.loop = min(self.loop, float(told))
+            self._rounds.add("loop", float(told))
             self.data = np.fromfile(file, self.type)
+
+    @property
+    def loop(self) -> float:
+        return self._rounds["loop"]
 
     def check(self, result: motionfmu.Result) -> None:
         """The same bits as the engine gave, or it is another loop."""
@@ -136,22 +155,35 @@ class Card:
     axes: int
     hertz: int
     edges: bool
-    cost: float = np.inf
+    rounds: Medians = field(default_factory=Medians)
 
     def __call__(self) -> None:
         line = [CARD_COST, str(self.axes), str(self.hertz), str(int(self.edges))]
-        self.cost = min(self.cost, float(subprocess.check_output(line, text=True).split()[0]))
+        self.rounds.add("cost", float(subprocess.check_output(line, text=True).split()[0]))
+
+    @property
+    def cost(self) -> float:
+        return self.rounds["cost"]
 
 
 class Interpreter:
     """The interpreter alone: processor time per line [s], and of strtod for its numbers."""
 
     def __init__(self) -> None:
-        self.line = self.strtod = float("inf")
+        self._rounds = Medians()
 
     def __call__(self) -> None:
         line, strtod, _ = subprocess.check_output([INTERPRETER_COST], text=True).split()
-        self.line, self.strtod = min(self.line, float(line)), min(self.strtod, float(strtod))
+        self._rounds.add("line", float(line))
+        self._rounds.add("strtod", float(strtod))
+
+    @property
+    def line(self) -> float:
+        return self._rounds["line"]
+
+    @property
+    def strtod(self) -> float:
+        return self._rounds["strtod"]
 
 
 def card_table(cards: list[Card]) -> None:
@@ -176,8 +208,16 @@ def rounds(runs: list[Callable[[], None]]) -> None:
                 progress.advance(task)
 
 
+@dataclass(frozen=True)
+class Aims:
+    """What is asked of the fused engine: over the loop by hand, and instructions of a step."""
+
+    hand: float
+    instructions: float
+
+
 def system_figures(
-    name: str, hand: Fused, runs: dict[str, Timed], loops: dict[str, counting.Loop], most: float
+    name: str, hand: Fused, runs: dict[str, Timed], loops: dict[str, counting.Loop], aims: Aims
 ) -> list[Figure]:
     """Engines over the loop fused by hand: by time and by instructions."""
     found = []
@@ -189,11 +229,12 @@ def system_figures(
         step, count = run.loop / run.steps, loops[f"{name}, {engine}"].count
         ratio = f"{step / base:10.2f}{count:14.0f}{count / counted:10.2f}"
         print(f"{engine:34}{step * 1e9:10.0f}{ratio}")
+        most = math.inf
         if engine.startswith("fused"):
-            of = f"{name}, {engine} / hand-fused"
-            found.append(Figure(f"{of}, time", step / base, most))
-            found.append(Figure(f"{of}, instructions", count / counted, most, counted=True))
-        found.append(Figure(f"{name}, {engine}, instructions a step", count, counted=True))
+            of, most = f"{name}, {engine} / hand-fused", aims.instructions
+            found.append(Figure(f"{of}, time", step / base, aims.hand))
+            found.append(Figure(f"{of}, instructions", count / counted, aims.hand, counted=True))
+        found.append(Figure(f"{name}, {engine}, instructions a step", count, most, counted=True))
     return found
 
 
@@ -221,8 +262,9 @@ def main(kept: figures.Kept) -> None:
     ]
     arm = kinematics.Kinematics()
     net = network.Network()
-    robot = Timed(ROBOT, stop=20.0)
-    asked, session = commands.all_commands(), commands.Session()
+    robot, fourteen = Timed(ROBOT, stop=20.0), Timed(FOURTEEN)
+    asked, structure = commands.all_commands(), commands.NewStructure()
+    tuning, short = sessions.Tuning(), sessions.ShortRun()
     library = states.States("mcc")
     scope = scope_cost.ScopeCost()
     records = identifying.all_records()
@@ -238,8 +280,11 @@ def main(kept: figures.Kept) -> None:
             arm,
             net,
             robot,
+            fourteen,
             *asked,
-            session,
+            structure,
+            tuning,
+            short,
             *records,
             library,
             scope,
@@ -268,17 +313,19 @@ def main(kept: figures.Kept) -> None:
             for name, run in sixes.items()
         ),
         counting.Loop("robot", counting.of_run(ROBOT, best), (20_000, 30_000)),
+        counting.Loop("network card", counting.of_run(PLATE, best)),
     ]
     counts = counting.count(loops, studies.loops(study.cores))
 
-    found = system_figures("demo", by_hand, demos, counts, 1.1)
-    found += system_figures("six axes", by_hand_six, sixes, counts, 1.1)
+    found = system_figures("demo", by_hand, demos, counts, Aims(1.1, 7_000))
+    found += system_figures("six axes", by_hand_six, sixes, counts, Aims(1.1, 10_000))
     print(f"\n{'simulated s per processor s':34}{'loop':>10}{'whole run':>10}")
     for name, run in (
         ("demo", native),
         ("six ball-screw axes", six),
         ("six pulse axes at 500 kHz", pulses),
         ("robot draws a line", robot),
+        ("fourteen axes", fourteen),
     ):
         print(f"{name:34}{run.simulated / run.loop:10.1f}{run.simulated / run.whole:10.1f}")
     card_table(cards)
@@ -294,39 +341,50 @@ def main(kept: figures.Kept) -> None:
     found += [
         Figure("six axes, loop, times real time", six.simulated / six.loop, least=50.0),
         Figure("six axes, whole run, times real time", six.simulated / six.whole, least=25.0),
-        Figure("robot draws a line, loop, times real time", robot.simulated / robot.loop, least=15),
-        Figure("robot, instructions a step", counts["robot"].count, counted=True),
+        Figure("robot draws a line, loop, times real time", robot.simulated / robot.loop, least=25),
+        Figure("robot, instructions a step", counts["robot"].count, 22_000, counted=True),
+        Figure(
+            "network card, instructions a step", counts["network card"].count, 4_400, counted=True
+        ),
+        Figure(
+            "fourteen axes, loop, times real time", fourteen.simulated / fourteen.loop, least=20
+        ),
         Figure("card with six axes at 500 kHz, times real time", 1 / fast[0], least=20.0),
         Figure("the same, every edge asked for", 1 / fast[1], least=20.0),
         Figure("the same as FMUs, whole loop", pulses.simulated / pulses.loop, least=20.0),
         Figure("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5),
-        *(Figure(f"ruckig / scurve, {c.name}", c.ruckig / c.scurve, least=1.0) for c in curves),
+        *(Figure(f"ruckig / scurve, {c.name}", c.ratio, least=1.0) for c in curves),
     ]
     for s in segments.ALL:
         least = 1.0 if s is segments.LONG.walk else 0.1 if s.jerk else 0.2
-        fastest = 1e-6 / max(s.cost.values())
-        found.append(Figure(f"{s.name}, million segments/s", fastest, least=least))
+        found.append(Figure(f"{s.name}, million segments/s", s.rate, least=least))
         found.append(Figure(f"{s.name}, 256 over 16 commands", s.growth, most=1.5))
-    planned = network.SEGMENTS * net.plan
-    in_motion = 1 / net.card / network.CARDS
+    planned = network.SEGMENTS * net.rounds["plan"]
+    in_motion = 1 / net.rounds["card"] / network.CARDS
     found += [
         Figure("the same, 100,000 over 1,000 segments", segments.LONG.growth, most=1.2),
         Figure(f"{network.SEGMENTS:,} lines of a drawing, s to plan", planned, most=2.0),
         Figure(f"{network.CARDS} network cards, times real time", in_motion, least=1.0),
-        Figure("arm, all eight branches, us", 1e6 * arm.inverse, most=1.0),
-        Figure("py-opw-kinematics / ours", arm.other / arm.inverse, least=1.0),
+        Figure("arm, all eight branches, us", 1e6 * arm.rounds["inverse"], most=1.0),
+        Figure("py-opw-kinematics / ours", arm.rounds["other"] / arm.rounds["inverse"], least=1.0),
         *(Figure(f"motionfmu {c.line}, s", c.seconds, most=c.asked) for c in asked),
         *(
             Figure(f"motionfmu {c.line}, G instructions", count / 1e9, counted=True)
             for c, count in counting.of_commands(asked)
         ),
-        Figure("tune scenarios/circle in a session, s", session.seconds, most=1.0),
+        Figure("tune scenarios/circle in a session, s", tuning.seconds, most=1.0),
+        Figure(f"a run of {sessions.STEPS} steps in a session, ms", 1e3 * short.seconds, most=0.5),
+        Figure("compile of a new structure, s", structure.seconds, most=0.15),
         *(Figure(r.name, r.seconds, most=r.most) for r in records),
         Figure("state of mcc at rest, kB", library.size / 1e3, most=40.0, counted=True),
-        Figure("state of mcc at rest, us to save", 1e6 * library.save, most=5.0),
-        Figure("state of mcc at rest, us to restore", 1e6 * library.restore, most=5.0),
-        Figure("live machine, step with 16 channels / plain", scope.traced / scope.plain, most=12),
-        Figure("the same, times real time", 1e-4 / scope.traced, least=4.0),
+        Figure("state of mcc at rest, us to save", 1e6 * library.rounds["save"], most=5.0),
+        Figure("state of mcc at rest, us to restore", 1e6 * library.rounds["restore"], most=5.0),
+        Figure(
+            "live machine, step with 16 channels / plain",
+            scope.step["traced"] / scope.step["plain"],
+            most=12,
+        ),
+        Figure("the same, times real time", 1e-4 / scope.step["traced"], least=4.0),
         *study.figures(counts),
     ]
     figures.show(found, counting.method(), kept)
@@ -335,7 +393,9 @@ def main(kept: figures.Kept) -> None:
 if __name__ == "__main__":
     if QUICK and RENEW:
         sys.exit("bench: --quick takes one round, which --renew does not keep")
-    if "--long" in sys.argv:
+    if "--profile" in sys.argv:
+        profiles.main()
+    elif "--long" in sys.argv:
         figures.show(long_run.figures_of_long_work(), None, figures.Kept.SHOWN)
     else:
         one, more = figures.Kept.ONE_ROUND, figures.Kept.SHOWN

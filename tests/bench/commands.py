@@ -5,24 +5,26 @@ import resource
 import subprocess
 import sys
 import tempfile
-import time
+from collections.abc import Sequence
 from pathlib import Path
 
-import motionfmu.study.tune
+from medians import Medians
 
 ROOT = Path(__file__).resolve().parents[2]
 DEMO = ROOT / "scenarios/circle"
 # Line and what is asked of it [s of processor time].
 COMMANDS = (
-    ("--help", 0.3),
-    ("list", 0.3),
-    ("info mcc", 0.3),
-    ("info scenarios/circle", 0.3),
-    ("run scenarios/circle", 1.2),
-    ("tune scenarios/circle", 2.5),
+    ("--help", 0.06),
+    ("list", 0.1),
+    ("info mcc", 0.12),
+    ("info scenarios/circle", 0.12),
+    ("run scenarios/circle", 0.5),
+    ("margins scenarios/circle", 1.5),
+    ("tune scenarios/circle", 1.2),
     ("tune scenarios/circle --velocity", 8.0),
 )
 ENOUGH = 20.0  # [s] of one command, after two runs of it
+WRITES = ("run", "margins", "tune")
 
 _FOLDER = tempfile.TemporaryDirectory(prefix="motionfmu-")
 
@@ -33,40 +35,53 @@ def environment() -> dict[str, str]:
     return kept | {"PYTHONPYCACHEPREFIX": f"{_FOLDER.name}/bytes", "PYTHONHASHSEED": "0"}
 
 
+def _taken(line: Sequence[str | Path], **more: str) -> float:
+    """Processor time of a process and of those it has started [s]."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    env = environment() | more
+    subprocess.run(line, check=True, stdout=subprocess.DEVNULL, env=env, cwd=ROOT)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
 class Command:
-    """One command: processor time of its process [s], the best of all rounds."""
+    """One command: processor time of its process [s]."""
 
     def __init__(self, line: str, asked: float) -> None:
-        self.line, self.asked, self.seconds, self.taken = line, asked, float("inf"), 0.0
-        out = ["--out", f"{_FOLDER.name}/out"] if line.startswith(("run", "tune")) else []
+        self.line, self.asked, self.taken, self._rounds = line, asked, 0.0, Medians()
+        out = ["--out", f"{_FOLDER.name}/out"] if line.startswith(WRITES) else []
         self.whole = [sys.executable, "-m", "motionfmu", *line.split(), *out]
-
-    def _run(self) -> float:
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        env = environment()
-        subprocess.run(self.whole, check=True, stdout=subprocess.DEVNULL, env=env, cwd=ROOT)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
     def __call__(self) -> None:
         if self.taken == 0.0:  # what is made once is there
-            self._run()
+            _taken(self.whole)
         if self.taken < ENOUGH:
-            seconds = self._run()
+            seconds = _taken(self.whole)
             self.taken += seconds
-            self.seconds = min(self.seconds, seconds)
+            self._rounds.add("command", seconds)
+
+    @property
+    def seconds(self) -> float:
+        return self._rounds["command"]
 
 
-class Session:
-    """The demo tuned in a process that has its modules: processor time [s]."""
+class NewStructure:
+    """A hundred steps of the demo with an empty cache, and with its program in it, in turns."""
+
+    LINE = (sys.executable, Path(__file__).with_name("one_run.py"), DEMO, "fused", "3", "100")
 
     def __init__(self) -> None:
-        self.seconds = float("inf")
+        self._rounds = Medians()
 
     def __call__(self) -> None:
-        start = time.process_time()
-        motionfmu.study.tune.tune(DEMO)
-        self.seconds = min(self.seconds, time.process_time() - start)
+        with tempfile.TemporaryDirectory(prefix="motionfmu-") as cache:
+            for which in ("empty", "warm"):
+                self._rounds.add(which, _taken(self.LINE, MOTIONFMU_CACHE=cache))
+
+    @property
+    def seconds(self) -> float:
+        """What an empty cache costs [s]."""
+        return self._rounds["empty"] - self._rounds["warm"]
 
 
 def all_commands() -> list[Command]:

@@ -66,7 +66,15 @@ def instructions(line: Sequence[str | Path]) -> float:
     return float("nan") if which is None else (_perf if which == "perf" else _valgrind)(line)
 
 
-def _inside(line: Sequence[str | Path], shares: set[str]) -> float:
+def share(told: str) -> float:
+    """The share of a run that one_run.py has counted."""
+    found = re.search(r"^counted share ([\d.]+)$", told, re.MULTILINE)
+    if not found:
+        raise ValueError("one_run.py tells no share")
+    return float(found[1])
+
+
+def _inside(line: Sequence[str | Path], shares: set[float]) -> float:
     """Instructions of the loop of one_run.py alone: what is around it differs by millions.
 
     The share of the run that was seen is added to `shares`.
@@ -74,12 +82,11 @@ def _inside(line: Sequence[str | Path], shares: set[str]) -> float:
     if method() != "valgrind":
         return instructions(line)
     told = _run([*_HERE, *line], COUNT_HERE=str(MARKS))
-    share = re.search(r"^counted share ([\d.]+)$", told, re.MULTILINE)
     count = re.search(r"Collected : (\d+)", told)
-    if not share or not count:
+    if not count:
         raise ValueError("valgrind tells no count")
-    shares.add(share[1])
-    return int(count[1]) / float(share[1])
+    shares.add(share(told))
+    return int(count[1]) / share(told)
 
 
 class Loop:
@@ -97,7 +104,7 @@ class Loop:
             return
         lines = [[str(a).format(n) for a in self.line] for n in self.steps]
         _run(lines[0])  # what is made once is there
-        shares: set[str] = set()
+        shares: set[float] = set()
         short, long = (
             _inside(line, shares) if RUN in self.line else instructions(line) for line in lines
         )

@@ -2,33 +2,26 @@
 
 import subprocess
 import time
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import py_opw_kinematics as opw
+from medians import Medians
 
 from motionfmu.virtual import robot
 
 PROGRAM = Path(__file__).resolve().parents[2] / "build/tests/bench/kinematics_cost"
 POSES = 20_000
+# Of the program's figures: pose of joints, joints of a pose in all eight branches, a cycle of a
+# line with path, joints and pose, a line planned; a UR5e by its axes: pose, all eight branches.
+NAMES = ("forward", "inverse", "cycle", "plan", "axes", "branches")
 MODELLED = 36e-6  # [s] the document's Celeron G530, 10^6 solutions in 36 s
 
 
-@dataclass
 class Kinematics:
-    """Seconds of processor time each, best of all rounds."""
+    """Processor time each [s]: NAMES; all eight branches on arrays in Python, and by the other."""
 
-    forward: float = np.inf
-    inverse: float = np.inf  # all eight branches
-    cycle: float = np.inf  # of a line: path, joints, pose
-    plan: float = np.inf  # of a line
-    axes: float = np.inf  # pose of joints of a UR5e by its axes
-    branches: float = np.inf  # joints of a pose, all eight of its branches
-    python: float = np.inf  # all eight branches by motionfmu.virtual.robot
-    other: float = np.inf  # py-opw-kinematics, all eight branches
-
-    def __post_init__(self) -> None:
+    def __init__(self) -> None:
         names = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
         lengths = dict(zip(names, (0.15, -0.115, 0, 0.445, 0.7, 0.795, 0.085), strict=True))
         model = opw.KinematicModel(
@@ -39,31 +32,31 @@ class Kinematics:
         self.poses = self.robot.batch_forward(joints)
         self.bound = robot.Kinematics()
         self.matrices = self.bound.forward(np.degrees(joints))
+        self.rounds = Medians()
 
     def __call__(self) -> None:
         figures = map(float, subprocess.check_output([PROGRAM], text=True).split())
-        names = ("forward", "inverse", "cycle", "plan", "axes", "branches")
-        for name, figure in zip(names, figures, strict=True):
-            setattr(self, name, min(getattr(self, name), figure))
+        for name, figure in zip(NAMES, figures, strict=True):
+            self.rounds.add(name, figure)
         start = time.process_time()
         self.bound.inverse(self.matrices)
-        self.python = min(self.python, (time.process_time() - start) / POSES)
+        self.rounds.add("python", (time.process_time() - start) / POSES)
         start = time.process_time()
         self.robot.reach(self.poses)
-        self.other = min(self.other, (time.process_time() - start) / POSES)
+        self.rounds.add("other", (time.process_time() - start) / POSES)
 
     def table(self) -> None:
         """All of it in ns."""
         print(f"\n{'arm of six joints':44}{'ns':>8}")
         for what, figure in (
-            ("pose of joints", self.forward),
-            ("joints of a pose, all eight branches", self.inverse),
-            ("the same on arrays in Python", self.python),
-            ("the same by py-opw-kinematics", self.other),
+            ("pose of joints", self.rounds["forward"]),
+            ("joints of a pose, all eight branches", self.rounds["inverse"]),
+            ("the same on arrays in Python", self.rounds["python"]),
+            ("the same by py-opw-kinematics", self.rounds["other"]),
             ("one solution of the PC that is modelled", MODELLED),
-            ("a cycle of 100 us on a line", self.cycle),
-            ("a line planned", self.plan),
-            ("a UR5e by its axes: pose of joints", self.axes),
-            ("joints of a pose, all eight branches", self.branches),
+            ("a cycle of 100 us on a line", self.rounds["cycle"]),
+            ("a line planned", self.rounds["plan"]),
+            ("a UR5e by its axes: pose of joints", self.rounds["axes"]),
+            ("joints of a pose, all eight branches", self.rounds["branches"]),
         ):
             print(f"  {what:42}{figure * 1e9:8.0f}")

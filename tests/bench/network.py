@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 from card_links import flash_with
+from medians import Medians
 
 from motionfmu.cards.config import read
 from motionfmu.cards.plan import plan
@@ -32,13 +33,13 @@ def drawing() -> bytes:
 
 
 class Network:
-    """Processor time of each, best of all rounds."""
+    """Processor time of each [s]: a segment parsed, one planned, a simulated second of the card."""
 
     def __init__(self) -> None:
         self.text = drawing()
         axes = "".join(f'[[axes]]\nname = "{name}"{AXIS}' for name in "XY")
         self.config = read(axes, "card.toml")
-        self.parse = self.plan = self.card = np.inf  # [s] a segment, a segment, a simulated second
+        self.rounds = Medians()
 
     def __call__(self) -> None:
         start = time.process_time()
@@ -46,8 +47,8 @@ class Network:
         parsed = time.process_time()
         job = plan(read, self.config).job
         planned = time.process_time()
-        self.parse = min(self.parse, (parsed - start) / SEGMENTS)
-        self.plan = min(self.plan, (planned - parsed) / SEGMENTS)
+        self.rounds.add("parse", (parsed - start) / SEGMENTS)
+        self.rounds.add("plan", (planned - parsed) / SEGMENTS)
         actions, deaf = [1] + [0] * 15, [0] * 16
         card = VirtualNetCard(1, flash=flash_with(job), in_action=actions, in_debounce_us=deaf)
         card.set_inputs(1)
@@ -55,12 +56,13 @@ class Network:
         begin, at = time.process_time(), card.now
         for k in range(1, round(SECONDS * 100) + 1):
             card.run(at + 10_000_000 * k)
-        self.card = min(self.card, (time.process_time() - begin) / SECONDS)
+        self.rounds.add("card", (time.process_time() - begin) / SECONDS)
         assert card.state.name == "RUNNING" and card.pulses[0]
 
     def table(self, ruckig: float) -> None:
         """Cost of a segment beside that of a rest-to-rest move by ruckig [s]; of a card."""
         print(f"\n{'one line of a drawing':28}{'ns':>10}{'ruckig/it':>11}{'million/s':>11}")
-        for name, cost in (("parsed", self.parse), ("planned", self.plan)):
+        for name, key in (("parsed", "parse"), ("planned", "plan")):
+            cost = self.rounds[key]
             print(f"{name:28}{cost * 1e9:10.0f}{ruckig / cost:11.2f}{1e-6 / cost:11.2f}")
-        print(f"{'network card, ns a ms':28}{self.card * 1e6:10.0f}")
+        print(f"{'network card, ns a ms':28}{self.rounds['card'] * 1e6:10.0f}")

@@ -3,6 +3,8 @@
 import time
 from collections.abc import Callable
 
+from medians import Medians
+
 from motionfmu.live import LiveMachine
 from motionfmu.live.live_scope import LiveScope
 from motionfmu.live.scope_trigger import TriggerSetting
@@ -21,16 +23,16 @@ CHANNELS = [
 
 
 class ScopeCost:
-    """Best times of a step [s]: as the C program makes it, in turns, with the scope."""
+    """Times of a step [s]: as the C program makes it, in turns, with the scope."""
 
     def __init__(self) -> None:
         self._machine = LiveMachine("circle")
         self._scopes = [LiveScope(self._machine, lambda found: None) for _ in range(2)]
-        self.whole = self.plain = self.traced = float("inf")
+        self.step = Medians()
 
     def __call__(self) -> None:
         """Time the three one behind the other."""
-        self.whole = min(self.whole, self._timed(lambda: self._machine.step(STEPS)))
+        self.step.add("whole", self._timed(lambda: self._machine.step(STEPS)))
         for name, scope in zip(("plain", "traced"), self._scopes, strict=True):
             if name == "traced":
                 scope.channels([])
@@ -41,7 +43,7 @@ class ScopeCost:
                 for _ in range(STEPS // TURN):
                     scope.fill(TURN)
 
-            setattr(self, name, min(getattr(self, name), self._timed(turns)))
+            self.step.add(name, self._timed(turns))
 
     def _timed(self, run: Callable[[], None]) -> float:
         begin = time.process_time()

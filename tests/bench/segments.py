@@ -4,7 +4,7 @@ import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
+from medians import Medians
 
 PROGRAM = Path(__file__).resolve().parents[2] / "build/tests/bench/lookahead_cost"
 FILLINGS = (16, 64, 256)  # commands
@@ -13,19 +13,19 @@ LENGTHS = (1_000, 10_000, 100_000)  # segments of a walk
 
 @dataclass
 class Segments:
-    """Processor time per segment [s] at each filling, best of all rounds."""
+    """Processor time per segment [s] at each filling."""
 
     name: str
     ramps: str  # T or S
     dda_time: float  # [ms]
     jerk: float | None = None  # [mm/s^3] of each axis of a curve, 0 no limit; None: no curve
-    cost: dict[int, float] = field(default_factory=lambda: dict.fromkeys(FILLINGS, np.inf))
+    cost: Medians = field(default_factory=Medians)
     points: float = 0.0  # made per segment
 
     def __call__(self) -> None:
         for filling in FILLINGS:
             cost, self.points = self.run(filling)
-            self.cost[filling] = min(self.cost[filling], cost)
+            self.cost.add(filling, cost)
 
     def run(self, filling: int, *more: int) -> tuple[float, float]:
         """Time per segment [s], points per segment; `more`: how many segments."""
@@ -35,6 +35,11 @@ class Segments:
         return float(words[0]), float(words[1])
 
     @property
+    def rate(self) -> float:
+        """Million segments/s at the slowest filling."""
+        return 1e-6 / max(self.cost[f] for f in FILLINGS)
+
+    @property
     def growth(self) -> float:
         """Cost with the fullest ring over that with the emptiest."""
         return self.cost[FILLINGS[-1]] / self.cost[FILLINGS[0]]
@@ -42,14 +47,14 @@ class Segments:
 
 @dataclass
 class Lengths:
-    """Processor time per segment [s] of walks of a curve, best of all rounds."""
+    """Processor time per segment [s] of walks of a curve."""
 
     walk: Segments
-    cost: dict[int, float] = field(default_factory=lambda: dict.fromkeys(LENGTHS, np.inf))
+    cost: Medians = field(default_factory=Medians)
 
     def __call__(self) -> None:
         for length in LENGTHS:
-            self.cost[length] = min(self.cost[length], self.walk.run(FILLINGS[-1], length)[0])
+            self.cost.add(length, self.walk.run(FILLINGS[-1], length)[0])
 
     @property
     def growth(self) -> float:
@@ -84,4 +89,4 @@ def table(ruckig: float) -> None:
         )
     heads = "".join(f"{n:>10}" for n in LENGTHS)
     print(f"\n{'one segment, ns; segments in all':34}{heads}")
-    print(f"  {LONG.walk.name:32}{''.join(f'{c * 1e9:10.0f}' for c in LONG.cost.values())}")
+    print(f"  {LONG.walk.name:32}{''.join(f'{LONG.cost[n] * 1e9:10.0f}' for n in LENGTHS)}")

@@ -3,6 +3,8 @@
 import ctypes
 import time
 
+from medians import Medians
+
 from motionfmu.run.engines import lean
 from motionfmu.run.engines.slave import Slave
 
@@ -10,7 +12,7 @@ CALLS = 2000
 
 
 class States:
-    """An FMU at rest: bytes of its state, best time of a call that saves or restores it [s]."""
+    """An FMU at rest: bytes of its state, time of a call that saves or restores it [s]."""
 
     def __init__(self, fmu: str) -> None:
         self._slave = Slave(fmu, lean.unpacked(fmu, 3), 3, [], logging=False)
@@ -25,14 +27,13 @@ class States:
         if self._save() or self._restore():
             raise RuntimeError(f"{fmu}: its state is not saved and restored")
         library.call("SerializedFMUStateSize", self._state, ctypes.byref(size))
-        self.size, self.save, self.restore = size.value, float("inf"), float("inf")
+        self.size, self.rounds = size.value, Medians()
 
     def __call__(self) -> None:
         """Time both again; a call from Python is in it, 0.2 us."""
         for name in ("save", "restore"):
             call = getattr(self, f"_{name}")
-            begin = time.perf_counter()
+            begin = time.process_time()
             for _ in range(CALLS):
                 call()
-            best = (time.perf_counter() - begin) / CALLS
-            setattr(self, name, min(getattr(self, name), best))
+            self.rounds.add(name, (time.process_time() - begin) / CALLS)

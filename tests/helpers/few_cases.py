@@ -6,8 +6,12 @@ from typing import Any
 import pytest
 
 
-def few(cases: Iterable[Any], kept: int | Collection[Any]) -> list[Any]:
-    """Parameters, of which all but some have the mark `more`: so many, evenly spread, or these.
+def few(
+    cases: Iterable[Any],
+    kept: int | Collection[Any],
+    later: pytest.MarkDecorator = pytest.mark.more,
+) -> list[Any]:
+    """Parameters, of which all but some have the mark `later`: so many, evenly spread, or these.
 
     A case is what parametrize takes: a value, a tuple of them or a pytest.param.
     """
@@ -17,7 +21,7 @@ def few(cases: Iterable[Any], kept: int | Collection[Any]) -> list[Any]:
     else:
         places = {k for k, case in enumerate(found) if _value(case) in kept}
         assert len(places) == len(kept), "a case that is kept is one of them"
-    return [case if k in places else _later(case) for k, case in enumerate(found)]
+    return [case if k in places else _marked(case, later) for k, case in enumerate(found)]
 
 
 def _value(case: Any) -> Any:
@@ -25,9 +29,9 @@ def _value(case: Any) -> Any:
     return case if values is None or callable(values) else values if len(values) > 1 else values[0]
 
 
-def _later(case: Any) -> Any:
+def _marked(case: Any, mark: pytest.MarkDecorator) -> Any:
     values, marks, name = (case,), (), None
     if isinstance(case, tuple):  # pytest.param gives one, too
         values = tuple(getattr(case, "values", case))
         marks, name = getattr(case, "marks", ()), getattr(case, "id", None)
-    return pytest.param(*values, marks=(*marks, pytest.mark.more), id=name)
+    return pytest.param(*values, marks=(*marks, mark), id=name)

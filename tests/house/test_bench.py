@@ -4,6 +4,7 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Sequence
 from datetime import date
 from pathlib import Path
 
@@ -14,6 +15,8 @@ import motionfmu
 
 sys.path.insert(0, str(ROOT / "tests/bench"))
 import figures
+import medians
+import profiles
 from figures import Figure
 
 FOUND = [
@@ -83,6 +86,85 @@ def test_the_committed_table_marks_what_it_misses() -> None:
             if words.startswith(text)
         ]
         assert Figure(name, kept["figures"][name], **{key: number}).asked == words
+
+
+def test_a_figure_is_the_median_of_its_rounds() -> None:
+    found = medians.Medians()
+    for seconds in (3.0, 1.0, 9.0, 1.5, 2.0):
+        found.add("loop", seconds)
+        found.add("whole", 2 * seconds)
+    assert (found["loop"], found["whole"]) == (2.0, 4.0)
+
+
+def test_no_figure_is_the_best_of_its_rounds() -> None:
+    for file in (ROOT / "tests/bench").glob("*.py"):
+        assert not re.search(r"= min\(self|min\(getattr", file.read_text()), file.name
+
+
+# A program with its own text at 0x100 and a part Axes whose step is at 0x200; a library's
+# function at 0x900 is called by both.
+CALLGRIND = """\
+ob=/x/System.so
+fn=system_arrive
+0x100 5 10
+0x104 6 4
+cob=/x/libc.so
+cfn=copy
+calls=2 0x900 0
+0x104 6 30
+cfn=part_step
+calls=2 0x200 0
+0x108 7 100
+fn=part_step
+0x200 0 60
+cob=/x/libc.so
+cfn=copy
+calls=1 0x900 0
+0x204 0 40
+
+ob=/x/libc.so
+fn=copy
+0x900 0 70
+"""
+
+
+class OfTwo(profiles.Program):
+    """The program of CALLGRIND; 0x104 stands in the recorder's lines."""
+
+    def __init__(self) -> None:
+        self.file, self.part = Path("/x/System.so"), {0x200: "Axes"}
+
+    def of(self, address: int) -> str:
+        return "Axes" if address >= 0x200 else ""
+
+    def roles(self, addresses: Sequence[int]) -> dict[int, str]:
+        return {at: profiles.RECORDER if at == 0x104 else profiles.LOOP for at in addresses}
+
+
+def test_a_profile_counts_each_instruction_once() -> None:
+    """A longer run of two more steps, each of which does what CALLGRIND has of two."""
+    long = CALLGRIND.splitlines()
+    short = profiles.read([])
+    counts = profiles.read(long).less(short, 2)
+    assert sum(counts.own.values()) == 72.0
+    found = profiles.parts(counts, OfTwo())
+    assert found == {"Axes": 50.0, "wires": 0.0, "recorder": 17.0, "loop around them": 5.0}
+    first = dict(profiles.functions(counts, OfTwo()))
+    assert first == {"libc: copy": 35.0, "Axes: part_step": 30.0, "the program: system_arrive": 7.0}
+    again = profiles.read([*long, *long]).less(profiles.read(long), 2)
+    assert profiles.parts(again, OfTwo()) == found
+
+
+def test_readme_has_the_kept_profiles() -> None:
+    kept = json.loads(profiles.KEPT.read_text())
+    assert list(kept) == list(profiles.SYSTEMS)
+    for name, found in kept.items():
+        assert abs(sum(found["parts"].values()) - found["instructions"]) <= len(found["parts"])
+        assert found["steps"] == list(profiles.SYSTEMS[name][1])
+        assert len(found["functions"]) == profiles.FIRST
+    assert profiles.tables(kept) in (ROOT / "tests/bench/README.md").read_text()
+    told = f"takes {round(kept['demo']['instructions'], -1):,} instructions as one program"
+    assert told in (ROOT / "src/motionfmu/README.md").read_text()
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,7 @@ class Job:
     size: float
     strings: Mapping[str, str] = field(default_factory=dict)
     reals: Mapping[str, Sequence[float]] = field(default_factory=dict)  # elements in FMI 3
+    whole: Mapping[str, int] = field(default_factory=dict)  # Int32 and Boolean
     values: bool = False  # print them, too
     shown: Collection[str] = ()  # outputs; all if none are named
 
@@ -120,6 +121,9 @@ def job_rows(place: Path, job: Job) -> tuple[str, int, str]:
     rows += [f"string {variables[n].valueReference} {text}" for n, text in job.strings.items()]
     for name, x in job.reals.items():
         rows.append(f"real {variables[name].valueReference} {' '.join(map(repr, x))}")
+    for name, n in job.whole.items():
+        kind = {"i": "int", "b": "bool"}[_kind(variables[name].type)]
+        rows.append(f"{kind} {variables[name].valueReference} {n}")
     for v in d.modelVariables:
         kind = _kind(v.type)
         if v.causality == "output" and kind and (not job.shown or v.name in job.shown):

@@ -53,3 +53,37 @@ def test_a_system_from_the_text_of_its_fmus_gives_the_same_bits(tmp_path: Path) 
     assert {"sources/mcc/fmu_part.c", "sources/epcio/fmu_names.h"} <= set(names)
     told = subprocess.run(["nm", "-D", "--defined-only", shown], capture_output=True, text=True)
     assert {line.split()[-1][:4] for line in told.stdout.splitlines()} == {"fmi3"}
+
+
+# Of each scenario: communication steps, and what is given from the start of what it gives later.
+ON_ARM: dict[str, tuple[int, dict[str, int]]] = {
+    "circle": (STEPS, {}),
+    "pocket": (STEPS, {}),
+    "plt_plate": (2 * STEPS, {"card.command_seq": 1}),
+    "robot_line": (STEPS, {}),
+    "hydraulic_positioning": (STEPS, {"controller.pb1": 1}),
+}
+
+
+@pytest.mark.more
+@pytest.mark.skipif(not util.find_spec("ziglang"), reason="no zig: make export installs it")
+@pytest.mark.parametrize("fmi", [3, 2])
+@pytest.mark.parametrize("name", ON_ARM)
+@pytest.mark.parametrize("platform", [Platform("aarch64-linux")], ids=lambda p: p.name)
+def test_an_arm_processor_gives_the_bits_of_a_system(
+    platform: Platform, name: str, fmi: int, tmp_path: Path
+) -> None:
+    """By instructions of its own, from the start."""
+    if reason := bits.missing(platform):
+        pytest.skip(reason)
+    scenario = motionfmu.load(ROOT / "scenarios" / name)
+    for file, where in (("here", "here"), ("arm", platform.name)):
+        target = str(tmp_path / f"{file}.fmu")
+        words = ("-o", target, "--fmi", str(fmi), "--platforms", where)
+        done = command("export", ROOT / "scenarios" / name, *words)
+        assert done.returncode == 0, done.stderr
+    steps, given = ON_ARM[name]
+    job = bits.Job(steps, scenario.document.body.step, whole=given)
+    wanted = bits.hashes(tmp_path / "here.fmu", here(), job, tmp_path)
+    assert len({row.split()[1] for row in wanted}) > steps / 2
+    assert bits.different(wanted, bits.hashes(tmp_path / "arm.fmu", platform, job, tmp_path)) == ""

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from conftest import ROOT
+from few_cases import few
 
 import motionfmu
 from motionfmu.base.columns import Columns
@@ -186,14 +187,22 @@ def turned(scenario: motionfmu.Scenario, share: float) -> dict[str, Any]:
     return found
 
 
+SCENARIOS = sorted(f.parent.name for f in ROOT.glob("scenarios/*/scenario.toml"))
+# In `make test-more`: a mill, two groups of a card, a network card, a robot, a hydraulic axis.
+KEPT = {"pocket", "fourteen_axes", "plt_plate", "robot_line", "hydraulic_positioning"}
+
+
 @pytest.mark.more
-@pytest.mark.parametrize(
-    "name", sorted(f.parent.name for f in ROOT.glob("scenarios/*/scenario.toml"))
-)
-def test_lanes_of_every_scenario(name: str) -> None:
-    """Three lanes whose plants differ by parts in a thousand."""
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("name", few(SCENARIOS, KEPT, pytest.mark.long))
+def test_lanes_of_every_scenario(name: str, fmi: int) -> None:
+    """One, two, four and eight lanes whose plants differ by parts in a thousand."""
     scenario = motionfmu.load(ROOT / "scenarios" / name)
-    given = [turned(scenario, share) for share in (0.0, 1e-3, 2e-3)]
-    with Session(scenario, given[0], stop=200 * scenario.document.body.step) as made:
-        for own, ran in zip(given, made.run_together(given), strict=True):
-            assert same(bits(ran), alone(made, own))
+    given = [turned(scenario, 1e-3 * k) for k in range(8)]
+    stop = 200 * scenario.document.body.step
+    with Session(scenario, given[0], stop=stop, fmi=fmi) as made:
+        own = [alone(made, values) for values in given]
+        for width in (1, 2, 4, 8):
+            groups = [given[k : k + width] for k in range(0, 8, width)]
+            found = [bits(ran) for group in groups for ran in made.run_together(group)]
+            assert [same(*pair) for pair in zip(found, own, strict=True)] == [True] * 8, width
