@@ -11,6 +11,8 @@ from sphinx.util import logging
 LOG = logging.getLogger(__name__)
 # Commands that docutils does not know, by what it knows.
 SAME = {r"\dots": r"\ldots"}
+# Two digits behind \frac are numerator and denominator; docutils takes them for one number.
+DIGITS = re.compile(r"(\\[td]?frac) ?(\d)(\d)")
 
 
 def setup(app: Any) -> dict[str, bool]:
@@ -32,6 +34,7 @@ def _block(writer: Any, node: Any) -> None:
 def _formula(node: Any, block: bool) -> str:
     """MathML of a formula; one that cannot be read is a warning and stays as it is written."""
     text = re.sub(r"\\[a-z]+", lambda m: SAME.get(m[0], m[0]), node.astext())
+    text = DIGITS.sub(r"\1{\2}{\3}", text)
     try:
         return str(tex2mathml(text, as_block=block))
     except MathError as error:
