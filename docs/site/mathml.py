@@ -12,7 +12,7 @@ from sphinx.util import logging
 LOG = logging.getLogger(__name__)
 # Commands that docutils does not know, by what it knows.
 SAME = {r"\dots": r"\ldots"}
-# An argument of TeX: a group, a command, a character. docutils takes 12 of \\frac12 as one number.
+# An argument of TeX: a group, a command, a character. docutils takes 12 of \frac12 as one number.
 ARGUMENT = r"\s*(\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}|\\[A-Za-z]+|[^\s{}\\])"
 FRACTION = re.compile(r"(\\[td]?frac)(?![A-Za-z])" + ARGUMENT + ARGUMENT)
 DIGIT_ROOT = re.compile(r"(\\sqrt)\s*(\d)")
