@@ -15,6 +15,8 @@ SAME = {r"\dots": r"\ldots"}
 # An argument of TeX: a group, a command, a character. docutils takes 12 of \frac12 as one number.
 ARGUMENT = r"\s*(\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}|\\[A-Za-z]+|[^\s{}\\])"
 FRACTION = re.compile(r"(\\[td]?frac)(?![A-Za-z])" + ARGUMENT + ARGUMENT)
+# Behind \boldsymbol docutils lets an accent stand over all that follows.
+BOLD = re.compile(r"\\boldsymbol(?![A-Za-z])" + ARGUMENT)
 DIGIT_ROOT = re.compile(r"(\\sqrt)\s*(\d)")
 SPACE = "{http://www.w3.org/1998/Math/MathML}"
 # What stands over a letter: an index is beside the letter, not below it.
@@ -48,7 +50,7 @@ def _formula(node: Any, block: bool) -> str:
 
 
 def braced(text: str) -> str:
-    """A formula whose fractions and roots have their arguments in braces."""
+    """A formula whose fractions, roots and bold letters have their arguments in braces."""
 
     def group(part: str) -> str:
         return part if part.startswith("{") else f"{{{part}}}"
@@ -56,6 +58,7 @@ def braced(text: str) -> str:
     def whole(m: re.Match[str]) -> str:
         return m[1] + "".join(group(FRACTION.sub(whole, m[k])) for k in (2, 3))
 
+    text = BOLD.sub(lambda m: rf"\mathbf{group(m[1])}", text)
     return FRACTION.sub(whole, DIGIT_ROOT.sub(r"\1{\2}", text))
 
 

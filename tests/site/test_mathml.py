@@ -41,5 +41,11 @@ def test_an_index_stands_beside_a_letter_with_an_accent(accent: str) -> None:
     assert "</mover><mi>i</mi></msub>" in found
 
 
+def test_an_accent_stands_over_its_bold_letter_alone() -> None:
+    found = shown(r"\dot{\boldsymbol\omega}_i=a")
+    assert found == shown(r"\dot{\mathbf{\omega}}_i=a")
+    assert "</mover><mi>i</mi></msub><mo>=</mo>" in found
+
+
 def test_limits_of_a_sum_stay_below_and_above() -> None:
     assert "munderover" in mathml.beside(mathml.tex2mathml(r"\sum_{i=1}^n x_i", as_block=True))
