@@ -21,7 +21,7 @@ from fmpy import read_model_description
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 BUILT = ROOT / "build" / "importers"
-EQUAL, PASSED, READ = "equal bits", "no complaint", "read"
+EQUAL, PASSED, READ, NOT_RUN = "equal bits", "no complaint", "read", "not run"
 STEPS = 200
 _TIME_MAX = 600  # [s] for all jobs of a tool together
 _NO_NUMBER = ("String", "Binary", "Clock")
@@ -207,7 +207,7 @@ def job(case: Case, folder: Path, steps: int = STEPS) -> Job:
 
 @dataclass(frozen=True)
 class Verdict:
-    """One cell of the matrix, one line of results.jsonl."""
+    """One cell of the matrix."""
 
     fmu: str
     fmi: int

@@ -1,14 +1,14 @@
 """`make importers`: install every tool, run every FMU in it, write docs/importers.md."""
 
 import argparse
-import json
+import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import importers
 import numpy as np
-from importers import BUILT, EQUAL, PASSED, READ, ROOT, Case, Tool, Verdict
+from importers import BUILT, EQUAL, NOT_RUN, PASSED, READ, ROOT, Case, Tool, Verdict
 
 import motionfmu
 from motionfmu.base.platforms import PLATFORMS
@@ -18,7 +18,32 @@ PAGE = ROOT / "docs" / "importers.md"
 EXPORTED = ROOT / "build" / "export" / "fmus"
 DEMO = "circle"
 HERE = "x86_64-linux"
+# Behind a verdict on an archive of this machine's build.
+OF_GCC = ", of the FMU that gcc made for this machine; that of `make export` was not run"
 ODD = 333_333e-9  # [s] a step that is no multiple of a tick of 25 ns
+
+
+def listed() -> list[Case]:
+    """All rows of the page; the SSP's does not know its names yet."""
+    found = []
+    for fmi in (2, 3):
+        whole = BUILT / f"{DEMO}.all.fmi{fmi}.fmu"
+        found += [
+            Case(DEMO, fmi, whole),
+            Case(f"{DEMO}, 1/3 ms", fmi, whole, size=ODD),
+            Case("mcc, 1/3 ms", fmi, EXPORTED / f"mcc.fmi{fmi}.fmu", size=ODD),
+        ]
+        for file in sorted(ROOT.glob("fmus/*/fmu.toml")):
+            name = file.parent.name
+            found.append(Case(name, fmi, EXPORTED / f"{name}.fmi{fmi}.fmu"))
+    return [*found, Case(f"{DEMO}.ssp", 2, BUILT / f"{DEMO}.ssp")]
+
+
+def fmu_cases(names: Sequence[str], of_gcc: bool) -> dict[Case, np.ndarray]:
+    """Some FMUs alone, as gcc or `make export` made them, and the rows that FMPy reads of gcc's."""
+    wanted = [case for case in listed() if case.title in names]
+    here = [replace(case, file=ROOT / "build/fmus" / case.file.name) for case in wanted]
+    return dict(zip(here if of_gcc else wanted, importers.reference(here), strict=True))
 
 
 def cases() -> dict[Case, np.ndarray]:
@@ -57,7 +82,7 @@ def set_up(tools: Sequence[Tool]) -> None:
             tool.set_up()
 
 
-SHORT = {EQUAL: "equal", PASSED: "good", READ: "read"}
+SHORT = {EQUAL: "equal", PASSED: "good", READ: "read", NOT_RUN: NOT_RUN}
 SYSTEMS = {
     DEMO: f"**{DEMO}**, one FMU",
     f"{DEMO}.ssp": f"**{DEMO}**, SSP 1.0",
@@ -79,11 +104,11 @@ def table(rows: Sequence[Verdict], fmi: int) -> list[str]:
         told = found[fmu, folder].verdict
         if told in SHORT:
             return SHORT[told]
-        why = importers.tool(folder).why(told)
+        why = importers.tool(folder).why(told.removesuffix(OF_GCC))
         text = f"{heads[folder].tool}: {told}" + (f". {why}." if why else "")
         if text not in reasons:
             reasons.append(text)
-        said = SHORT[EQUAL] if told.startswith(EQUAL) else ""
+        said = next((SHORT[word] for word in (EQUAL, PASSED) if told.startswith(word)), "")
         return f"{said}&nbsp;[{reasons.index(text) + 1}]".removeprefix("&nbsp;")
 
     lines = [
@@ -108,7 +133,8 @@ def _head(r: Verdict) -> str:
 def page(rows: Sequence[Verdict]) -> str:
     """The whole page."""
     good = sum(r.good for r in rows)
-    some = sum(not r.good and r.verdict.startswith(EQUAL) for r in rows)
+    some = sum(not r.good and r.verdict.startswith((EQUAL, PASSED)) for r in rows)
+    left = sum(r.verdict == NOT_RUN for r in rows)
     head = [
         "# Other people's importers",
         "",
@@ -125,12 +151,13 @@ def page(rows: Sequence[Verdict]) -> str:
         "- **read**: nothing here runs a Mac's libraries. Their bytes were read: symbols (those of "
         "the standard), install name (`@rpath/MODEL.dylib`), oldest system (11.0), what they load "
         "(libSystem) and ARM's ad-hoc signature.",
+        "- **not run**: the FMU is newer than the latest run of this tool.",
         "- A number in brackets is a remark below its table. An empty cell is not for this tool.",
         f"- The platform is {HERE} where none is named. `fmu_bits` is the C program that "
         "[tests/ports](../tests/ports) runs under wine and qemu.",
         "",
-        f"{len(rows)} cells: {good} equal, good or read, {some} equal with a remark, "
-        f"{len(rows) - good - some} a reason alone.",
+        f"{len(rows)} cells: {good} equal, good or read, {some} equal or good with a remark, "
+        f"{len(rows) - good - some - left} a reason alone, {left} not run.",
         "",
     ]
     return "\n".join([*head, *table(rows, 2), *table(rows, 3)]).rstrip("\n") + "\n"
@@ -140,34 +167,69 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Do it all; 1 if a run differs or a tool that should run an FMU does not."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--only", nargs="*", help="folders of tools; others keep their cells")
+    parser.add_argument("--fmus", nargs="*", help="FMUs alone; other rows keep their cells")
+    parser.add_argument(
+        "--gcc", action="store_true", help="of --fmus those of this machine's build, not the export"
+    )
     given = parser.parse_args(argv)
+    if given.gcc and not given.fmus:
+        parser.error("--gcc wants --fmus")
     tools = [t for t in importers.tools() if not given.only or t.folder in given.only]
+    tools = [t for t in tools if not given.gcc or t.platform == HERE]
     BUILT.mkdir(parents=True, exist_ok=True)
     set_up(tools)
-    expected = cases()
+    expected = fmu_cases(given.fmus, given.gcc) if given.fmus else cases()
     rows = []
     for tool in tools:
         for verdict in importers.verdicts(tool, expected):
             rows.append(verdict)
             print(verdict.line(), flush=True)
-    kept = merged(rows)
-    PAGE.parent.mkdir(exist_ok=True)
-    PAGE.write_text(page(kept))
+    mark = OF_GCC if given.gcc else ""
+    told = [replace(r, verdict=r.verdict + mark) for r in rows]
+    PAGE.write_text(page(merged(told, PAGE.read_text())))
     wrong = [r for r in rows if not r.good and not importers.tool(r.folder).why(r.verdict)]
     for r in wrong:
         print(f"{r.fmu} FMI {r.fmi} in {r.tool}: {r.verdict}", file=sys.stderr)
     return 1 if wrong else 0
 
 
-def merged(rows: Sequence[Verdict]) -> list[Verdict]:
-    """These rows, and what tools that were not run now have told before; kept in results.jsonl."""
-    file = BUILT / "results.jsonl"
-    before = file.read_text().splitlines() if file.is_file() else []
-    now, there = {r.folder for r in rows}, {t.folder for t in importers.tools()}
-    old = [r for line in before if (r := Verdict(**json.loads(line))).folder in there - now]
-    found = sorted([*old, *rows], key=lambda r: (r.tool.lower(), r.platform))
-    file.write_text("".join(r.line() + "\n" for r in found))
-    return found
+def merged(rows: Sequence[Verdict], before: str) -> list[Verdict]:
+    """These rows, and what a page from before has of tools and FMUs that were not run now."""
+    found = {(r.fmu, r.fmi, r.folder): r for r in [*cells(before), *rows]}
+    every = [(case, tool) for case in listed() for tool in importers.tools() if tool.can(case)]
+    kept = [
+        found.get((case.title, case.fmi, tool.folder)) or _verdict(case.title, case.fmi, tool)
+        for case, tool in every
+    ]
+    return sorted(kept, key=lambda r: (r.tool.lower(), r.platform))
+
+
+def _verdict(title: str, fmi: int, tool: Tool, told: str = NOT_RUN) -> Verdict:
+    return Verdict(title, fmi, tool.name, tool.version, tool.platform, told, tool.folder)
+
+
+def cells(text: str) -> Iterator[Verdict]:
+    """What tools have told, as a page has it; of another version of a tool it has nothing."""
+    by_head = {_head(_verdict("", 0, tool)): tool for tool in importers.tools()}
+    titles = {shown: title for title, shown in SYSTEMS.items()}
+    whole = {short: told for told, short in SHORT.items() if told != NOT_RUN}
+    for fmi, part in re.findall(r"^## FMI (\d)\.0\n(.*?)(?=^## |\Z)", text, re.M | re.S):
+        reasons = dict(re.findall(r"^(\d+)\. (.*)$", part, re.M))
+        table = [line[2:-2].split(" | ") for line in part.splitlines() if line.startswith("| ")]
+        for shown, *row in table[1:]:
+            for head, cell in zip(table[0][1:], row, strict=True):
+                tool, number = by_head.get(head), re.search(r"\[(\d+)\]", cell)
+                told = _told(reasons[number[1]], tool) if number and tool else whole.get(cell)
+                if tool and told:
+                    yield _verdict(titles.get(shown, shown), int(fmi), tool, told)
+
+
+def _told(reason: str, tool: Tool) -> str:
+    """The verdict of which a reason below a table was made."""
+    told = reason.removeprefix(f"{tool.name}: ")
+    for why in tool.known.values():
+        told = told.removesuffix(f". {why}.")
+    return told
 
 
 if __name__ == "__main__":

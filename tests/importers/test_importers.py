@@ -4,6 +4,7 @@ A tool is run if `make importers` has installed it; FMPy always.
 """
 
 import importers
+import matrix
 import numpy as np
 import pytest
 
@@ -57,6 +58,35 @@ def test_an_exported_system_gives_the_projects_bits(
     assert len(found) == len(tool.fmi) + (tool.ssp and bool(tool.install))
     told = {(v.fmu, v.fmi): v.verdict for v in found}
     assert {v for v in told.values() if not tool.why(v)} == {importers.EQUAL}, told
+
+
+def test_the_page_is_what_the_command_writes_of_every_fmu() -> None:
+    """A new FMU: `tests/importers/matrix.py --fmus NAME` writes its rows."""
+    page = matrix.PAGE.read_text()
+    assert matrix.page(matrix.merged([], page)) == page
+    names = {file.parent.name for file in importers.ROOT.glob("fmus/*/fmu.toml")}
+    for part in page.split("\n## FMI ")[1:]:
+        rows = {line.split(" | ")[0].removeprefix("| ") for line in part.splitlines()[4:]}
+        assert names == {row for row in rows if row.isidentifier()}, part[:1]
+
+
+def test_a_cell_of_the_page_is_kept_until_its_tool_is_run_again() -> None:
+    page = matrix.PAGE.read_text()
+    tool = importers.tool("ecos")
+    why = next(iter(tool.known))
+    new = importers.Verdict("scope", 3, "ecos", tool.version, tool.platform, why, "ecos")
+    other = matrix.page(matrix.merged([new], page))
+    before, after = (
+        {(v.fmu, v.fmi, v.folder): v for v in matrix.cells(text)} for text in (page, other)
+    )
+    assert {k for k in after if after[k] != before.get(k)} == {("scope", 3, "ecos")}
+    assert after["scope", 3, "ecos"] == new and len(after) == len(before) > 300
+    # Of another version of a tool, and of an FMU that nobody has run, the page tells nothing.
+    less = page.replace(f"<br>{tool.version} |", "<br>0.0 |").replace("| scope |", "| scoop |")
+    told = matrix.merged([], less)
+    assert {v.verdict for v in told if v.folder == "ecos"} == {importers.NOT_RUN}
+    assert {v.verdict for v in told if v.fmu == "scope"} == {importers.NOT_RUN}
+    assert {v.fmu for v in told} == {v.fmu for v in matrix.merged([], page)}
 
 
 def test_a_bit_is_a_difference() -> None:
