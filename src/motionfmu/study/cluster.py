@@ -3,6 +3,7 @@
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from queue import Empty, SimpleQueue
 from typing import Any
 
 from motionfmu.base.errors import InputError
@@ -14,6 +15,8 @@ from motionfmu.study.worker import CRASH, Row, chunk
 TIMEOUT = 10  # [s] in which the scheduler must answer and a worker be there
 CHUNK = 1.0  # [s] of work in a chunk: to hand one out costs a thousandth of that
 CHUNK_MAX = 200
+LOST = 120  # [s] without any worker, after which the study ends
+LOOK = 1.0  # [s] without news, after which one looks whether there are workers
 AHEAD = 2  # chunks handed out per thread of the cluster, so that none waits for its next one
 
 
@@ -42,30 +45,53 @@ def rows(job: WorkerJob, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]
             client.wait_for_workers(1, timeout=TIMEOUT)
         except TimeoutError:
             raise InputError(f"--scheduler {scheduler}: it has no worker") from None
-        yield from _chunks(client, job, tasks)
+        try:
+            yield from _chunks(client, job, tasks)
+        except TimeoutError:
+            raise InputError(f"--scheduler {scheduler}: it has lost all its workers") from None
+
+
+def _next(client: Any, finished: "SimpleQueue[Any]") -> Any:
+    """The next future that is done; a TimeoutError where no worker is left to do one."""
+    last = time.monotonic()
+    while True:
+        try:
+            return finished.get(timeout=LOOK)
+        except Empty:
+            if client.nthreads():
+                last = time.monotonic()
+            elif time.monotonic() - last > LOST:
+                raise TimeoutError from None
 
 
 def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]:
     import distributed
 
     pending, size = deque(tasks), 1
-    alone: deque[Task] = deque()  # tasks of a chunk whose worker was lost, run one by one
+    # Tasks of chunks that lost their workers again and again. dask suspects all that a lost worker
+    # had, so each of them runs with nothing beside it.
+    alone: deque[Task] = deque()
     sent: dict[Any, list[Task]] = {}
-    done = distributed.as_completed(loop=client.loop)
+    by_itself: Any = None  # the one that runs so
+    finished: SimpleQueue[Any] = SimpleQueue()
+
+    def submit(part: list[Task]) -> Any:
+        future = client.submit(_timed, job, part, pure=False)
+        sent[future] = part
+        future.add_done_callback(finished.put)
+        return future
 
     def send() -> None:
+        nonlocal by_itself
         threads = sum(client.nthreads().values()) or 1
-        while (pending or alone) and len(sent) < AHEAD * threads:
-            if alone:
-                part = [alone.popleft()]
-            else:
-                part = [pending.popleft() for _ in range(min(size, len(pending)))]
-            future = client.submit(_timed, job, part, pure=False)
-            sent[future] = part
-            done.add(future)
+        while pending and len(sent) < AHEAD * threads:
+            submit([pending.popleft() for _ in range(min(size, len(pending)))])
+        if alone and not sent:
+            by_itself = submit([alone.popleft()])
 
     send()
-    for future in done:
+    while sent:
+        future = _next(client, finished)
         part = sent.pop(future)
         error = future.exception()
         if error is None:
@@ -76,7 +102,7 @@ def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]
             raise error
         elif not isinstance(error, distributed.KilledWorker):
             raise InputError(f"a worker of the cluster failed: {error}")
-        elif len(part) > 1:
+        elif future is not by_itself:
             alone.extend(part)
         else:
             told = "the run ended its process again and again"

@@ -21,6 +21,7 @@ Task = tuple[int, Point]
 
 # Groups of points that a worker has: one runs, the others wait, so that it never has to wait.
 AHEAD = 4
+UNREADY_MAX = 3  # workers in a row that a signal ends before their first run; then the study ends
 PATIENCE = 10  # [s] for a worker to remove its files when it is told to end
 # Variables that give each worker one thread, for there are as many workers as cores.
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
@@ -68,6 +69,7 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     pending = deque(tasks)
     alone: deque[Task] = deque()  # of a group that has ended its process: whose fault is it?
     running: list[_Process] = []
+    unready = 0  # processes ended by a signal before their first run, since one was heard of
     with tempfile.TemporaryDirectory(prefix="motionfmu-", ignore_cleanup_errors=True) as temporary:
         try:
             while pending or alone or any(p.groups for p in running):
@@ -78,6 +80,7 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
                 for pipe in wait([p.pipe for p in running]):
                     one = next(p for p in running if p.pipe is pipe)
                     told = _receive(one)
+                    unready = 0 if told is not None else unready + (not one.lanes)
                     if isinstance(told, InputError):
                         raise told
                     if isinstance(told, list):
@@ -85,7 +88,7 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
                         yield from told
                     elif told is None:
                         running.remove(one)
-                        lost = _crashed(one, job)
+                        lost = _crashed(one, job, unready)
                         alone.extend(lost if len(lost) > 1 else ())
                         for group in reversed(one.groups):
                             pending.extendleft(reversed(group))
@@ -132,11 +135,14 @@ def _receive(one: _Process) -> Any:
         return None
 
 
-def _crashed(one: _Process, job: WorkerJob) -> list[Task]:
-    """The points of the group that ended its process; the worker's other points are not lost."""
+def _crashed(one: _Process, job: WorkerJob, unready: int) -> list[Task]:
+    """The points of the group that ended its process; the worker's other points are not lost.
+
+    A worker that was killed before its first run is replaced, unless that happens again and again.
+    """
     one.pipe.close()
     one.process.wait()
-    if not one.lanes:
+    if not one.lanes and (one.process.returncode >= 0 or unready >= UNREADY_MAX):
         raise InputError(f"{job.scenario}: a worker ended with {_how(one)} before its first run")
     return one.groups.popleft() if one.groups else []
 

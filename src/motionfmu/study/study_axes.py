@@ -81,7 +81,8 @@ class Axis:
             return np.full(len(values), 0.5)
         if self.log:
             values, low, high = np.log(values), math.log(low), math.log(high)
-        return (values - low) / (high - low)
+        # Halves: a difference of two numbers may be beyond all of them.
+        return (values / 2 - low / 2) / (high / 2 - low / 2)
 
     def check(self, sampling: str) -> None:
         """Refuse values that this variable or this sampling, if one is given, cannot take."""
