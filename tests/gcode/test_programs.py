@@ -5,7 +5,6 @@ More: python tests/gcode/random_programs.py --count 20000
 
 from pathlib import Path
 
-import numpy as np
 import pytest
 from compare import difference, first, mark, of_c, of_python, programs
 from conftest import ROOT
