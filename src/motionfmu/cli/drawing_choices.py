@@ -1,6 +1,7 @@
 """What the commands that take a drawing ask of it, as options that mean the same everywhere."""
 
 import re
+from collections.abc import Callable
 from typing import Annotated, Any
 
 import typer
@@ -42,6 +43,13 @@ Knife = Annotated[
 
 Page = Annotated[int | None, typer.Option("--page", help="Of a drawing with several: 1, 2 ...")]
 
+# What a number must be, and the same in words.
+_RANGES: dict[str, tuple[Callable[[float], bool], str]] = {
+    "scale": (lambda x: 0.0 < x <= 1e6, "above 0"),
+    "knife": (lambda x: 0.0 <= x <= 100.0, "0 to 100 mm"),
+    "page": (lambda n: n >= 1, "1 or more"),
+}
+
 
 def drawing_table(**given: Any) -> dict[str, Any]:
     """A table [drawing] of the options that are given, by the names of their parameters."""
@@ -50,12 +58,9 @@ def drawing_table(**given: Any) -> dict[str, Any]:
         if name in found and found[name] not in known:
             wanted = f"{', '.join(known[:-1])} or {known[-1]}"
             raise InputError(f"--{name} {found[name]}: {wanted} wanted")
-    if "scale" in found and not 0.0 < found["scale"] <= 1e6:
-        raise InputError(f"--scale {found['scale']:g}: above 0 wanted")
-    if "knife" in found and not 0.0 <= found["knife"] <= 100.0:
-        raise InputError(f"--knife {found['knife']:g}: 0 to 100 mm wanted")
-    if "page" in found and found["page"] < 1:
-        raise InputError(f"--page {found['page']}: 1 or more wanted")
+    for name, (good, wanted) in _RANGES.items():
+        if name in found and not good(found[name]):
+            raise InputError(f"--{name} {found[name]:g}: {wanted} wanted")
     if "copies" in found:
         found["copies"] = _copies(found["copies"], found.get("pitch"))
     elif "pitch" in found:

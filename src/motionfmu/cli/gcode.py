@@ -110,8 +110,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         tables = {"set": given} | ({"drawing": drawing} if drawing else {})
         planned = None if program.faults else _planned(file, machine, tables)
         told[str(file)] = found = _numbers(program, planned)
-        found |= {"left_out": list(made.notes)} if made.notes else {}
-        found |= {"page": made.page, "pages": made.pages} if made.paged else {}
+        found |= _of_drawing(made)
         if not as_json:
             target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
             _show(file, made, (program, planned), found, target)
@@ -119,6 +118,12 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         give(json.dumps(told, indent=1, allow_nan=False))
     if not good:
         raise typer.Exit(FAILED)
+
+
+def _of_drawing(made: "MachineProgram") -> dict[str, Any]:
+    """What is left out of a drawing, and which of its pages it is, if it has several."""
+    found: dict[str, Any] = {"left_out": list(made.notes)} if made.notes else {}
+    return found | ({"page": made.page, "pages": made.pages} if made.paged else {})
 
 
 def _of_machine(machine: str | None, given: dict[str, Any]) -> tuple[dict[str, Any], str]:

@@ -62,9 +62,10 @@ def scene_of(
         return None
     count, base = len(run.time), _base(run, name)
     tool = _in_world(run, name, base)
-    joints = joint_signal(run, name)
-    arm = None if joints is None else arm_of(run.resolver, run.parameter, joints)
-    stands = base or _standing(run, joints)
+    joints, arm = joint_signal(run, name), None
+    if joints is not None:
+        arm = arm_of(run.resolver, run.parameter, joints)
+    stands = base or _standing(run, joints) if arm else None
     low, high = ends(count, tool)
     moved = high - low > STANDS
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
@@ -82,7 +83,7 @@ def scene_of(
         at(tool, kept),
         way / (run.time[after] - run.time[before]),
         tuple(lines),
-        at(stands, frames) if arm and stands else None,
+        at(stands, frames) if stands else None,
         rapids(run, kept, works),
     )
 
