@@ -1,4 +1,4 @@
-"""Studies whose runs diverge, whose workers are killed or whose value ends its process."""
+"""Studies whose runs diverge, whose workers are killed or that lose a cluster: others are whole."""
 
 import os
 import shutil
@@ -12,15 +12,14 @@ import pyarrow.parquet as pq
 import pytest
 from conftest import ROOT
 
-from motionfmu.base.errors import InputError
-from motionfmu.study import worker
+from motionfmu.study import cluster, worker
 from motionfmu.sweep import Outcome, Study, Ways, conduct, study
 
 THEORY, CIRCLE = ROOT / "scenarios/circle_theory", ROOT / "scenarios/circle"
 GAIN, FORCE = "mcc.p_gain", "machine.force[2]"
 RESULTS = ["card.err_count.absmax", "machine.table_position[1].final"]
 PUSHED = ["card.err_count.absmax", "machine.table_position[2].final"]
-DEADLY = 300  # gain that ends its process where `deadly` is asked for
+DEADLY = 300  # run that ends its process
 
 
 def gains(n: int = 48, least: int = 101) -> Study:
@@ -40,25 +39,7 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]
 
 
 @pytest.fixture
-def deadly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes that are started end by a run of one gain, as by a broken FMU."""
-    site = tmp_path / "site"
-    site.mkdir()
-    (site / "sitecustomize.py").write_text(
-        "import os, time, motionfmu.run.session as s\n"
-        "made = s.Session._execution_of\n"
-        "def deadly(self, given, folder):\n"
-        f"    if given.get('{GAIN}') == {DEADLY}:\n"
-        "        time.sleep(3)  # dask replaces no worker that ends while it is being started\n"
-        "        os.kill(os.getpid(), 11)\n"
-        "    return made(self, given, folder)\n"
-        "s.Session._execution_of = deadly\n"
-    )
-    monkeypatch.setenv("PYTHONPATH", str(site))
-
-
-@pytest.fixture
-def cluster() -> Iterator[Any]:
+def workers() -> Iterator[Any]:
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
@@ -156,44 +137,65 @@ def test_a_worker_that_is_killed_before_its_first_run_is_replaced(
 
 @pytest.mark.more
 def test_a_worker_of_a_cluster_that_is_killed_is_replaced(
-    cluster: Any, tmp_path: Path, undisturbed: list[dict[str, Any]]
+    workers: Any, tmp_path: Path, undisturbed: list[dict[str, Any]]
 ) -> None:
     def processes() -> list[int]:
-        return [one.pid for one in cluster.workers.values()]
+        return [one.pid for one in workers.workers.values()]
 
-    ways = Ways(scheduler=cluster.scheduler_address, progress=killing({2, 20}, processes))
+    ways = Ways(scheduler=workers.scheduler_address, progress=killing({2, 20}, processes))
     before = processes()
     rows = table(conduct(gains(), tmp_path / "s", ways))
     assert is_undisturbed(rows, undisturbed) == 0
     assert set(before) != set(processes())
 
 
-@pytest.mark.more
-def test_a_value_that_ends_its_process_on_a_cluster_is_one_row(
-    deadly: None, cluster: Any, tmp_path: Path, undisturbed: list[dict[str, Any]]
+class Scheduled:
+    """A future of a cluster on which all that is in flight beside a deadly run is lost with it."""
+
+    def __init__(self, runs: list[int], flying: "list[Scheduled]") -> None:
+        self.runs, self._flying = runs, flying
+        flying.append(self)
+
+    def add_done_callback(self, told: Callable[[Any], None]) -> None:
+        told(self)
+
+    def exception(self) -> Exception | None:
+        distributed = pytest.importorskip("distributed")
+        lost = any(DEADLY in one.runs for one in self._flying)
+        return distributed.KilledWorker("run", None, 3) if lost else None
+
+    def result(self) -> tuple[float, list[worker.Row]]:
+        return 0.01, [worker.Row(n, worker.OK, "", None, ()) for n in self.runs]
+
+    def release(self) -> None:
+        self._flying.remove(self)
+
+
+class Scheduler:
+    """Two workers with a thread each."""
+
+    def __init__(self) -> None:
+        self.flying: list[Scheduled] = []
+
+    def nthreads(self) -> dict[str, int]:
+        return {"a": 1, "b": 1}
+
+    def submit(self, run: Any, job: Any, part: list[Any], pure: bool) -> Scheduled:
+        return Scheduled([n for n, _ in part], self.flying)
+
+
+def test_what_was_beside_a_run_that_ends_its_process_keeps_its_row() -> None:
+    rows = list(cluster._chunks(Scheduler(), gains().job, [(n, ()) for n in range(2 * DEADLY)]))
+    assert sorted(row.run for row in rows) == list(range(2 * DEADLY))
+    assert [row.run for row in rows if row.status != worker.OK] == [DEADLY]
+
+
+def test_a_cluster_that_has_lost_its_workers_ends_the_study(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    chosen = gains(least=DEADLY - 20)
-    rows = table(conduct(chosen, tmp_path / "s", Ways(scheduler=cluster.scheduler_address)))
-    assert [row["run"] for row in rows if row["status"] != "ok"] == [20]
-    assert rows[20]["status"] == worker.CRASH and rows[20][RESULTS[0]] is None
-    assert rows[20]["message"] == "the run ended its process again and again"
-    alone = table(conduct(chosen, tmp_path / "alone", Ways(workers=1)))
-    assert rows[:20] + rows[21:] == alone[:20] + alone[21:]
-
-
-@pytest.mark.more
-def test_a_cluster_without_workers_ends_the_study_with_a_message(
-    cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("motionfmu.study.cluster.LOST", 2)
-
-    def progress(done: int, errors: int) -> None:
-        if done == 2:
-            cluster.scale(0)
-
-    with pytest.raises(InputError, match="it has lost all its workers"):
-        conduct(
-            gains(400),
-            tmp_path / "s",
-            Ways(scheduler=cluster.scheduler_address, progress=progress),
-        )
+    monkeypatch.setattr(Scheduler, "nthreads", lambda _: {})
+    monkeypatch.setattr(Scheduled, "add_done_callback", lambda *_: None)
+    monkeypatch.setattr(cluster, "LOOK", 0.01)
+    monkeypatch.setattr(cluster, "LOST", 0.1)
+    with pytest.raises(TimeoutError):
+        list(cluster._chunks(Scheduler(), gains().job, [(0, ())]))
