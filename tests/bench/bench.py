@@ -216,6 +216,18 @@ class Aims:
     instructions: float
 
 
+def profiled(loops: dict[str, Fused]) -> list[counting.Loop]:
+    """The hand-fused loops optimised by profiles of their own runs, where they were built so."""
+    found = []
+    for name, hand in loops.items():
+        file, program = hand.line
+        built = BUILT.parents[1] / "profiled/tests/bench" / file.name
+        if built.exists():
+            line = [built, program, "{}", "/dev/null"]
+            found.append(counting.Loop(f"{name}, hand-fused, profiled", line))
+    return found
+
+
 def system_figures(
     name: str, hand: Fused, runs: dict[str, Timed], loops: dict[str, counting.Loop], aims: Aims
 ) -> list[Figure]:
@@ -225,6 +237,8 @@ def system_figures(
     print(f"\n{f'{name}, one step':34}{'ns':>10}{'x hand':>10}{'instructions':>14}{'x hand':>10}")
     print(f"{'fused by hand, no FMI':34}{base * 1e9:10.0f}{1.0:10.2f}{counted:14.0f}{1.0:10.2f}")
     found.append(Figure(f"{name}, hand-fused, instructions a step", counted, counted=True))
+    if told := loops.get(f"{name}, hand-fused, profiled"):  # for information
+        print(f"{'the same, by a profile':34}{'':20}{told.count:14.0f}{told.count / counted:10.2f}")
     for engine, run in runs.items():
         step, count = run.loop / run.steps, loops[f"{name}, {engine}"].count
         ratio = f"{step / base:10.2f}{count:14.0f}{count / counted:10.2f}"
@@ -312,6 +326,7 @@ def main(kept: figures.Kept) -> None:
             counting.Loop(f"six axes, {name}", counting.of_run(SIX_AXES, run.options["engine"]))
             for name, run in sixes.items()
         ),
+        *profiled({"demo": by_hand, "six axes": by_hand_six}),
         counting.Loop("robot", counting.of_run(ROBOT, best), (20_000, 30_000)),
         counting.Loop("network card", counting.of_run(PLATE, best)),
     ]
