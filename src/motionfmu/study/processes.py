@@ -61,7 +61,7 @@ def _start(job: WorkerJob, temporary: str) -> _Process:
     return _Process(process, ours)
 
 
-# CCN 18: one case for each message of a worker, and for its end.
+# CCN 19: one case for each message of a worker, and for its end.
 def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     """Run points in processes of this machine; rows as they come."""
     # A run that ends its process gives a row that says so. A worker that cannot begin is an
