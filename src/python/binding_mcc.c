@@ -225,9 +225,9 @@ const struct machine *binding_machine(const struct station_config *config)
     return &config->machine;
 }
 
-/* Functions with the text of a part program in memory (NULL: none) and the files that it calls: run
- * a station; check the program; plan it as the task does and take the points as a card would, which
- * gives at most `room` frames [pulses]. */
+/* Functions with the text of a part program in memory (NULL: none) and the files that it calls.
+ * They run a station, check the program, or plan it as the task does and take the points as a card
+ * would, which gives at most `room` frames [pulses]. */
 int binding_run(struct station *s, int64_t until, const char *text, int64_t length,
                 binding_file file)
 {

@@ -76,7 +76,7 @@ def breaks(name: str, text: str) -> list[str]:
 
 
 # What is held: the pages, what the package, the FMUs, scenarios and models say to a user, and the
-# comments of headers.
+# comments of C.
 HELD = (
     *("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "DESIGN.md", "SECURITY.md", "docs/**/*.md"),
     *(f"{folder}/**/README.md" for folder in ("examples", "fmus", "modelica", "scenarios")),

@@ -249,6 +249,12 @@ def of_code(text: str) -> Iterator[Sentence]:
         yield from of_literal(joined, bare.count("\n", 0, found.start()) + 1)
 
 
+def of_c(text: str) -> Iterator[Sentence]:
+    """The sentences of the texts and of the comments of a C file."""
+    yield from of_code(text)
+    yield from of_header(text)
+
+
 def of_script(text: str) -> Iterator[Sentence]:
     """The sentences of the texts in JavaScript; what a template works out is a word."""
     return of_code(re.sub(r"`((?:[^`\\]|\\.)*)`", _no_template, text))
@@ -292,9 +298,9 @@ READERS = {
     ".md": of_markdown,
     ".py": of_python,
     ".h": of_header,
-    ".c": of_code,
+    ".c": of_c,
     ".html": of_html,
-    ".inc": of_code,
+    ".inc": of_c,
     ".js": of_script,
     ".mo": of_modelica,
     ".toml": of_toml,

@@ -8,10 +8,10 @@
 #include "el_arc_tables.h"
 
 /* Bound of the quick way's relative error. Its products are exact (24 bits by 24 or 7) or concern
- * the part 2^-24 of a number: z = first + tail without its cubic part has an error of 2^-73.8 z if
- * i = 0, else of 2^-73.9, where the angle is at least 2^-7.01: 2^-66.8 of it. The sides of asin and
- * acos add 2^-74. The cubic part, 2^-15.5 z, has 16 roundings: 2^-64.5; four more sums of it:
- * 2^-66.5. Together 2^-63.9. */
+ * the part 2^-24 of a number. So z = first + tail without its cubic part has an error of 2^-73.8 z
+ * if i = 0, else of 2^-73.9, where the angle is at least 2^-7.01. This is 2^-66.8 of it. The sides
+ * of asin and acos add 2^-74. The cubic part, 2^-15.5 z, has 16 roundings: 2^-64.5; four more sums
+ * of it: 2^-66.5. Together 2^-63.9. */
 #define PART 0x1.2p-64
 
 /* The number h + l, h the nearest number of 24 bits. */

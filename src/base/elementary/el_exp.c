@@ -106,7 +106,7 @@ struct about {
 };
 
 /* e^x - 1 = 2^j T - 1 + 2^j T (e^r - 1), j = floor(k / 128), T = 2^((k mod 128) / 128), |x| < 100.
- * r has two parts; T r is an exact product of 24 bits by 24 and a rest that is 2^-24 of it. The
+ * r has two parts. T r is an exact product of 24 bits by 24 and a rest that is 2^-24 of it. The
  * other terms of T (e^r - 1), from T r^2 / 2 on, are 2^-9.53 of T r and have seven roundings:
  * 2^-59.72 of T r; the polynomial adds 2^-66; the error of r is 2^-97 k. */
 static inline struct about quick_less_one(double x)

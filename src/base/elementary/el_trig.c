@@ -3,7 +3,7 @@
  *     sin x = S + C r + (S (cos r - 1) + C (sin r - r)),  S = sin(2 pi k / 256),  C its cosine,
  *
  * where S and C are rounded to 26 bits and r to 27, so that S + C r is exact as a sum of two
- * doubles; the rounding errors of S, C and r go into the bracket, which is 2^-13 of the result. */
+ * doubles. The rounding errors of S, C and r go into the bracket, which is 2^-13 of the result. */
 #include "elementary.h"
 #include "double_double.h"
 #include "el_lanes.h"
@@ -57,8 +57,8 @@ static inline bool settled(struct dd a, double *y)
 
 /* Argument reduction (Payne and Hanek): x = quarter pi / 2 + r, |r| <= pi / 4, for any finite x =
  * m 2^e. Of 2 / pi it takes nine words of 32 bits, from the first one whose product with x is not a
- * multiple of whole turns: 288 bits, of which m takes 53, the quarter 34, and the closest double to
- * a zero of sine or cosine cancels 62 at most. */
+ * multiple of whole turns. They are 288 bits, of which m takes 53, the quarter 34, and the closest
+ * double to a zero of sine or cosine cancels 62 at most. */
 static struct dd turned(double x, unsigned *quarter)
 {
     enum { TAKEN = 9, LIMBS = TAKEN + 2 };

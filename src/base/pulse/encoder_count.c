@@ -4,7 +4,7 @@
  * index is high in the first quarter of every index_lines.
  *
  * x4 counts every edge of A and B, x2 those of A, x1 the one of A that happens while B is low, at
- * the same place in both directions: a decoder that counted the rising edge both ways would drift
+ * the same place in both directions. A decoder that counted the rising edge both ways would drift
  * when the shaft trembles. So a counter is floor((q - shift) / share), turned round if the wiring
  * turns the direction round. Pulses count the same way: one per line period, halfway high, so that
  * x2 counts both edges of a pulse, and there is no x4. */

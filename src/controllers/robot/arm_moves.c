@@ -62,7 +62,7 @@ static int32_t active(const struct arm_moves *c, const double place[AXES])
     return n;
 }
 
-/* Turn an attitude by part of a move. */
+/* Turn an orientation by part of a move. */
 static void turned(const struct arm_move *m, double part, double turn[4])
 {
     const double by[3] = { part * m->by[0], part * m->by[1], part * m->by[2] };

@@ -141,7 +141,7 @@ static void sides(const struct part *p, const struct opw *o, struct limbs *l)
     l->inner = p->inner;
 }
 
-/* Tip and attitude follow the path. */
+/* Tip and orientation follow the path. */
 static bool by_pose(const struct part *p, double half, struct jet rate[OPW_JOINTS])
 {
     const struct opw *o = &p->g->arm->opw;

@@ -13,7 +13,7 @@ enum { STEPS = 8, SUMS = 4 };
 static const double APART = 1.0 / 64.0;
 
 /* Where the feed limits the speed, the ratio of the joints' speeds to the tool's changes in a piece
- * by no more than this; if that takes more pieces than there are, the square of it is tried, and so
+ * by no more than this. If that takes more pieces than there are, the square of it is tried, and so
  * on until the power is above WIDE. */
 static const double UNEVEN = 1.02, WIDE = 300.0;
 

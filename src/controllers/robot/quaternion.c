@@ -7,7 +7,7 @@
 
 static const double DEGREE = 0.017453292519943295;
 
-/* Sine of half the angle between two attitudes that count as nearly equal: its square is lost in
+/* Sine of half the angle between two orientations that count as nearly equal: its square is lost in
  * rounding. */
 static const double NEARLY = 1e-8;
 

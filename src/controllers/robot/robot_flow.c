@@ -11,7 +11,7 @@
 /* Farthest that the tip may be from where the inverse kinematics bring it. [mm] */
 static const double OFF = 1e-4;
 
-/* Share of a joint's limits that is used, the rest is for rounding: without a limit of jerk a joint
+/* Share of a joint's limits that is used, the rest is for rounding. Without a limit of jerk a joint
  * that turns back at a rest in the middle of a cycle brakes to it by the last digits of a long
  * way. */
 static const double USED = 1.0 - 1e-9, USED_AT_ONCE = 1.0 - 1e-3;

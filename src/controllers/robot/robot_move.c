@@ -15,7 +15,7 @@ static const double TURN = 6.283185307179586;
 /* Corners between segments of one path are none, whatever the tolerance. [mm] */
 static const double WIDE = 1e9;
 
-/* Two attitudes that are the same; joints on a branch that is not certain. [rad] */
+/* Two orientations that are the same; joints on a branch that is not certain. [rad] */
 static const double SAME = 1e-12, DOUBTFUL = 1e-9;
 
 /* A path of the tip shorter than this share of its turning counts as none. */
@@ -124,7 +124,7 @@ static enum robot_status draw(struct robot *r, const struct robot_move *move,
     return ROBOT_OK;
 }
 
-/* Attitude at the end of the latest move. */
+/* Orientation at the end of the latest move. */
 static void rear_turn(const struct robot *r, const struct manipulator *arm, double turn[4])
 {
     const struct arm_geometry g = { arm, &r->moves };

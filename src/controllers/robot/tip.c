@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of the largest pivot below which a pivot is 0: the attitudes do not differ enough. */
+/* Share of the largest pivot below which a pivot is 0: the orientations do not differ enough. */
 static const double PIVOT = 1e-9;
 
 /* Normal equations of the tip alone: with the mean over all touches taken off, R_i t + p_i loses

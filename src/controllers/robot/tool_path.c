@@ -45,9 +45,9 @@ static const double CRAWL = 0.02;
  * corner of 12 degrees needs. */
 static const double LONG = 10.0;
 
-/* The proof of a segment's limits by bounds halves it so often: before limits that do not hold are
- * lowered (FINE); before bounds are given up beside a singular place that is met (CORE); at most,
- * to come near to the limit of a joint (DEEP). */
+/* The proof of a segment's limits by bounds halves it so often before limits that do not hold are
+ * lowered (FINE), before bounds are given up beside a singular place that is met (CORE). DEEP is
+ * the most, to come near to the limit of a joint. */
 enum { FINE = 6, CORE = 10, DEEP = 40 };
 
 /* Farthest that a joint may go while its latest position still identifies it: no other branch and

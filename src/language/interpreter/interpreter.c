@@ -299,7 +299,7 @@ static void go_on(struct interpreter *in, const struct program *p, const struct 
 }
 
 /* Execute one block, in the order of RS-274: modes, feed, tool, outputs, spindle, coolant, dwell,
- * offsets, motion, stop. f is a fault of its text; behind a fault it goes on with what is left, so
+ * offsets, motion, stop. f is a fault of its text. Behind a fault it goes on with what is left, so
  * that modes and place are right for the lines that follow.
  * CCN 21: half of it chooses where the faults of each part go. */
 static enum fault execute(struct interpreter *in, const struct program *p, struct block *b,

@@ -377,7 +377,7 @@ static int arguments(struct robot_job_reading *in, struct robot_job_instruction 
 }
 
 /* JUMP *LABEL, JUMP LABEL, JUMP JOB:NAME, CALL JOB:NAME. Where that is, the end of the text tells,
- * and of a job the end of all texts: until then `to` and `via` are the label's name, `level` is 0;
+ * and of a job the end of all texts. Until then `to` and `via` are the label's name, `level` is 0;
  * or `to` is the number of the job's name, `level` is 1. */
 static int jump(struct robot_job_reading *in, enum robot_job_op op)
 {

@@ -269,7 +269,7 @@ static unsigned wrist(const struct task *t, int first, const double rest[3][3], 
     return 1;
 }
 
-/* Arms with a wrist: joints 1 to 3 by its centre, the rest by what is left of the attitude. */
+/* Arms with a wrist: joints 1 to 3 by its centre, the rest by what is left of the orientation. */
 static uint32_t with_wrist(const struct task *t, double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
 {
     double q[4][3], hand[2][3], rest[3][3];
@@ -448,7 +448,7 @@ static uint32_t with_links(const struct task *t, double joint[CHAIN_BRANCHES][CH
     return 1u | 1u << CHAIN_ELBOW;
 }
 
-/* Gantries: the wrist by the attitude, the slides by what is left of the way. */
+/* Gantries: the wrist by the orientation, the slides by what is left of the way. */
 static uint32_t with_slides(const struct task *t, double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
 {
     const double(*h)[3] = t->p.lines.axis;
@@ -527,7 +527,7 @@ static void point_of_elbow(const struct task *t, double elbow[3])
 }
 
 /* Seven joints with shoulder and wrist: joint 4 by their distance, joints 1 to 3 by the line
- * between them and the arm angle, joints 5 to 7 by what is left of the attitude. */
+ * between them and the arm angle, joints 5 to 7 by what is left of the orientation. */
 static uint32_t with_shoulder(const struct task *t, double joint[CHAIN_BRANCHES][CHAIN_JOINTS])
 {
     const double(*h)[3] = t->p.lines.axis, *m = t->p.meeting;

@@ -176,8 +176,8 @@ static bool invert(const struct search *s, struct view *v)
 }
 
 /* Sums over all pairs of joints of what bounds the second derivatives of place (in sizes) and
- * turning: how far the flange can be from the outer one of two turning joints; 1; of a joint that
- * slides behind one that turns 1 and 0. */
+ * turning. They are: how far the flange can be from the outer one of two turning joints; 1; of a
+ * joint that slides behind one that turns 1 and 0. */
 static void bends(const struct search *s, const double joint[CHAIN_JOINTS], double sum[2])
 {
     double reach = vector3_length(s->c->flange.at) / s->size;

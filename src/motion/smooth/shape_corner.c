@@ -12,7 +12,7 @@ static const double CUT = 0.1875, CUT_CURVED = 0.035;
 
 /* Two quintics that swing out first: their middle is off the vertex by a part p of the half length
  * times half the turn. They swing out as far as they cut in at about p = SWING times the cosine of
- * half the angle (4 % less at small turns, more above 48 degrees): the search begins there. r'' in
+ * half the angle (4 % less at small turns, more above 48 degrees). The search begins there. r'' in
  * the middle, in units of half the turn by the half length, is BEND + MORE_BEND (2 CUT - p), a line
  * from that of one quintic. With 8 - 20 p r''' would be 0 at the line's end, which lets the speed
  * rise on the way out; a little less swings out farther. The slope is the one with the least times.

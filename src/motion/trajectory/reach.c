@@ -47,7 +47,7 @@ static struct instant instant_at(struct ramp_view *v, double t, const double nea
     return x;
 }
 
-/* Highest deviation of a move, along one axis, from the straight motion between two instants: a
+/* Highest deviation of a move, along one axis, from the straight motion between two instants. A
  * speed between the two leaves the mean speed's way by no more than a fourth of their difference
  * times the time, a bent path its chord by no more than bend (ds)^2 / 8. An acceleration at the
  * first instant only becomes less. [mm] */

@@ -198,7 +198,7 @@ __attribute__((visibility("default"))) long long loop_room(const struct axis *a,
 }
 
 /* Pieces of the record: piece i begins at communication point begin[i] and has length[i] steps. x,
- * w and their derivatives are the starts and become the ends; where joined[i] (if given) is not 0,
+ * w and their derivatives are the starts and become the ends. Where joined[i] (if given) is not 0,
  * the start of x and w is the end of the piece before. Every `every`th point of a piece from
  * its first on is a sample: outputs of the plant there, of the laws `late` steps later, go
  * to y and s_y, one piece behind the other. */
