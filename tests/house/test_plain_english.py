@@ -115,6 +115,7 @@ TABLE = "Parameters\n    ----------\n" + f"    a : int\n        {LONG[:90]}.\n" 
         ("a.h", f"/* {SHORT}\n * - {SHORT}\n * - {LONG[:60]}\n *   {LONG[60:]} */\n", 3),
         ("a.h", f"/* {SHORT}\n *     1 a    {LONG[:60]}\n *            {LONG[60:]} */\n", 2),
         ("a.c", f'\nfail(f, "%s: {LONG[:70]}"\n     "{LONG[70:]}", x);\n', 2),
+        ("a.c", f"\nint x; /* {LONG} */\n", 2),
         ("a.inc", f'say("{LONG}");\n', 1),
         ("a.mo", f'model A "{SHORT}"\n  Real x "{LONG}";\n', 2),
         ("a.mo", f'annotation(Documentation(info = "<p>{SHORT}\n{LONG}</p>"));\n', 2),
@@ -144,7 +145,6 @@ def test_texts_of_every_language_are_read(name: str, text: str, line: int) -> No
         ("a.py", f'f("<script>{LONG}</script>")\n'),
         ("a.h", f"int x;\n/* {SHORT}\n * - {LONG[:90]}\n * - {LONG[:90]} */\n"),
         ("a.h", f"/* {SHORT}\n *\n" + " *     o---x     the first one\n" * 15 + " */\n"),
-        ("a.c", f"int x; /* {LONG} */\n"),
         ("a.toml", "# Gains of a loop.\n" + "# Feedback: the card reads the motor\n" * 9),
     ],
 )
