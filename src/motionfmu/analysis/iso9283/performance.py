@@ -176,9 +176,9 @@ def speed(cycle: Cycle) -> Array:
 def analyse(given: Cycles) -> Performance:
     """Evaluate path performance.
 
-    The definitions are those of ISO 9283:1998, clauses 8 (path) and 9 (velocity): deviations are
-    taken in planes perpendicular to the command path. The ends of the path that some cycle does
-    not reach, or passes below `Cycles.ramp` of the speed, are left out.
+    The definitions are those of ISO 9283:1998, clause 8, velocity by its 8.6: deviations are taken
+    in planes perpendicular to the command path. The ends of the path that some cycle does not
+    reach, or passes below `Cycles.ramp` of the speed, are left out.
 
     Parameters
     ----------
