@@ -52,7 +52,7 @@ def test_it_is_recorded_and_shown_unasked(tmp_path: Path) -> None:
     start = [-17.81888891, 53.17802569, -26.09704043, 0.0, 62.91901474, -17.81888891]
     moved = [*start[:4], start[4] + 3.0, start[5] - 200.0]
     run = chain(["soft.done"], arm__start_joint=moved).run()
-    assert run.signals.keys() == SAID | {"soft.done"}
+    assert run.signals.keys() == SAID | {"soft.done", "arm.link_angle"}
     (tool,) = tool_gaps(run)
     gap = 1e3 * (run["arm.tool_position"] - run["soft.tool_position"])
     distance = np.sqrt((gap**2).sum(axis=1))

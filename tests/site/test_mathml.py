@@ -1,17 +1,15 @@
 """Formulas of the site, where docutils reads TeX otherwise than TeX does."""
 
-import sys
-
 import pytest
-from conftest import ROOT
-from docutils import nodes
 
-sys.path.insert(0, str(ROOT / "docs/site"))
-import mathml
+pytestmark = pytest.mark.more  # Sphinx, and docutils with it, come with what `more` needs
 
 
 def shown(text: str) -> str:
     """MathML of a formula in a line, without its lines and its head."""
+    import mathml
+    from docutils import nodes
+
     return mathml._formula(nodes.math(text, text), block=False).replace("\n", "").replace(" ", "")
 
 
@@ -30,6 +28,8 @@ def test_an_argument_without_braces_is_one_character(short: str, whole: str) -> 
 
 
 def test_fractions_are_those_of_tex() -> None:
+    import mathml
+
     assert "<mn>12</mn>" not in shown(r"\tfrac12 c")
     assert mathml.braced(r"\frac{a}{b^{2}}") == r"\frac{a}{b^{2}}"
 
@@ -48,4 +48,6 @@ def test_an_accent_stands_over_its_bold_letter_alone() -> None:
 
 
 def test_limits_of_a_sum_stay_below_and_above() -> None:
+    import mathml
+
     assert "munderover" in mathml.beside(mathml.tex2mathml(r"\sum_{i=1}^n x_i", as_block=True))

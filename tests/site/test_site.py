@@ -1,6 +1,5 @@
 """The built site: no warning, no dead link, no orphan; it can be searched and read from disk."""
 
-import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -8,11 +7,9 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote, urlsplit
 
-import mathml
 import pytest
 from browser import PHONE
 from conftest import ROOT
-from docutils import nodes
 from lxml import html
 
 pytestmark = [pytest.mark.more, pytest.mark.xdist_group("site")]
@@ -252,8 +249,3 @@ def test_what_is_unreadable_is_found(browser: Any, tmp_path: Path) -> None:
     page = opened(browser, file, DESK, "light")
     assert any(text.startswith("color-contrast") for text in unreadable(page))
     page.context.close()
-
-
-def test_two_digits_of_a_fraction_are_two_numbers() -> None:
-    made = re.sub(r"\s+", "", mathml._formula(nodes.math("", r"\tfrac12A"), block=False))
-    assert "<mn>1</mn><mn>2</mn></mfrac><mi>A</mi>" in made
