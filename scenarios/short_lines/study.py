@@ -10,6 +10,7 @@ along our own curve, by toppra. tests/helpers/shape_paths.py asks the library fo
 import re
 import sys
 import tempfile
+import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -44,9 +45,9 @@ WORDS = {
     "`G64 P0.02` S": ("G64 P0.02", JERK),
 }
 T, S, JUNCTION, BOUND = "`G64 P0.02` T", "`G64 P0.02` S", "junction deviation", "bound"
-COLOURS = dict(
-    zip([*WORDS, JUNCTION], "#7f7f7f #e69f00 #56b4e9 #0072b2 #009e73 #cc79a7".split(), strict=True)
-)
+LINUXCNC = "LinuxCNC"
+SHADES = "#7f7f7f #e69f00 #56b4e9 #0072b2 #009e73 #cc79a7 #d55e00"
+COLOURS = dict(zip([*WORDS, JUNCTION, LINUXCNC], SHADES.split(), strict=True))
 
 
 @dataclass
@@ -76,6 +77,18 @@ def program(name: str, feed: float, words: str, jerk: float = 0.0) -> gcode.Prog
     )
     assert not read.faults, read.faults
     return read
+
+
+def driven(name: str, feed: float, planner: str = T) -> float:
+    """Time that a planner of ours takes for a shape, without rapids. [s]"""
+    read = program(name, feed, *WORDS[planner])
+    return float(read.seconds()[read.commands["type"] != 0].sum())
+
+
+def recorded() -> dict[tuple[str, float], float]:
+    """What in_linuxcnc.py measured: time of shapes and feeds. [s]"""
+    read = tomllib.loads((HERE / "linuxcnc_times.toml").read_text(encoding="utf-8"))
+    return {(row["name"], row["feed"]): row["time"] for row in read["shape"]}
 
 
 def chains(read: gcode.Program) -> list[np.ndarray]:
@@ -260,6 +273,7 @@ def study(name: str, feed: float) -> dict[str, Row]:
     rows[JUNCTION] = Row(
         sum(t for t, _ in junction), peaks=[np.array([max(j for _, j in junction)])]
     )
+    rows[LINUXCNC] = Row(recorded()[name, feed])
     rows[BOUND] = Row(sum(bound(curve(chain, feed), feed) for chain in parts))
     return rows
 
@@ -295,9 +309,9 @@ def draw(found: dict[tuple[str, float], dict[str, Row]], picture: Path) -> None:
         times = [rows[planner].time / rows[T].time for rows in found.values()]
         label = planner.replace("`", "")
         left.bar(
-            np.arange(len(times)) + (k - 2.5) * 0.14,
+            np.arange(len(times)) + (k - 3) * 0.13,
             times,
-            0.14,
+            0.13,
             color=COLOURS[planner],
             label=label,
         )
