@@ -105,6 +105,14 @@ def test_links_lead_somewhere(page: Path) -> None:
     assert broken_links(page.read_text(), page.parent) == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda f: f.name)
+def test_formulas_have_characters_of_tex(page: Path) -> None:
+    text = re.sub(r"\\text\{[^}]*\}", "", page.read_text())
+    found = re.findall(r"\$\$.*?\$\$|\$[^$\n]+\$", text, re.DOTALL)
+    assert len(found) > 20
+    assert [formula for formula in found if not formula.isascii()] == []
+
+
 @pytest.mark.parametrize("page", LINKING, ids=lambda f: str(f.relative_to(ROOT)))
 def test_the_pages_are_linked(page: Path) -> None:
     links = [f"]({t})" for t in re.findall(r"\]\(([^)\s]*docs/theory[^)\s]*)\)", page.read_text())]
