@@ -20,8 +20,8 @@ def page(kept: Mapping[str, Any]) -> str:
     judged = sum(row[-1] != "" for row in rows)
     return (
         "# Speed\n\n"
-        "What `make bench BENCH=--renew` has found and kept: each time is processor time, the best"
-        " of five rounds. [The benchmark](../tests/bench/README.md) says what each line is, and"
+        "What `make bench BENCH=--renew` has found and kept: each time is processor time, of five"
+        " rounds. [The benchmark](../tests/bench/README.md) says what each line is, and"
         " where the time goes.\n\n"
         f"- Found on {plain(kept['day'])}, on {plain(kept['machine'])}"
         " (processor, Python, what counted instructions).\n"
