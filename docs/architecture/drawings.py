@@ -17,6 +17,7 @@ from motionfmu.fmu import cores
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 INK, LINE, PALE, WAY = "#1a1a1a", "#5a6472", "#eef2f7", "#cfe3f7"
+BOX = 46  # height of a box with two lines
 Edges = dict[str, set[str]]
 
 # Where each part is drawn, in rows from the top: its centre, and what it is. Its name is its
@@ -127,6 +128,19 @@ class Drawing:
             f'<text x="{x:g}" y="{y:g}" text-anchor="{at}"{style[kind]}>{escape(words)}</text>'
         )
 
+    def labelled(
+        self,
+        x: float,
+        y: float,
+        width: float,
+        lines: tuple[tuple[str, str], tuple[str, str]],
+        fill: str = PALE,
+    ) -> None:
+        """A box with two lines of words in its middle, and the kind of each."""
+        self.box(x, y, width, BOX, fill)
+        for down, (words, kind) in zip((19, 37), lines, strict=True):
+            self.text(x + width / 2, y + down, words, kind)
+
     def arrow(self, x: float, y: float, to_x: float, to_y: float, dashed: bool = False) -> None:
         """An arrow from one point to another."""
         dash = ' stroke-dasharray="4 3"' if dashed else ""
@@ -187,7 +201,7 @@ def drawn(found: Edges) -> Iterator[tuple[str, str]]:
 def parts() -> str:
     """Who uses whom, all arrows downward."""
     made = Drawing(760, 590, "Parts of the project, each above all that it uses")
-    width, height, pitch = 190, 46, 73
+    width, pitch = 190, 73
     place = {
         part: (x, 12 + pitch * k) for k, row in enumerate(PARTS) for part, (x, _) in row.items()
     }
@@ -195,14 +209,12 @@ def parts() -> str:
         (x, y), (to_x, to_y) = place[part], place[used]
         assert to_y > y, f"{part} -> {used}: an arrow points up"
         lean = max(-70.0, min(70.0, (to_x - x) * 0.3))
-        made.arrow(x + lean, y + height, to_x - lean, to_y - 1)
+        made.arrow(x + lean, y + BOX, to_x - lean, to_y - 1)
     for row in PARTS:
         for part, (_, words) in row.items():
             x, y = place[part]
             room = 140 if part in ("modelica", "src/plant") else width
-            made.box(x - room / 2, y, room, height)
-            made.text(x, y + 19, part, "name")
-            made.text(x, y + 37, words, "small")
+            made.labelled(x - room / 2, y, room, ((part, "name"), (words, "small")))
     return made.svg()
 
 
@@ -227,9 +239,7 @@ def package() -> str:
         for k, (part, thing) in enumerate(steps):
             x = 130 + 160 * k
             made.arrow(x - 30 if k else x - 15, y + 23, x - 2, y + 23)
-            made.box(x, y, 130, 46, WAY)
-            made.text(x + 65, y + 19, f"{part}/", "name")
-            made.text(x + 65, y + 37, thing, "small")
+            made.labelled(x, y, 130, ((f"{part}/", "name"), (thing, "small")), WAY)
     made.text(12, 164, "A part imports only what stands before it:", at="start")
     for k, name in enumerate(order):
         x, y = 12 + 186 * (k // rows), 176 + 24 * (k % rows)
@@ -242,36 +252,35 @@ def package() -> str:
 def step() -> str:
     """One communication step: what is done in which order, and when blocks read and show."""
     made = Drawing(760, 662, "One communication step from t to t + H")
-    made.text(190, 24, "An engine at t = k H")
-    for k, (words, name, _) in enumerate(STEP):
-        _step_box(made, 40, 36 + 62 * k, words, name)
-        if k:
-            made.arrow(190, 20 + 62 * k, 190, 35 + 62 * k)
+    _column(made, 40, "An engine at t = k H", STEP, range(1, len(STEP)))
     made.rows.append(
         f'<path d="M40 307H18V59H39" stroke="{LINE}" fill="none" marker-end="url(#tip)"/>'
     )
-    made.text(570, 24, "Within an FMU's step")
-    for k, (words, name, _) in enumerate(INSIDE):
-        _step_box(made, 420, 36 + 62 * k, words, name)
-        if k in (1, 2):
-            made.arrow(570, 20 + 62 * k, 570, 35 + 62 * k)
+    _column(made, 420, "Within an FMU's step", INSIDE, (1, 2))
     made.arrow(340, 307, 419, 60, dashed=True)
     made.text(12, 372, "What becomes of the rows", at="start")
     for k, (words, name, _) in enumerate(AFTER):
         x = 12 + 255 * k
-        made.box(x, 382, 220, 46)
-        made.text(x + 110, 401, name, "name")
-        made.text(x + 110, 419, words, "small")
+        made.labelled(x, 382, 220, ((name, "name"), (words, "small")))
         if k:
             made.arrow(x - 34, 405, x - 2, 405)
     _times(made, 470)
     return made.svg()
 
 
-def _step_box(made: Drawing, x: float, y: float, words: str, name: str) -> None:
-    made.box(x, y, 300, 46)
-    made.text(x + 150, y + 19, words)
-    made.text(x + 150, y + 37, name, "name")
+def _column(
+    made: Drawing,
+    x: float,
+    title: str,
+    steps: tuple[tuple[str, str, str], ...],
+    reached: Iterable[int],
+) -> None:
+    """Steps one below the other; those reached have an arrow from the one above."""
+    made.text(x + 150, 24, title)
+    for k, (words, name, _) in enumerate(steps):
+        made.labelled(x, 36 + 62 * k, 300, ((words, ""), (name, "name")))
+        if k in reached:
+            made.arrow(x + 150, 20 + 62 * k, x + 150, 35 + 62 * k)
 
 
 def _times(made: Drawing, top: float) -> None:

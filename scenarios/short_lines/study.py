@@ -81,7 +81,11 @@ def program(name: str, feed: float, words: str, jerk: float = 0.0) -> gcode.Prog
 
 def driven(name: str, feed: float, planner: str = T) -> float:
     """Time that a planner of ours takes for a shape, without rapids. [s]"""
-    read = program(name, feed, *WORDS[planner])
+    return fed(program(name, feed, *WORDS[planner]))
+
+
+def fed(read: gcode.Program) -> float:
+    """Time of all commands but rapids. [s]"""
     return float(read.seconds()[read.commands["type"] != 0].sum())
 
 
@@ -261,8 +265,7 @@ def study(name: str, feed: float) -> dict[str, Row]:
     rows = {}
     for planner, (words, jerk) in WORDS.items():
         read = program(name, feed, words, jerk)
-        times = read.seconds()
-        time = float(times[read.commands["type"] != 0].sum())
+        time = fed(read)
         places = read.places()[:, :3]
         path = np.vstack([programmed(chain) for chain in chains(read)])
         rows[planner] = Row(time, distances(places, path), peaks(read, places), places=places)

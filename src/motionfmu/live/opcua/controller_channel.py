@@ -1,6 +1,5 @@
 """The controllers of a live machine that tell what they do: channels of its machine tool."""
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,6 +8,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.live.opcua.channel_watch import ChannelSample, ChannelWatch, ProgramState
 from motionfmu.live.panel import Monitor, OperatorPanel, panel_of
 from motionfmu.scenarios import fmus
+from motionfmu.scenarios.fault_advice import meanings
 
 # [journal actions] A frame's worth of what many hands do between two looks.
 _ACTIONS_MAX = 1000
@@ -16,10 +16,7 @@ _ACTIONS_MAX = 1000
 
 def words(fmu: str, variable: str) -> dict[int, str]:
     """What the values of a variable mean, in words."""
-    declared = fmus.ports(fmu)[variable].declared
-    pairs = re.split(r", (?=-?\d+ )", declared[1]) if declared else []
-    found = (re.fullmatch(r"(-?\d+) (.+)", pair) for pair in pairs)
-    return {int(m[1]): m[2] for m in found if m}
+    return meanings(fmus.ports(fmu)[variable])
 
 
 @dataclass(frozen=True)
