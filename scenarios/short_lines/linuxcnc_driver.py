@@ -1,13 +1,12 @@
 #!/usr/bin/python3
 """Run part programs in a LinuxCNC that is up, as its display: in_linuxcnc.py starts it.
 
-Prints a line to the file that the INI file names: each program, and its time of feed moves [s].
+It writes times.txt into the folder of the programs: each program, and its time of feed moves [s].
 """
 
 import importlib
 import os
 import subprocess
-import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -59,4 +58,4 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(os.environ.get("MOTIONFMU_PROGRAMS", sys.argv[-1])))
+    main(Path(os.environ["MOTIONFMU_PROGRAMS"]))

@@ -9,9 +9,9 @@
 /* So many pieces are free before a move is taken: its own, two where it is cut, one corner. */
 enum { ROOM = JOINT_CURVE_PIECES + 3 };
 
-/* Places of a corner, and of each of the two ways that it replaces, at which the tip is compared.
- * Parts into which the two steps about the worst place are divided then: where the nearer way
- * changes the distance has a peak. */
+/* At so many PLACES of a corner the tip is compared with so many (WAYS) of each of the two ways
+ * that the corner replaces. Then the two steps about the worst place are divided into FINER parts,
+ * for where the nearer way changes the distance has a peak. */
 enum { PLACES = 64, WAYS = 24, FINER = 16 };
 
 /* The largest corner is found by so many halvings, to a part of it. */

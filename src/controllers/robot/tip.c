@@ -3,7 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Share of the largest pivot below which a pivot is 0: the orientations do not differ enough. */
+/* A pivot below this share of the largest one counts as 0: the orientations in which the tip was
+ * touched do not differ enough. */
 static const double PIVOT = 1e-9;
 
 /* Normal equations of the tip alone: with the mean over all touches taken off, R_i t + p_i loses

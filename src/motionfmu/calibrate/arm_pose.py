@@ -129,9 +129,11 @@ class ArmPoses:
     def at(
         self, joints: Array, frames: ArmFrames, errors: Array, measured: Array | None = None
     ) -> tuple[Array, Array, Array, Array, Array]:
-        """Places (n, 3) [mm], orientations (n, 3, 3), turns left (n, 3), slopes of places, turns.
+        """Pose of the tool at each joint position, and how it moves with the errors.
 
-        Slopes are (n, 3, columns); `errors` are in mm and rad.
+        Returns places (n, 3) [mm], orientations (n, 3, 3), the turns (n, 3) that are left to
+        `measured` orientations, and the slopes (n, 3, columns) of places and of turns. `errors` are
+        in mm and rad.
         """
         count = len(joints)
         p = np.repeat(self.p[:, None], count, axis=1)

@@ -27,7 +27,7 @@ class DrawingOptions:
     knife: float = 0.0  # [mm] by which a drag knife's edge trails its axis; 0 none
     up: float = 0.0  # [mm] Z of a mill above a drawing
     down: float = -1.0  # [mm] Z of a mill in it
-    page: int = 1  # Of a file of HP-GL with several, from 1
+    page: int = 1  # Which page of an HP-GL file with several, from 1
 
     @property
     def changes(self) -> dict[str, Any]:

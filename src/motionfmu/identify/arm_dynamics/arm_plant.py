@@ -38,7 +38,7 @@ class _ArmLinks(_NamedParts):
 
     mass: str  # of each link
     center: str  # of mass, in the link's frame
-    inertia: str  # xx, yy, zz about the centre
+    inertia: str  # moments xx, yy, zz of each link about its centre of mass
     product: str  # xy, yz, zx, taken as known
     viscous: str  # friction of the joint behind its gear
 
@@ -48,7 +48,7 @@ class _ArmLoad(_NamedParts):
 
     mass: str  # of the load
     center: str  # of mass, in the last link's frame
-    inertia: str  # about the centre
+    inertia: str  # moments of the load about its centre of mass
 
 
 class _ArmMotors(_NamedParts):
