@@ -42,11 +42,51 @@ protected
     sqrt(axis_direction[5,1]^2 + axis_direction[5,2]^2 + axis_direction[5,3]^2),
     sqrt(axis_direction[6,1]^2 + axis_direction[6,2]^2 + axis_direction[6,3]^2)}
     "Lengths of the axes as given";
+  ArmBase base(gravity = gravity) "Ground";
+  ArmLink link[6](
+    axis = axis, slides = slides, stands = stands, level = one, each pivot = axis[3,:],
+    hand = hand_way, hand_mass = hand_weight, hand_center = hand_middle, hand_inertia = hand_tensor,
+    hand_product = hand_aside,
+    origin = origin, mass = link_mass, center = link_center, inertia = link_inertia,
+    product = link_product, viscous = link_viscous, start_angle = hanging.start) "Links";
+  PenMount flange(arm = pen.arm) "Where the pen is";
   Real c[6](each unit = "1") "Cosines of half the joint angles";
   Real s[6](each unit = "1") "Sines of half the joint angles";
   Real turned[7,4](each unit = "1") "Orientation of the links, first that of the base: w, x, y, z";
   Real before[6,4](each unit = "1") "Of the link from which a joint turns its own";
 equation
+  connect(base.b, link[1].a);
+  link[1].rate = base.rate;
+  link[1].place = base.place;
+  link[1].turn = base.turn;
+  for i in 1:5 loop
+    connect(link[i].b, link[i + 1].a);
+    link[i + 1].rate = link[i].own_rate;
+    link[i + 1].place = link[i].own_place;
+    link[i + 1].turn = link[i].own_turn;
+  end for;
+  for i in 1:6 loop
+    link[i].tilt = if i == 3 then -one[3]*along*link[2].angle
+      elseif i == 4 then -one[4]*(link[3].angle + link[3].tilt) - two*along*link[2].angle else 0;
+    link[i].tilt_rate = if i == 3 then -one[3]*along*link[2].speed
+      elseif i == 4 then -one[4]*(link[3].speed + link[3].tilt_rate) - two*along*link[2].speed
+      else 0;
+    link[i].tilt_change = if i == 3 then -one[3]*along*der(link[2].speed)
+      elseif i == 4 then -one[4]*(der(link[3].speed) + link[3].tilt_change)
+      - two*along*der(link[2].speed) else 0;
+    link[i].linkage = if i == 2 then (one[4]*one[3] - two)*along*link[4].tilt_torque
+      - one[3]*along*link[3].tilt_torque elseif i == 3 then -one[4]*link[4].tilt_torque else 0;
+  end for;
+  connect(link[6].b, flange.a);
+  flange.place = link[6].own_place;
+  flange.turn = link[6].own_turn;
+  flange.push = pen.push;
+  pen.tip = flange.tip;
+  for i in 1:6 loop
+    connect(gear[i].link, link[i].drive);
+    inner_angle[i] = link[i].angle;
+    inner_speed[i] = link[i].speed;
+  end for;
   turned[1,1] = 1;
   turned[1,2] = 0;
   turned[1,3] = 0;

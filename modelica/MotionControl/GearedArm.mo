@@ -1,6 +1,6 @@
 within MotionControl;
 partial model GearedArm
-  "Arm of six joints placed by the class that extends it: motors, gears, links, payload, pen"
+  "Arm of six joints: motors, gears, payload, pen; a class that extends it places and links them"
   parameter Integer joint_sign[6](each min = -1, each max = 1) = {1, 1, 1, 1, 1, 1}
     "Inner angle = sign * joint angle - offset: 1 or -1";
   parameter Real joint_offset[6](each unit = "deg") = {0, 0, -90, 0, 0, 0}
@@ -168,7 +168,6 @@ protected
     knee_1 = knee_1, knee_2 = knee_2, lost_motion = lost_motion, error_1 = transmission_error_1,
     error_2 = transmission_error_2, phase_1 = transmission_phase_1,
     phase_2 = transmission_phase_2) "Start under gravity";
-  ArmBase base(gravity = gravity) "Ground";
   Lag current_loop[6](tau = current_time) "Current loops of the drives";
   Rotor rotor[6](inertia = motor_inertia, coulomb = motor_coulomb, static = motor_static,
     stribeck_speed = motor_stribeck_speed, viscous = motor_viscous, rest_speed = motor_rest_speed,
@@ -178,53 +177,23 @@ protected
     lost_motion = lost_motion, error_1 = transmission_error_1, error_2 = transmission_error_2,
     phase_1 = transmission_phase_1, phase_2 = transmission_phase_2, zero_error = zero_error)
     "Gears";
-  ArmLink link[6](
-    axis = axis, slides = slides, stands = stands, level = one, each pivot = axis[3,:],
-    hand = hand_way, hand_mass = hand_weight, hand_center = hand_middle, hand_inertia = hand_tensor,
-    hand_product = hand_aside,
-    origin = origin, mass = link_mass, center = link_center, inertia = link_inertia,
-    product = link_product, viscous = link_viscous, start_angle = hanging.start) "Links";
   Pen pen(length = tool_length, paper = paper_height, stiffness = pen_stiffness,
     foot = tool_place, along = 2*{held[2]*held[4] + held[1]*held[3],
     held[3]*held[4] - held[1]*held[2], 0.5 - held[2]*held[2] - held[3]*held[3]}) "Tool";
   Real hand[4](each unit = "1") "All joints: orientation of the flange";
+  Real inner_angle[6](each unit = "rad") "Angles of the links";
+  Real inner_speed[6](each unit = "rad/s") "Speeds of the links";
 equation
-  connect(base.b, link[1].a);
-  link[1].rate = base.rate;
-  link[1].place = base.place;
-  link[1].turn = base.turn;
-  for i in 1:5 loop
-    connect(link[i].b, link[i + 1].a);
-    link[i + 1].rate = link[i].own_rate;
-    link[i + 1].place = link[i].own_place;
-    link[i + 1].turn = link[i].own_turn;
-  end for;
-  for i in 1:6 loop
-    link[i].tilt = if i == 3 then -one[3]*along*link[2].angle
-      elseif i == 4 then -one[4]*(link[3].angle + link[3].tilt) - two*along*link[2].angle else 0;
-    link[i].tilt_rate = if i == 3 then -one[3]*along*link[2].speed
-      elseif i == 4 then -one[4]*(link[3].speed + link[3].tilt_rate) - two*along*link[2].speed
-      else 0;
-    link[i].tilt_change = if i == 3 then -one[3]*along*der(link[2].speed)
-      elseif i == 4 then -one[4]*(der(link[3].speed) + link[3].tilt_change)
-      - two*along*der(link[2].speed) else 0;
-    link[i].linkage = if i == 2 then (one[4]*one[3] - two)*along*link[4].tilt_torque
-      - one[3]*along*link[3].tilt_torque elseif i == 3 then -one[4]*link[4].tilt_torque else 0;
-  end for;
-  connect(link[6].b, pen.a);
-  pen.place = link[6].own_place;
-  pen.turn = link[6].own_turn;
   pen.force = force;
   for i in 1:6 loop
     connect(rotor[i].flange, gear[i].motor);
-    connect(gear[i].link, link[i].drive);
     current_loop[i].u = joint_sign[i]*torque[i];
     rotor[i].drive = current_loop[i].y;
     motor_angle[i] = joint_sign[i]*(rotor[i].angle + gear_ratio[i]*offset[i]);
     motor_phase[i] = encoder_lines[i]/(2*pi)*motor_angle[i];
     motor_speed[i] = joint_sign[i]*rotor[i].speed;
-    link_angle[i] = joint_sign[i]*(link[i].angle + offset[i]);
-    link_speed[i] = joint_sign[i]*link[i].speed;
+    link_angle[i] = joint_sign[i]*(inner_angle[i] + offset[i]);
+    link_speed[i] = joint_sign[i]*inner_speed[i];
     gear_torque[i] = joint_sign[i]*gear[i].torque;
   end for;
   tool_position = pen.tip;

@@ -18,18 +18,19 @@ EXACT = {"lost_motion": 0.0, "transmission_error_1": 0.0, "transmission_error_2"
 
 
 @cache
-def arm(name: str = "SixAxisArm") -> Ode:
+def arm(name: str = "SixAxisArm", package: Path = PACKAGE) -> Ode:
     """A Modelica class of arms, flattened once."""
-    return causal.load(PACKAGE, f"MotionControl.{name}")
+    return causal.load(package, f"MotionControl.{name}")
 
 
 class Arm:
     """The equation with some parameters changed, a value for a whole array or an array."""
 
     class_name = "SixAxisArm"
+    package = PACKAGE
 
     def __init__(self, **changed: Any) -> None:
-        self.ode = arm(self.class_name)
+        self.ode = arm(self.class_name, self.package)
         self.p = np.array(self.ode.p0)
         for name, value in changed.items():
             places = [k for k, d in enumerate(self.ode.parameters) if d.port == name]
@@ -83,6 +84,14 @@ class ByAxes(Arm):
     """The equation of an arm by its axes."""
 
     class_name = "AxesArm"
+
+
+class OtherAxes(Arm):
+    """The class with lengths as a copy of its package has it, whose axes are others."""
+
+    def __init__(self, package: Path, **changed: Any) -> None:
+        self.package = package
+        super().__init__(**changed)
 
 
 class LevelLinks(ByAxes):

@@ -1,11 +1,14 @@
 """The arm by its axes against pinocchio, and against the arm by its lengths where both are one."""
 
+import re
+import shutil
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio
 import pytest
-from robot_arm import EXACT, Arm, ByAxes, Pinocchio
+from robot_arm import EXACT, PACKAGE, Arm, ByAxes, OtherAxes, Pinocchio
 
 SEED = 11
 RNG = np.random.default_rng(SEED)
@@ -150,7 +153,8 @@ def test_as_declared_it_is_the_arm_by_its_lengths() -> None:
     by_axes, by_lengths = ByAxes(), Arm()
     ahead = np.radians(by_lengths.parameter("joint_offset"))
     gears = by_lengths.parameter("gear_ratio")
-    assert by_axes.states == by_lengths.states
+    assert sorted(by_axes.states) == sorted(by_lengths.states)
+    order = [by_lengths.states.index(name) for name in by_axes.states]
     states = []
     for _ in range(50):
         q, v = RNG.uniform(-3, 3, (2, 6))
@@ -158,10 +162,11 @@ def test_as_declared_it_is_the_arm_by_its_lengths() -> None:
         x = by_axes.state(link_angle=q, link_speed=v, rotor_angle=motor, rotor_speed=v * 100)
         states.append(x)
     for x in [*states, by_axes.start]:
-        inner = x.copy()
+        inner = np.empty(len(x))
+        inner[order] = x
         inner[by_lengths.places("link.angle")] -= ahead
         inner[by_lengths.places("rotor.angle")] -= ahead * gears
-        rates = by_lengths.rates(inner, U)
+        rates = by_lengths.rates(inner, U)[order]
         assert by_axes.rates(x, U) == pytest.approx(rates, abs=1e-10 * np.abs(rates).max())
         found, wanted = by_axes.outputs(x, U), by_lengths.outputs(inner, U)
         assert found.keys() == wanted.keys()
@@ -170,3 +175,33 @@ def test_as_declared_it_is_the_arm_by_its_lengths() -> None:
                 value = value * np.sign(value @ found[name])
             size = max(1.0, float(np.abs(value).max()))
             assert found[name] == pytest.approx(value, abs=1e-10 * size), name
+
+
+@pytest.mark.parametrize("axes", ["xyzzxy", "yxxzyx"])
+def test_links_that_turn_about_any_axis_of_the_frame(axes: str, tmp_path: Path) -> None:
+    """The class of the arm by its lengths, about other axes: as the arm by its axes."""
+    package = shutil.copytree(PACKAGE, tmp_path / PACKAGE.name)
+    file, rows = package / "SixAxisArm.mo", np.eye(3)[["xyz".index(n) for n in axes]]
+    told = ", ".join("{" + ", ".join(f"{v:g}" for v in row) + "}" for row in rows)
+    text, count = re.subn(r"final axis = {.*},\n", f"final axis = {{{told}}},\n", file.read_text())
+    assert count == 1
+    file.write_text(text)
+    fields = "mass center inertia product payload_center tool_place tool_turn".split()
+    drawn = random_arm()
+    given = {n: drawn.parameter(n) for n in fields} | EXACT
+    given |= {"origin_error": drawn.parameter("axis_origin")}
+    lengths = dict.fromkeys("a1 a2 b c1 c2 c3 c4 joint_offset".split(), 0.0)
+    by_axes = ByAxes(**given, axis_origin=0.0, axis_direction=rows, payload_inertia=0.02)
+    other = OtherAxes(package, **given, **lengths, payload_inertia=0.02)
+    for _ in range(50):
+        q, v = RNG.uniform(-3, 3, (2, 6))
+        u = np.append(RNG.uniform(-9, 9, 6), RNG.uniform(-50, 50, 3))
+        joints = {"link_angle": q, "link_speed": v, "rotor_angle": 100 * q, "rotor_speed": 100 * v}
+        for name in ("accelerations", "tool_position", "gear_torque"):
+            found, wanted = (
+                a.rates(a.state(**joints), u)[a.places("link.speed")]
+                if name == "accelerations"
+                else a.outputs(a.state(**joints), u)[name]
+                for a in (other, by_axes)
+            )
+            assert np.abs(found - wanted).max() <= 1e-11 * np.abs(wanted).max(), name
