@@ -27,6 +27,16 @@ FRAME = ROOT / "src/motionfmu/machines/engraver/example.plt"  # 80 x 50 mm from 
 RING = "G0 X10 Y10\nG1 X30 F1200\nG2 I-5\nM2\n"
 
 
+def test_a_configuration_beside_the_drawing_is_not_the_machines(tmp_path: Path) -> None:
+    """A card.toml that lies there for another card changes nothing and is not read."""
+    frame = Path(shutil.copy(FRAME, tmp_path / "frame.plt"))
+    (tmp_path / "card.toml").write_text("nonsense = 3\n")
+    machine = motionfmu.machine("engraver")
+    assert machine.config == FRAME.parent / "card.toml"
+    found, wanted = (machine.scenario(file).run(stop=0.2) for file in (frame, FRAME))
+    assert np.array_equal(found["card.pulse_count"], wanted["card.pulse_count"])
+
+
 def test_a_drawing_on_a_network_card() -> None:
     result = motionfmu.machine("engraver").run(FRAME)
     assert result.ok

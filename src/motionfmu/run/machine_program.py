@@ -52,8 +52,7 @@ class Machine:
     @property
     def config(self) -> Path | None:
         """The configuration of its network card; None without one."""
-        name = self.signals.config
-        return None if name is None else self.plan().document.beside(name)
+        return self.plan().document.beside_config()
 
     @property
     def takes_programs(self) -> bool:

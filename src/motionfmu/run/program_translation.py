@@ -156,7 +156,7 @@ def _job(document: Document, component: str, file: Path) -> MachineProgram:
     from motionfmu.drawings.reading import ENDINGS, is_drawing
 
     name = str(document.body.signals.config)
-    place = document.beside(name)
+    place = document.beside_config()
     if place is None:
         raise document.error(f"config = {name!r}: no such file", "signals", "config")
     config = load(place)

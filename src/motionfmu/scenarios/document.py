@@ -80,6 +80,13 @@ class Document:
         places = (s.folder / name for s in self.sources)
         return next((p for p in places if is_file(p)), None) if name else None
 
+    def beside_config(self) -> Path | None:
+        """The network card's configuration, which is that of the machine that names it."""
+        name = self.body.signals.config
+        folders = [s.folder for s in self.sources if s.has("signals", "config", None)]
+        place = folders[0] / name if name and folders else None
+        return place if place and is_file(place) else None
+
     def error(self, text: str, table: str = "", key: str = "", item: Any = None) -> InputError:
         """Make the error for a key; where it stands as in `Lines.of`, in a list for an item."""
         return InputError(f"{_place(self.sources, table, key, item)}: {text}")
