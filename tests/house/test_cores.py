@@ -193,6 +193,19 @@ def test_a_header_that_cannot_be_installed_is_told(tmp_path: Path) -> None:
         cores.cxx(header)
 
 
+def test_a_file_without_a_header_belongs_to_the_first_that_it_includes(tmp_path: Path) -> None:
+    core = tmp_path / "base/one"
+    core.mkdir(parents=True)
+    (core / "core.toml").write_text("uses = []\n")
+    for name in ("a.h", "b.h"):
+        (core / name).write_text("")
+    (core / "more.c").write_text('#include "a.h"\n#include "b.h"\n')
+    for name, files in {"a.h": ["a.h", "b.h", "more.c"], "b.h": ["b.h"]}.items():
+        root = tmp_path / "model.c"
+        root.write_text(f'#include "{name}"\n')
+        assert [f.name for f in cores.needed(tmp_path, ["one"], [root])] == files
+
+
 def test_nine_cores_or_more_serve_any_controller() -> None:
     assert len(SHARED) >= 9 and {"elementary", "path", "trajectory", "tasks"} <= set(SHARED)
     assert not {"mcc", "epcio", "robot_controller", "netcard"} & set(SHARED)

@@ -74,6 +74,12 @@ def test_what_is_the_same_either_way_is_no_change() -> None:
         "return c[3];": ["return c[4];"],
     }.items():
         assert [text for _, text in made("f.c", within.format(line))] == became, line
+    for line, became in {
+        "b = a.reshape(len(a), -1)": ["pass"],
+        "b = a.reshape(-1, 3)": ["b = a.reshape(-1, 4)", "pass"],
+        "b = a[-1]": ["b = a[-2]", "pass"],
+    }.items():
+        assert [text for _, text in made("f.py", f"def f(a):\n    {line}\n")] == became, line
 
 
 @pytest.mark.parametrize("pattern", ["src/*/*/*.c", "src/motionfmu/**/*.py"])

@@ -38,6 +38,8 @@ _EXTREME_C = re.compile(
     r"(?:(?<=[(\[])|(?<=[=,?:] )|(?<=return ))"
     r"([\w.>\[\]-]+) [<>] ([\w.>\[\]-]+) \? (?:\1 : \2|\2 : \1)(?=[;,)\]])"
 )
+# The length that numpy finds by itself, for which any number below 0 stands.
+_ANY_LENGTH_PYTHON = re.compile(r"\.reshape\([^=]*-$")
 _DECLARED_C = re.compile(r"^\s+(?:\w+ )+\**\w+(?:\[.*\])?(?: = .*)?;$")
 
 
@@ -108,7 +110,8 @@ def _of_line(bare: str, line: str, python: bool, whole: bool) -> Iterator[str]:
             if python or not _changes_nothing(bare, m.start(), new):
                 yield line[: m.start()] + new + line[m.end() :]
     for m in _NUMBER.finditer(bare):
-        if python or not _changes_nothing(bare, m.start(), "more"):
+        counted = python and not _ANY_LENGTH_PYTHON.search(bare[: m.start()])
+        if counted or not (python or _changes_nothing(bare, m.start(), "more")):
             yield f"{line[: m.start()]}{int(m[0]) + 1}{line[m.end() :]}"
     indent = line[: len(line) - len(line.lstrip())]
     if python:

@@ -259,6 +259,32 @@ static void module_resets(void)
     CHECK_EQ(pulses[0], 300); /* the DDA time in progress ended */
 }
 
+/* What stopped the pulses is gone with the module's reset: they go on by themselves. */
+static void pulses_go_on_behind_a_reset(void)
+{
+    for (int expired = 0; expired < 2; expired++) {
+        struct epcio card = card_stocked(9, 0);
+        int64_t stopped[EPCIO_AXES], gone[EPCIO_AXES];
+        epcio_advance(&card, 4000);
+        if (expired) {
+            CHECK_EQ(epcio_write(&card, REG_TIMER_PERIOD, 100), EPCIO_OK);
+            CHECK_EQ(epcio_write(&card, REG_WATCHDOG_VALUE, 1), EPCIO_OK);
+            epcio_advance(&card, 5000);
+            CHECK(card.watchdog.expired);
+        } else {
+            CHECK_EQ(epcio_write(&card, REG_LIO_GATE, 0), EPCIO_OK);
+        }
+        epcio_pulses(&card, stopped);
+        epcio_advance(&card, card.clock + 200000);
+        epcio_pulses(&card, gone);
+        CHECK_EQ(gone[0], stopped[0]);
+        CHECK_EQ(epcio_reset_module(&card, EPCIO_RESET_LIO), EPCIO_OK);
+        epcio_advance(&card, card.clock + 200000);
+        epcio_pulses(&card, gone);
+        CHECK(gone[0] > stopped[0]);
+    }
+}
+
 int main(void)
 {
     dda_and_fifo();
@@ -268,5 +294,6 @@ int main(void)
     map();
     map_is_disjoint();
     module_resets();
+    pulses_go_on_behind_a_reset();
     return check_result();
 }
