@@ -144,3 +144,23 @@ def test_a_level_and_its_text_are_at_the_same_place(log: bool, upright: bool) ->
     axis = "x" if upright else "y"
     assert line[f"{axis}0"] == 130.0  # of the data, on any axis
     assert told[axis] == pytest.approx(np.log10(130.0) if log else 130.0)
+
+
+@pytest.mark.parametrize("way", ["x", "y"])
+def test_numbers_along_an_axis_are_those_of_its_scale(way: str) -> None:
+    """A logarithm, names of states, and a spacing, on either axis of both back ends."""
+    line = [LineMark(TIME + 1.0, TIME + 1.0, "line", "#0072b2")]
+    scales = {
+        "log": Scale("Frequency", log=True),
+        "names": Scale("State", ticks=((1.0, "idle"), (2.0, "moves"))),
+        "spaced": Scale("Turns", spacing=0.25),
+    }
+    found = {}
+    for name, scale in scales.items():
+        across, up = (scale, UP) if way == "x" else (ACROSS, scale)
+        page, (axes,) = both(Diagram((across,), [Subplot(up, line)]))
+        found[name] = page["layout"][f"{way}axis"], getattr(axes, f"{way}axis")
+    assert found["log"][0]["type"] == found["log"][1].get_scale() == "log"
+    told = [text.get_text() for text in found["names"][1].get_ticklabels()]
+    assert found["names"][0]["ticktext"] == told == ["idle", "moves"]
+    assert np.allclose(np.diff(found["spaced"][1].get_majorticklocs()), 0.25)
