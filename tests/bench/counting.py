@@ -89,13 +89,6 @@ def _inside(line: Sequence[str | Path], shares: set[float]) -> float:
     return int(count[1]) / share(told)
 
 
-def of_part(line: Sequence[str | Path]) -> float:
-    """Instructions of the part that a program marks, less than all only where valgrind counts."""
-    if method() is None:
-        return float("nan")
-    return _inside(line, set())
-
-
 class Loop:
     """Instructions of one step of a loop: a longer run less a shorter one.
 
