@@ -4,27 +4,28 @@ Every time is processor time, the median of several rounds, and the runs take tu
 machine slows all of them alike; instructions are counted beside. README.md beside this file says
 what each line means and where the time goes. `--renew` keeps the figures as those to compare with,
 `--quick` takes one round, a rough look that is never kept; `--long` does long work alone,
-`--profile` tells where the instructions of a step go.
+`--profile` tells where the instructions of a step go, `--growth` how cost grows with size, and
+`--peers` has other people's tools beside ours.
 """
 
 import math
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import commands
 import counting
 import figures
+import growth
 import identifying
 import kinematics
 import long_run
 import network
 import numpy as np
+import peers
 import plans
 import profiles
 import scope_cost
@@ -37,6 +38,7 @@ from figures import Figure
 from medians import Medians
 from rich.console import Console
 from rich.progress import Progress
+from timed_runs import Timed
 
 import motionfmu
 from motionfmu.run.engines import ENGINES
@@ -54,61 +56,6 @@ INTERPRETER_COST = BUILT / "interpreter_cost"
 QUICK, RENEW = "--quick" in sys.argv, "--renew" in sys.argv
 ROUNDS = 1 if QUICK else 5
 SLOW_STOP = 0.2  # [s] simulated by the engines that go through Python at every step
-
-
-class Clock:
-    """Takes the time between the first and the last report of progress before the end."""
-
-    def __init__(self) -> None:
-        self.marks: list[tuple[float, float]] = []
-
-    def __call__(self, share: float) -> None:
-        if share < 1.0:
-            self.marks.append((share, time.process_time()))
-
-    def seconds(self) -> float:
-        """Time of the whole loop, from the part that was seen."""
-        (first, start), (last, end) = self.marks[0], self.marks[-1]
-        return (end - start) / (last - first)
-
-
-class Timed:
-    """A scenario under one engine: seconds of its loop and of the whole run."""
-
-    def __init__(self, scenario: Path, **options: Any) -> None:
-        self.scenario, self.options = motionfmu.load(scenario), options
-        self._rounds = Medians()
-        self.result: motionfmu.Result | None = None
-
-    def __call__(self) -> None:
-        clock = Clock()
-        start = time.process_time()
-        self.result = self.scenario.run(progress=clock, **self.options)
-        self._rounds.add("whole", time.process_time() - start)
-        self._rounds.add("loop", clock.seconds())
-
-    @property
-    def loop(self) -> float:
-        return self._rounds["loop"]
-
-    @property
-    def whole(self) -> float:
-        return self._rounds["whole"]
-
-    @property
-    def steps(self) -> int:
-        assert self.result is not None
-        return len(self.result.time)
-
-    @property
-    def simulated(self) -> float:
-        """Simulated time [s]."""
-        return float(self.options.get("stop") or self.scenario.document.body.stop_limit)
-
-    @property
-    def fmus(self) -> int:
-        """FMUs stepped, the recorder among them."""
-        return len(self.scenario.document.body.component) + 1
 
 
 class Fused:
@@ -410,6 +357,11 @@ if __name__ == "__main__":
         sys.exit("bench: --quick takes one round, which --renew does not keep")
     if "--profile" in sys.argv:
         profiles.main()
+    elif "--growth" in sys.argv:
+        words = [a.removeprefix("--only=") for a in sys.argv if a.startswith("--only=")]
+        growth.main(RENEW, *words)
+    elif "--peers" in sys.argv:
+        peers.main(RENEW)
     elif "--long" in sys.argv:
         figures.show(long_run.figures_of_long_work(), None, figures.Kept.SHOWN)
     else:

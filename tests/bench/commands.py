@@ -35,7 +35,7 @@ def environment() -> dict[str, str]:
     return kept | {"PYTHONPYCACHEPREFIX": f"{_FOLDER.name}/bytes", "PYTHONHASHSEED": "0"}
 
 
-def _taken(line: Sequence[str | Path], **more: str) -> float:
+def taken(line: Sequence[str | Path], **more: str) -> float:
     """Processor time of a process and of those it has started [s]."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     env = environment() | more
@@ -54,9 +54,9 @@ class Command:
 
     def __call__(self) -> None:
         if self.taken == 0.0:  # what is made once is there
-            _taken(self.whole)
+            taken(self.whole)
         if self.taken < ENOUGH:
-            seconds = _taken(self.whole)
+            seconds = taken(self.whole)
             self.taken += seconds
             self._rounds.add("command", seconds)
 
@@ -76,7 +76,7 @@ class NewStructure:
     def __call__(self) -> None:
         with tempfile.TemporaryDirectory(prefix="motionfmu-") as cache:
             for which in ("empty", "warm"):
-                self._rounds.add(which, _taken(self.LINE, MOTIONFMU_CACHE=cache))
+                self._rounds.add(which, taken(self.LINE, MOTIONFMU_CACHE=cache))
 
     @property
     def seconds(self) -> float:

@@ -70,7 +70,7 @@ def _run(scenario: Path, stop: float, out: Path) -> Spent:
     return _command(round(stop / STEP), out, "run", str(scenario), "--stop", str(stop))
 
 
-def _spiral(lines: int) -> str:
+def spiral(lines: int) -> str:
     """A part program of so many lines of equal length."""
     words, angle = [f"G21 G90 G64 P0.01 G1 F{60 * FEED:g}"], 0.0
     for k in range(lines):
@@ -82,18 +82,23 @@ def _spiral(lines: int) -> str:
 
 def _lines(lines: int, folder: Path) -> Spent:
     """The demo's machine on a spiral."""
+    return _run(on_a_spiral(lines, folder), lines * LENGTH / FEED + 2.0, folder / "out")
+
+
+def on_a_spiral(lines: int, folder: Path) -> Path:
+    """A scenario of the demo's machine on a spiral of so many lines."""
     scenario = folder / "spiral"
     scenario.mkdir()
     demo = (DEMO / "scenario.toml").read_text().partition("[expect]")[0]
     check = '[check]\n"mcc.done" = { final = true }\n"mcc.error" = { absmax = 0 }\n'
     (scenario / "scenario.toml").write_text(demo + check)
-    (scenario / "circle.ngc").write_text(_spiral(lines))
-    return _run(scenario, lines * LENGTH / FEED + 2.0, folder / "out")
+    (scenario / "circle.ngc").write_text(spiral(lines))
+    return scenario
 
 
 def _checked(lines: int, folder: Path) -> Spent:
     """`motionfmu gcode` of the spiral; a row is a line."""
-    (folder / "spiral.ngc").write_text(_spiral(lines))
+    (folder / "spiral.ngc").write_text(spiral(lines))
     return _command(lines, folder / "out", "gcode", str(folder / "spiral.ngc"))
 
 

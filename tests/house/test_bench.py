@@ -15,7 +15,9 @@ import motionfmu
 
 sys.path.insert(0, str(ROOT / "tests/bench"))
 import figures
+import growth
 import medians
+import peers
 import profiles
 from figures import Figure
 
@@ -180,3 +182,69 @@ def test_the_fused_loop_records_the_signals_of_its_scenario(scenario: str, heade
     }
     result = motionfmu.load(ROOT / scenario).run(stop=0.01)
     assert listed == set(result.signals)
+
+
+@pytest.mark.parametrize(
+    ("cost", "exponent", "verdict"),
+    [
+        (lambda n: 1000.0 + 3.0 * n, 1.0, ""),
+        (lambda n: 1.0 + 0.5 * (n - 1) ** 1.5, 1.5, "MISSED"),
+        (lambda n: 1e6 + 1e4 * (n - 1) ** 2, 2.0, "MISSED"),
+        (lambda n: 1000.0 + 1e-3 * n, float("nan"), "not seen"),
+        (lambda n: 7.0, float("nan"), "not seen"),
+    ],
+)
+def test_the_exponent_of_growth(cost, exponent: float, verdict: str) -> None:
+    """Of powers of the size beyond any start, it is the power."""
+    sizes = (1, 10, 100, 1000)
+    found = growth.Grown("work", "s", sizes, [cost(n) for n in sizes])
+    assert found.exponent == pytest.approx(exponent, nan_ok=True)
+    assert found.verdict == verdict
+
+
+def test_growth_judges_the_largest_sizes() -> None:
+    """A start that costs much for small sizes hides no square of the large ones."""
+    sizes = (1, 10, 100, 1000, 10_000)
+    costs = [10.0 + 1e-4 * n**2 + n for n in sizes]
+    found = growth.Grown("work", "s", sizes, costs)
+    assert found.exponents[0] < 1.02 and found.verdict == "MISSED"
+
+
+def test_a_tool_that_finds_something_else_stops_the_benchmark(capsys) -> None:
+    peers.agree("pose", True, "by nothing")
+    with pytest.raises(SystemExit) as stopped:
+        peers.agree("pose", False, "by 2 mm")
+    assert str(stopped.value) == "bench: pose: the results differ: by 2 mm"
+
+
+def test_what_is_not_installed_is_named(tmp_path: Path, monkeypatch, capsys) -> None:
+    (tmp_path / "peer_absent.py").write_text("import no_such_library\n")
+    (tmp_path / "peer_present.py").write_text(
+        "from peers import Row\n"
+        "class Rows:\n"
+        "    missing = ['its half is not installed']\n"
+        "    count = 0\n"
+        "    def __call__(self): self.count += 1\n"
+        "    def rows(self): return [Row('a sum', 's', 'tool', 2.0, 5.0, self.count)]\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr(peers, "PARTS", ("peer_absent", "peer_present"))
+    monkeypatch.setattr(peers, "KEPT", tmp_path / "peers.json")
+    peers.main(renew=True)
+    told = capsys.readouterr().out
+    assert f"| a sum | s | tool | 2 | 5 | 2.5 | {peers.ROUNDS} |" in told
+    for text in ("no_such_library is not installed", "its half is not installed"):
+        assert f"left out: {text}" in told
+    assert peers.kept()[1] == [peers.Row("a sum", "s", "tool", 2.0, 5.0, peers.ROUNDS)]
+
+
+def test_readme_has_the_kept_tables() -> None:
+    text = (ROOT / "tests/bench/README.md").read_text()
+    about, rows = peers.kept()
+    assert peers.table(rows) in text and about["day"] in text
+    tools = " ".join(row.tool for row in rows)
+    for name in ("libcosim", "ecos", "FMPy", "LinuxCNC", "pinocchio", "python-control"):
+        assert name in tools
+    grown = growth.kept()
+    assert [g.name for g in grown] == [w.name for w in growth.WORKS]
+    assert growth.table(grown) in text

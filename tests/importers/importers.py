@@ -140,7 +140,8 @@ class Case:
     fmi: int
     file: Path  # an FMU, or an SSP of FMI 2
     size: float | None = None  # communication step [s]; that of the default experiment
-    names: tuple[str, ...] = ()  # of the values that an SSP is asked for: component.variable
+    # Of the values that are asked for: of an SSP component.variable; of an FMU all if none.
+    names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -152,10 +153,11 @@ class Job:
     out: Path
     names: list[str]  # of the elements of a row
     steps: int
+    every: int = 1  # steps from row to row
 
     def rows(self) -> np.ndarray:
         """What a tool has read, a row each communication point from the start."""
-        return np.fromfile(self.out).reshape(self.steps + 1, len(self.names))
+        return np.fromfile(self.out).reshape(self.steps // self.every + 1, len(self.names))
 
 
 def _value(v: Any, name: str, fmi: int) -> tuple[str, list[str]]:
@@ -177,10 +179,10 @@ def _inside(ssp: Path, component: str) -> Any:
         )
 
 
-def job(case: Case, folder: Path, steps: int = STEPS) -> Job:
-    """A job for a case: all outputs of an FMU that are numbers, or what is named of an SSP.
+def job(case: Case, folder: Path, steps: int = STEPS, every: int = 1) -> Job:
+    """A job for a case: all outputs of an FMU that are numbers, or what is named.
 
-    The files of a job are in the folder.
+    The files of a job are in the folder. A row each so many steps is for drivers in Python.
     """
     found: list[tuple[str, list[str]]] = []
     if case.file.suffix == ".ssp":
@@ -196,13 +198,16 @@ def job(case: Case, folder: Path, steps: int = STEPS) -> Job:
             _value(v, v.name, case.fmi)
             for v in model.modelVariables
             if v.causality == "output" and v.type not in _NO_NUMBER
+            if not case.names or v.name in case.names
         ]
     stem = f"{case.title}.fmi{case.fmi}".replace(" ", "_").replace("/", "_")
     out = folder / f"{stem}.bin"
     head = [f"fmu\t{case.file}", f"fmi\t{case.fmi}", f"step\t{size!r}", f"steps\t{steps}"]
+    if every > 1:
+        head.append(f"every\t{every}")
     file = folder / f"{stem}.job"
     file.write_text("\n".join([*head, *(line for line, _ in found), f"out\t{out}"]) + "\n")
-    return Job(file, case, out, [name for _, names in found for name in names], steps)
+    return Job(file, case, out, [name for _, names in found for name in names], steps, every)
 
 
 @dataclass(frozen=True)
@@ -248,6 +253,14 @@ def compared(rows: np.ndarray, expected: np.ndarray, names: Sequence[str], remar
     gap = np.inf if np.isnan(gap).any() else gap.max()
     some = ", ".join(names[i] for i in columns[:3])
     return f"{len(columns)} outputs differ by up to {gap:.3g} from row {k + begin} on: {some}"
+
+
+def column(ran: Any, name: str) -> np.ndarray:
+    """An element, named as in a job, of a signal of our own run."""
+    whole, _, rest = name.partition("[")
+    element = int(rest.removesuffix("]")) - 1 if rest else 0
+    values = np.asarray(ran[whole], dtype=float)
+    return values.reshape(len(values), -1)[:, element]
 
 
 def verdicts(tool: Tool, expected: Mapping[Case, np.ndarray]) -> Iterator[Verdict]:

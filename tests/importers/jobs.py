@@ -27,6 +27,7 @@ class Task:
     steps: int
     out: Path
     values: list[Value]
+    every: int = 1  # steps from row to row
 
     @property
     def ssp(self) -> bool:
@@ -45,7 +46,8 @@ def read(file: str) -> Task:
         else:
             keys[key] = rest[0]
     step, steps = float(keys["step"]), int(keys["steps"])
-    return Task(keys["fmu"], int(keys["fmi"]), step, steps, Path(keys["out"]), values)
+    every = int(keys.get("every", "1"))
+    return Task(keys["fmu"], int(keys["fmi"]), step, steps, Path(keys["out"]), values, every)
 
 
 def packages() -> Path:

@@ -28,19 +28,12 @@ def systems(tmp_path_factory: pytest.TempPathFactory) -> dict[importers.Case, np
         case = importers.Case("circle", fmi, folder / f"circle.fmi{fmi}.fmu")
         as_fmu(scenario, case.file, fmi, {})
         names = importers.job(case, folder).names
-        found[case] = np.column_stack([_column(ran, name) for name in names])
+        found[case] = np.column_stack([importers.column(ran, name) for name in names])
         if fmi == 2:
             ssp = importers.Case("circle.ssp", 2, folder / "circle.ssp", step, tuple(names))
             as_ssp(scenario, ssp.file, 2, {})
             found[ssp] = found[case]
     return found
-
-
-def _column(ran: motionfmu.Result, name: str) -> np.ndarray:
-    whole, _, rest = name.partition("[")
-    element = int(rest.removesuffix("]")) - 1 if rest else 0
-    values = np.asarray(ran[whole], dtype=float)
-    return values.reshape(len(values), -1)[:, element]
 
 
 @pytest.mark.more

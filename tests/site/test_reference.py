@@ -242,9 +242,11 @@ def test_every_fault_says_what_to_do() -> None:
 
 
 def test_the_page_of_speed_has_what_the_benchmark_has_kept() -> None:
-    kept = json.loads((ROOT / "tests/bench/last.json").read_text("utf-8"))
-    page = speed.page(kept)
-    found = {row[0]: row[1:] for row in rows(page)[2:]}
+    names = ("last", "peers", "growth")
+    kept, *others = (json.loads((ROOT / f"tests/bench/{n}.json").read_text("utf-8")) for n in names)
+    page = speed.page(kept, *others)
+    first, *more = page.split("\n## ")
+    found = {row[0]: row[1:] for row in rows(first)[2:]}
     assert list(found) == [plain(name) for name in kept["figures"]] and len(found) > 60
     for name, value in kept["figures"].items():
         figure, asked, bound = found[plain(name)]
@@ -255,8 +257,15 @@ def test_the_page_of_speed_has_what_the_benchmark_has_kept() -> None:
     assert kept["day"] in page and "x86\\_64" in page
     name = next(iter(kept["figures"]))
     other = kept | {"figures": kept["figures"] | {name: 12345.6}}
-    assert [plain(name), "12,346", "", ""] in rows(speed.page(other))
-    assert "12,346" not in page and "2001-02-03" in speed.page(kept | {"day": "2001-02-03"})
+    assert [plain(name), "12,346", "", ""] in rows(speed.page(other, *others))
+    later = speed.page(kept | {"day": "2001-02-03"}, *others)
+    assert "12,346" not in page and "2001-02-03" in later
+    peers, growth = others
+    for text, kept_rows, column in ((more[0], peers["rows"], "what"), (more[1], growth, "name")):
+        assert [row[0] for row in rows(text)[2:]] == [plain(row[column]) for row in kept_rows]
+    for row, told in zip(peers["rows"], rows(more[0])[2:], strict=True):
+        ratio = float(told[-1].replace(",", ""))
+        assert ratio == pytest.approx(row["theirs"] / row["ours"], rel=1e-3)
 
 
 HEADER = """/* thing - a thing that counts.

@@ -141,7 +141,8 @@ def reference(root: Path) -> Iterator[tuple[str, str]]:
     rows = [(f"[{f.name}]({name}.md)", plain(f.about)) for name, f in files.items()]
     yield "files", "# Files\n\n" + table(("file", "is"), rows) + "\n" + toctree(files)
     yield "faults", faults.page(list(faults.tables()))
-    yield "speed", speed.page(json.loads((root / "tests/bench/last.json").read_text("utf-8")))
+    kept = (root / f"tests/bench/{name}.json" for name in ("last", "peers", "growth"))
+    yield "speed", speed.page(*(json.loads(file.read_text("utf-8")) for file in kept))
     package, *modules = python_modules.modules(root / "src/motionfmu")
     for module, text in python_modules.pages(modules).items():
         yield f"python/{module}", text

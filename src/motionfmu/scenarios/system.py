@@ -228,10 +228,14 @@ class Resolver:
 
     def matching(self, pattern: str, causality: str) -> list[End]:
         """All variables of one causality whose name matches a pattern with ``*`` and ``?``."""
+        # A line names a component as a rule; to look at all of them for each line costs the
+        # square of their number.
+        named = pattern.partition(".")[0]
+        only = () if is_pattern(pattern) else (named,)
         return [
             End(component, port)
-            for component, ports in self.ports.items()
-            for port in ports.values()
+            for component in only or self.ports
+            for port in self.ports.get(component, {}).values()
             if port.causality == causality and matches(f"{component}.{port.name}", pattern)
         ]
 

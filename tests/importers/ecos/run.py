@@ -43,9 +43,9 @@ def through(task: Task, simulation: Any, names: list[str]) -> str | None:
         for v, name in zip(task.values, names, strict=True)
     ]
     with task.out.open("wb") as out:
-        for k in range(task.steps + 1):
+        for k in range(0, task.steps + 1, task.every):
             if k:
-                simulation.step(1)
+                simulation.step(task.every)
             row = array.array("d")
             for get, v, name in read:
                 row.extend([float(get(name))] if v.count == 1 else [math.nan] * v.count)

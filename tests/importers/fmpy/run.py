@@ -17,7 +17,7 @@ def coupled(task: Task) -> None:
     found = simulate_ssp(task.fmu, stop_time=stop, step_size=task.step)
     with task.out.open("wb") as out:
         array.array("d", [math.nan] * len(task.values)).tofile(out)
-        for row in found:
+        for row in found[task.every - 1 :: task.every]:
             array.array("d", [float(row[v.name]) for v in task.values]).tofile(out)
 
 
@@ -60,6 +60,8 @@ def run(task: Task) -> None:
         for k in range(task.steps + 1):
             if k:
                 slave.doStep((k - 1) * task.step, task.step)
+            if k % task.every:
+                continue
             for get, references, places in plans:
                 sized = {} if task.fmi == 2 else {"nValues": len(places)}
                 for place, value in zip(places, get(references, **sized), strict=True):

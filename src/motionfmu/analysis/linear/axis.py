@@ -11,6 +11,7 @@ from motionfmu.analysis.linear.plant import Point
 from motionfmu.analysis.linear.wiring import Net, Port, period_of
 from motionfmu.base.errors import InputError, suggestion
 from motionfmu.run import Scenario, load
+from motionfmu.scenarios.system import System
 from motionfmu.scenarios.values import later
 
 if TYPE_CHECKING:
@@ -390,3 +391,40 @@ def _build(
         made.left_out,
         made,
     )
+
+
+def wired_with(axis: AxisModel, component: str) -> AxisModel:
+    """The model of a component and of all that wires join with it, at first or second hand.
+
+    What a gain does ends there. Of many machines in one scenario the others need not be looked at.
+    """
+    system = axis._parts.system
+    found = _joined(system, component)
+    alone = replace(
+        system,
+        components={c: fmu for c, fmu in system.components.items() if c in found},
+        wires=tuple(w for w in system.wires if w.target.component in found),
+    )
+    return replace(
+        axis,
+        at={name: value for name, value in axis.at.items() if name.partition(".")[0] in found},
+        blocks={c: b for c, b in axis.blocks.items() if c in found},
+        wires={t: s for t, s in axis.wires.items() if t[0] in found},
+        points={c: p for c, p in axis.points.items() if c in found},
+        _parts=replace(axis._parts, system=alone),
+    )
+
+
+def _joined(system: System, component: str) -> set[str]:
+    """Components that wires join with one, at first or second hand, and itself."""
+    beside: dict[str, set[str]] = {}
+    for wire in system.wires:
+        ends = {wire.source.component, wire.target.component}
+        for end in ends:
+            beside.setdefault(end, set()).update(ends)
+    found, left = {component}, [component]
+    while left:
+        new = beside.get(left.pop(), set()) - found
+        found |= new
+        left += new
+    return found

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.linear import coupled_plant, law
-from motionfmu.analysis.linear.axis import AxisModel, model
+from motionfmu.analysis.linear.axis import AxisModel, model, wired_with
 from motionfmu.analysis.linear.loops import feedbacks
 from motionfmu.analysis.linear.tuning_parts import listed, matrices
 from motionfmu.base.errors import InputError
@@ -55,8 +55,9 @@ def _acting(axis: AxisModel, name: str) -> tuple[float, str] | None:
         return None
     other = (value - 1 if value > 1 else value + 1) if isinstance(value, int) else 0.5 * value
     still = {n: type(axis.value(n))(0) for n in listed(axis, "integral") if n != name}
-    models = [_with(axis, {**still, name: v}) for v in (value, other)]
-    for at, cut in feedbacks(axis).items():
+    own = wired_with(axis, name.partition(".")[0])
+    models = [_with(own, {**still, name: v}) for v in (value, other)]
+    for at, cut in feedbacks(own).items():
         rates = [_rate(models, (value, other), (at, cut), w) for w in (_SLOW, 2.0 * _SLOW)]
         if rates[0] is None or rates[1] is None:
             continue
