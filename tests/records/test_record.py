@@ -259,3 +259,16 @@ def test_part_and_shift(tmp_path: Path) -> None:
         record.part(2.0, 3.0)
     with pytest.raises(InputError, match=r"written as .csv or .parquet"):
         record.save(tmp_path / "a.txt")
+
+
+def test_a_column_of_a_signal_of_a_result_is_mapped(tmp_path: Path) -> None:
+    """A result's signal with several values has a column for each, by its number."""
+    (tmp_path / "signals").mkdir()
+    (tmp_path / "result.json").write_text('{"units": {"a.place": "m", "a.on": "1"}}')
+    time = EVERY * 1e-9
+    signals = {"time": time, "a.place": np.outer(time, [1.0, 2.0, 3.0]), "a.on": time > 0.5}
+    for name, values in signals.items():
+        np.save(tmp_path / f"signals/{name}.npy", values)
+    second = {"Y": {"column": "a.place[2]", "unit": "mm"}}
+    found = motionfmu.record(tmp_path, columns=second)
+    assert np.allclose(found["Y"], 2.0 * time) and found.units["Y"] == "mm"
