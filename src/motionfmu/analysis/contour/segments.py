@@ -40,6 +40,17 @@ class SegmentColumns:
     turned: Array  # (k, 3) its angle [rad], rise and growth [mm]
     curves: dict[int, Cubic]  # by row
 
+    @classmethod
+    def joined(cls, parts: "list[SegmentColumns]") -> "SegmentColumns":
+        """The rows of several tables, one behind the other."""
+        if len(parts) == 1:
+            return parts[0]
+        names = [name for name in cls.__dataclass_fields__ if name != "curves"]
+        columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
+        begins = np.cumsum([0, *(len(p.command) for p in parts)]).tolist()
+        pairs = zip(begins, parts, strict=False)
+        return cls(**columns, curves={b + i: c for b, p in pairs for i, c in p.curves.items()})
+
 
 class Segments(Sequence[Segment]):
     """Segments in the order of travel; each is made when it is asked for."""
