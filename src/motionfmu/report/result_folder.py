@@ -103,7 +103,7 @@ def save(
             way = track(contour)
             write(part / TRACK, way, way.pop("time"))
         told("report")
-        shown = write_report(result, contour, part, ran, kept.pictures).name
+        shown = write_report(result, contour, part, ran, kept.pictures, kept.signals).name
     return folder.resolve() / shown
 
 

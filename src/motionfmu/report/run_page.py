@@ -28,6 +28,7 @@ from motionfmu.report.path_chart import outlier_words, path_chart, path_titles
 from motionfmu.report.polar_chart import polar_chart
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary, as_written, summary_of
+from motionfmu.report.sample_files import SampleFiles
 from motionfmu.report.signal_chart import add_charts, write_charts
 from motionfmu.report.signal_page import (
     add_performance,
@@ -65,12 +66,13 @@ FOOTER = (
 )
 
 
-def write_report(
+def write_report(  # noqa: PLR0913  (how a run is written)
     result: ReportInput,
     contour: ContourResult | None,
     folder: str | Path,
     ran: RunSummary | None = None,
     pictures: bool = False,
+    samples: bool = True,
 ) -> Path:
     """Write the page and the contour's numbers of a run.
 
@@ -87,6 +89,9 @@ def write_report(
     pictures : bool
         Also as files what the page draws: figure1.png, figure1.svg and so on, with a contour
         path.svg and path.png, with figures after ISO 9283 iso9283.svg and iso9283.png.
+    samples : bool
+        All samples of curves of more than 120,000 as files in report.samples, which the page reads
+        where one zooms in.
 
     Returns
     -------
@@ -99,14 +104,15 @@ def write_report(
         The folder cannot be written.
     """
     folder = Path(folder)
+    beside = SampleFiles(folder) if samples else None
     charts = as_written(result, result.figures())
     ran = ran or summary_of(result, contour)
     if contour is None:
-        page = plain_text(result, charts, ran)
+        page = plain_text(result, charts, ran, beside)
         folder.mkdir(parents=True, exist_ok=True)
     else:
         drawing = draw(contour)
-        page = page_text((result, ran), contour, drawing, charts)
+        page = page_text((result, ran), contour, drawing, charts, beside)
         numbers = json_of(contour.numbers())
         folder.mkdir(parents=True, exist_ok=True)
         if pictures:
@@ -128,10 +134,11 @@ def page_text(
     contour: ContourResult,
     drawing: ErrorPath,
     charts: Sequence[Chart],
+    beside: SampleFiles | None = None,
 ) -> str:
     """The whole HTML page of a run with a contour."""
     result, ran = run
-    page = Page()
+    page = Page(beside)
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing, result.scenario.document.controller_axes)
     add_verdict(page, result)

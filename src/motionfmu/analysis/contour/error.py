@@ -84,6 +84,7 @@ def analyse(
     corners = find_corners(path, instants, tracks, cutting, window)
     error = statistics(path, run.time, track, cutting)
     command_error = statistics(path, run.time, command.track, both)
+    path.segments.release()
     progress(1.0)
     return ContourResult(
         run=run,

@@ -22,6 +22,7 @@ LINE, ARC, CUBIC = 0, 1, 2
 RUN = 256
 # So many segments are kept as objects, with the values computed from them.
 KEPT = 64
+MANY = 1 << 18  # segments whose columns are too large to be kept for later
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +157,12 @@ class Segments(Sequence[Segment]):
         jumps = np.concatenate([[0.0], norms(c.start[1:] - self.ends[:-1])])
         end = np.cumsum(own + jumps)
         return end - own, end
+
+    def release(self) -> None:
+        """Let go what was computed of very many segments; it is computed again when needed."""
+        if len(self) > MANY:
+            for name in ("way", "ends", "directions"):
+                self.__dict__.pop(name, None)
 
     def foot(self, points: Array, which: Index) -> Foot:
         """Nearest point to each of the points (n, 3) [mm] on the segment of its number (n,)."""
