@@ -1,6 +1,7 @@
 """The report as one HTML page that needs no network."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
@@ -66,13 +67,20 @@ FOOTER = (
 )
 
 
-def write_report(  # noqa: PLR0913  (how a run is written)
+@dataclass(frozen=True)
+class ReportFiles:
+    """The files that stand beside the page of a run."""
+
+    pictures: bool = False
+    samples: bool = True  # of curves of more than a page can hold
+
+
+def write_report(
     result: ReportInput,
     contour: ContourResult | None,
     folder: str | Path,
     ran: RunSummary | None = None,
     pictures: bool = False,
-    samples: bool = True,
 ) -> Path:
     """Write the page and the contour's numbers of a run.
 
@@ -89,9 +97,6 @@ def write_report(  # noqa: PLR0913  (how a run is written)
     pictures : bool
         Also as files what the page draws: figure1.png, figure1.svg and so on, with a contour
         path.svg and path.png, with figures after ISO 9283 iso9283.svg and iso9283.png.
-    samples : bool
-        All samples of curves of more than 120,000 as files in report.samples, which the page reads
-        where one zooms in.
 
     Returns
     -------
@@ -103,8 +108,18 @@ def write_report(  # noqa: PLR0913  (how a run is written)
     OSError
         The folder cannot be written.
     """
-    folder = Path(folder)
-    beside = SampleFiles(folder) if samples else None
+    return write_files(result, contour, Path(folder), ran, ReportFiles(pictures))
+
+
+def write_files(
+    result: ReportInput,
+    contour: ContourResult | None,
+    folder: Path,
+    ran: RunSummary | None,
+    wanted: ReportFiles,
+) -> Path:
+    """Write the page of a run, with the files that are wanted beside it."""
+    beside = SampleFiles(folder) if wanted.samples else None
     charts = as_written(result, result.figures())
     ran = ran or summary_of(result, contour)
     if contour is None:
@@ -115,13 +130,13 @@ def write_report(  # noqa: PLR0913  (how a run is written)
         page = page_text((result, ran), contour, drawing, charts, beside)
         numbers = json_of(contour.numbers())
         folder.mkdir(parents=True, exist_ok=True)
-        if pictures:
+        if wanted.pictures:
             from motionfmu.report.matplotlib_figure import write_picture
 
             titles = path_titles(result.name, contour, drawing)
             write_picture(folder / "path", *titles, path_chart(drawing))
         (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
-    if pictures:
+    if wanted.pictures:
         write_charts(charts, folder)
         if result.resolver.document.body.iso9283 is not None and not result.no_iso9283:
             write_iso9283(result.name, result.iso9283(), folder)

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from motionfmu.report.samples import Samples, Source, bits, clock
+from motionfmu.report.samples import Samples, SampleSource, bits, clock
 
 FOLDER = "report.samples"
 PIECE = 1 << 16  # samples of a file
@@ -15,7 +15,7 @@ class SampleFiles:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._sources: dict[int, tuple[int, Source]] = {}
+        self._sources: dict[int, tuple[int, SampleSource]] = {}
 
     def more(self, samples: Samples) -> dict[str, Any] | None:
         """What a page says of the files of a curve; None if it has all samples."""

@@ -20,7 +20,7 @@ EVEN = 1e-9  # [s] times that are so near to even ones are kept as start and ste
 
 
 @dataclass(frozen=True)
-class Source:
+class SampleSource:
     """A recording that is read block by block."""
 
     time: NDArray[Any]  # (n,) increases
@@ -38,7 +38,7 @@ class Samples:
     dots: bool = False  # single events, no line between them
     lines: NDArray[Any] | None = None  # (n,) lines of the program, which are shown beside the value
     all: bool = True  # none of the recorded samples are left out
-    source: Source | None = None  # all of a recording that is too long for a page
+    source: SampleSource | None = None  # all of a recording that is too long for a page
 
     @classmethod
     def made(
@@ -55,7 +55,7 @@ class Samples:
             every = 0, len(time)
             return cls(time, read(*every), steps, lines=None if lines is None else lines(*every))
         said = None if lines is None else at(lines, kept)
-        source = Source(time, read, lines)
+        source = SampleSource(time, read, lines)
         few_times = at(reader(time), kept)
         forget(time)
         return cls(few_times, at(read, kept), steps, lines=said, all=False, source=source)

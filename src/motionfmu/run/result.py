@@ -259,7 +259,13 @@ class Result(Mapping[str, NDArray[Any]]):
 
     @property
     def geometry(self) -> str | None:
-        """The planned path as the library wrote it (CSV), if the scenario has a contour."""
+        """The planned path as the library wrote it.
+
+        Returns
+        -------
+        str or None
+            CSV; None if the scenario has no contour.
+        """
         return None if self.planned is None else self.planned.text()
 
     def contour(self, progress: Callable[[float], None] = lambda share: None) -> "ContourResult":

@@ -45,14 +45,8 @@ def assign(
     decrease, they are the result. Stretches where they do are solved by dynamic programming, each
     by itself; if what is found there does not fit what is around it, both become one stretch.
     """
-    count, wrong = len(first), "candidates must not be empty nor decrease with time"
-    low, high, own = (room(count, np.int32, first) for _ in range(3))
-    for some in blocks(count, first, last, low, high):
-        low[some], high[some] = first[some], last[some]
-        if (first[some] > last[some]).any():
-            raise ValueError(wrong)
-        if any(_falls(x[max(0, some.start - 1) : some.stop]) for x in (first, last)):
-            raise ValueError(wrong)
+    count = len(first)
+    low, high, own = _rooms(first, last)
     for some in blocks(count, points, low, high):
         several = some.start + np.flatnonzero(low[some] < high[some])
         if len(several):
@@ -63,13 +57,7 @@ def assign(
         return low
     alone, solved = None, np.zeros(len(low), dtype=bool)
     while True:
-        least = high[-1]
-        for some in reversed(list(blocks(count, high, own))):
-            back = high[some][::-1]
-            np.minimum.accumulate(np.minimum(back, least), out=own[some][::-1])
-            least = own[some.start]
-            for array in (high, own):
-                forget(array)
+        _from_behind(high, own)
         bad, most = np.empty(count, dtype=bool), low[0]
         for some in blocks(count, low, high, own):
             upto = np.maximum.accumulate(np.maximum(low[some], most))
@@ -88,6 +76,30 @@ def assign(
                 part = places(points, slice(a, b))
                 low[a:b] = high[a:b] = _solved(part, path, candidates, alone[a:b])
                 solved[a:b] = True
+
+
+def _rooms(first: Index, last: Index) -> tuple[Index, Index, Index]:
+    """Copies of candidates, which must not decrease nor be empty, and room for a result."""
+    count, wrong = len(first), "candidates must not be empty nor decrease with time"
+    low, high, own = (room(count, np.int32, first) for _ in range(3))
+    for some in blocks(count, first, last, low, high):
+        low[some], high[some] = first[some], last[some]
+        if (first[some] > last[some]).any():
+            raise ValueError(wrong)
+        if any(_falls(x[max(0, some.start - 1) : some.stop]) for x in (first, last)):
+            raise ValueError(wrong)
+    return low, high, own
+
+
+def _from_behind(high: Index, own: Index) -> None:
+    """Fill in the least of all values from each on."""
+    least = high[-1]
+    for some in reversed(list(blocks(len(high), high, own))):
+        back = high[some][::-1]
+        np.minimum.accumulate(np.minimum(back, least), out=own[some][::-1])
+        least = own[some.start]
+        for array in (high, own):
+            forget(array)
 
 
 def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]) -> Any:

@@ -170,15 +170,25 @@ class Program:
 
     @property
     def files(self) -> dict[str, str]:
-        """Texts of the files that it calls, by their names without ending."""
+        """Texts of the files that it calls.
+
+        Returns
+        -------
+        dict of str to str
+            By their names without ending.
+        """
         return {n: t.decode(errors="replace") for n, t in self._texts.of.items() if n}
 
     @cached_property
     def commands(self) -> np.ndarray:
-        """All its commands, which take 0.4 kB each; `blocks` passes them one block after another.
+        """All its commands.
 
-        Structured, a row each; the names of its fields are those of ``commands.dtype``, places in
-        machine coordinates [mm], feeds [mm/s], dwells [s].
+        Returns
+        -------
+        ndarray
+            Structured, a row each of 0.4 kB; the names of its fields are those of
+            ``commands.dtype``, places in machine coordinates [mm], feeds [mm/s], dwells [s].
+            `blocks` passes them without holding all.
         """
         raw = [rows.view(np.uint8) for rows in self._read()]
         return np.concatenate(raw).view(dtype("gcode_command"))
@@ -188,12 +198,12 @@ class Program:
         return f"<Program: {len(self.commands)} commands, {faults} faults>"
 
     def blocks(self) -> Iterator[np.ndarray]:
-        """Its commands in blocks, one at least, which are read anew each time.
+        """Its commands in blocks, which are read anew each time.
 
         Yields
         ------
         ndarray
-            As `commands`, the next ones; only an empty program has an empty block.
+            As `commands`, the next ones; only an empty program has an empty block, one.
         """
         if "commands" in self.__dict__:
             every = range(0, max(1, len(self.commands)), ROOM)
@@ -247,18 +257,29 @@ class Program:
         self._driven(places)
         return places
 
-    def drive(self, places: np.ndarray | None = None) -> "Drive":
-        """A machine that stands before the program; `places` gets where the tool is."""
-        return Drive(self._reader, places)
+    def drive(self, places: np.ndarray | None = None) -> "ProgramDrive":
+        """A machine that stands before the program.
 
-    def _driven(self, places: np.ndarray | None) -> "Drive":
+        Parameters
+        ----------
+        places : ndarray, optional
+            (n, 6) room for where the tool is at the end of each period [mm].
+
+        Returns
+        -------
+        ProgramDrive
+            It takes the program's blocks.
+        """
+        return ProgramDrive(self._reader, places)
+
+    def _driven(self, places: np.ndarray | None) -> "ProgramDrive":
         drive = self.drive(places)
         for rows, last in marked(self.blocks()):
             drive.take(rows, last)
         return drive
 
 
-class Drive:
+class ProgramDrive:
     """A machine that drives the commands of a program, which it gets in blocks."""
 
     def __init__(self, reader: Struct, places: np.ndarray | None = None) -> None:
@@ -274,7 +295,7 @@ class Drive:
         return self._room[: self._count]
 
     def take(self, rows: np.ndarray, last: bool) -> None:
-        """Drive the next commands, as far as they alone tell the way."""
+        """ProgramDrive the next commands, as far as they alone tell the way."""
         self._count += len(rows)
         if self._count > len(self._room):
             self._room = np.append(self._room, np.zeros(len(self._room)))

@@ -20,13 +20,8 @@ CELL, CELL_GROWS, GROWS = 1.0, 4.0, 1.5
 class DrawnStrokes:
     """Strokes that draw a program.
 
-    Attributes
-    ----------
-    strokes : list of Stroke
-    within : float
-        The most that they are off the path [mm]; 0 where nothing is left out.
-    every : int
-        One of so many pairs of strokes is there.
+    They are off the path by `within` at most [mm], 0 where nothing is left out; of `every` pairs of
+    strokes one is there.
     """
 
     def __init__(self, program: Program, summary: Summary) -> None:
