@@ -22,6 +22,11 @@ struct gcode_reader {
     struct ring ring;
     struct lookahead_mean mean;
     struct curve_plan curve;
+    struct gcode_drive {
+        int64_t commands, periods; /* of all that were given; that have passed */
+        double left;               /* [s] of the period */
+        bool amid;                 /* the last call stopped within a period */
+    } drive;
 };
 
 #define OPTION_IN(m, name, unit, ...) ONE_IN(gcode_reader, m, name, unit, __VA_ARGS__)
@@ -207,55 +212,93 @@ void binding_gcode_check(struct gcode_reader *g, struct fault_report *r, int32_t
     binding_reports(&all, r, count);
 }
 
-/* Move commands into the ring and number them. Returns how many have been taken so far. */
-static int64_t fill(struct gcode_reader *g, struct command *c, int64_t taken, int64_t count)
+/* Stand before the first command, as binding_gcode_time begins. */
+void binding_gcode_stand(struct gcode_reader *g)
 {
-    for (; taken < count && !ring_full(&g->ring); taken++) {
-        c[taken].index = command_lasts(&c[taken]) ? (int32_t)(taken + 1) : 0;
-        ring_push(&g->ring, &c[taken]);
-    }
-    return taken;
-}
-
-/* Interpolate the commands as the machine would, with stops and waits skipped. Gives the time for
- * which each command was the latest one begun [s] and, unless NULL, the position at the end of each
- * period [mm]. Returns the number of periods. */
-int64_t binding_gcode_time(struct gcode_reader *g, struct command *c, int64_t count,
-                           double *seconds, double (*places)[AXES])
-{
-    int64_t taken = 0, periods = 0;
-
-    memset(seconds, 0, (size_t)count * sizeof *seconds);
+    memset(&g->drive, 0, sizeof g->drive);
     ring_clear(&g->ring);
     memset(&g->mean, 0, sizeof g->mean);
     trajectory_start(&g->trajectory);
     trajectory_stand(&g->trajectory, &g->program.machine, g->point);
     g->trajectory.override[0] = g->trajectory.override[1] = 1.0;
+}
+
+/* Commands of one call, and how many of them have been taken. */
+struct gcode_block {
+    struct command *c;
+    int64_t count, taken;
+    bool last; /* no others follow */
+};
+
+/* Move commands into the ring and number them. Returns whether it is as full as it can be. */
+static bool fill(struct gcode_reader *g, struct gcode_block *b)
+{
+    for (; b->taken < b->count && !ring_full(&g->ring); b->taken++) {
+        struct command *c = &b->c[b->taken];
+        g->drive.commands++;
+        c->index = command_lasts(c) ? (int32_t)g->drive.commands : 0;
+        ring_push(&g->ring, c);
+    }
+    return b->last || ring_full(&g->ring);
+}
+
+/* Interpolate to the end of a period. Returns whether the commands reached so far. */
+static bool drive_on(struct gcode_reader *g, struct gcode_block *b,
+                     const struct trajectory_beside *beside)
+{
+    struct gcode_drive *d = &g->drive;
+
+    if (!d->amid) {
+        d->left = g->period;
+    }
+    do {
+        if (!d->amid) {
+            if (!fill(g, b)) {
+                return false;
+            }
+            g->curve.last = b->last && b->taken == b->count;
+            d->left = trajectory_advance(&g->trajectory, beside, d->left);
+        }
+        d->amid = true;
+        if (!fill(g, b)) {
+            return false;
+        }
+        d->amid = false;
+    } while (d->left > 0.0 && !trajectory_resting(&g->trajectory, &g->ring));
+    return true;
+}
+
+/* Interpolate commands as the machine would, with stops and waits skipped: all of a program, or
+ * its next ones, of which the last call has one at least. `seconds` has a number for each command
+ * of all calls, to which the time is added for which it was the latest one begun [s]. Unless NULL,
+ * `places` gets the position at the end of each period from the first on [mm]. Returns the number
+ * of periods. */
+int64_t binding_gcode_time(struct gcode_reader *g, struct command *c, int64_t count, int32_t last,
+                           double *seconds, double (*places)[AXES])
+{
     const struct trajectory_beside beside = { &g->ring, &g->mean, &g->curve };
-    for (;;) {
+    struct gcode_block block = { c, count, 0, last != 0 };
+    struct gcode_drive *d = &g->drive;
+
+    while (drive_on(g, &block, &beside)) {
         struct point point;
-        double left = g->period;
-        do {
-            taken = fill(g, c, taken, count);
-            g->curve.last = taken == count;
-            left = trajectory_advance(&g->trajectory, &beside, left);
-            taken = fill(g, c, taken, count);
-        } while (left > 0.0 && !trajectory_resting(&g->trajectory, &g->ring));
         trajectory_point(&g->trajectory, &beside, &g->program.machine, g->period, &point);
         trajectory_accept(&g->trajectory, &beside, &point);
         if (places) {
-            memcpy(places[periods], point.place, sizeof point.place);
+            memcpy(places[d->periods], point.place, sizeof point.place);
         }
-        periods++;
+        d->periods++;
         if (g->trajectory.started > 0) {
-            seconds[g->trajectory.started - 1] += g->period - left;
+            seconds[g->trajectory.started - 1] += g->period - d->left;
         }
         if (trajectory_waits(&g->trajectory, &g->ring)) {
             trajectory_continue(&g->trajectory);
-        } else if (taken == count && trajectory_resting(&g->trajectory, &g->ring)) {
-            return periods;
+        } else if (block.last && block.taken == count
+                   && trajectory_resting(&g->trajectory, &g->ring)) {
+            break;
         }
     }
+    return d->periods;
 }
 
 /* Points on the paths of commands [mm]: for command i the points from[i] .. from[i + 1] - 1, evenly
@@ -273,10 +316,18 @@ void binding_gcode_points(const struct command *c, int64_t count, const int64_t 
     }
 }
 
-/* Smallest and largest coordinates of a command's path [mm], exact. */
-void binding_gcode_extent(const struct command *c, double low[AXES], double high[AXES])
+/* Smallest and largest coordinates of the paths of commands [mm], exact. */
+void binding_gcode_extents(const struct command *c, int64_t count, double (*low)[AXES],
+                           double (*high)[AXES])
 {
-    for (int i = 0; i < AXES; i++) {
-        path_extent(&c->path, i, 0.0, c->path.length, &low[i], &high[i]);
+    for (int64_t k = 0; k < count; k++) {
+        const struct path *p = &c[k].path;
+        for (int i = 0; i < AXES; i++) {
+            low[k][i] = p->start[i] < p->end[i] ? p->start[i] : p->end[i];
+            high[k][i] = p->start[i] > p->end[i] ? p->start[i] : p->end[i];
+            if (p->arc || p->cubic) {
+                path_extent(p, i, 0.0, p->length, &low[k][i], &high[k][i]);
+            }
+        }
     }
 }

@@ -22,6 +22,7 @@ import figures
 import growth
 import identifying
 import kinematics
+import long_page
 import long_run
 import network
 import numpy as np
@@ -363,7 +364,8 @@ if __name__ == "__main__":
     elif "--peers" in sys.argv:
         peers.main(RENEW)
     elif "--long" in sys.argv:
-        figures.show(long_run.figures_of_long_work(), None, figures.Kept.SHOWN)
+        long = [*long_page.figures_of_long_page(), *long_run.figures_of_long_work()]
+        figures.show(long, None, figures.Kept.SHOWN)
     else:
         one, more = figures.Kept.ONE_ROUND, figures.Kept.SHOWN
         main(one if QUICK else figures.Kept.NEW if RENEW else more)

@@ -112,8 +112,9 @@ def causes(folder: Path) -> str:
 def program() -> str:
     """A program on a machine: where its time goes, too, and what each limit costs."""
     from motionfmu.analysis.cycle_time import planned, what_if
-    from motionfmu.analysis.gcode import read, strokes, summarise
+    from motionfmu.analysis.gcode import read, summarise
     from motionfmu.report.jobs import gcode_page
+    from motionfmu.report.jobs.drawn_strokes import DrawnStrokes
     from motionfmu.run import machine
     from motionfmu.run.program_reading import reading_on
 
@@ -123,9 +124,9 @@ def program() -> str:
     assert not found.faults
     scenario = machine("mill3").scenario(file)
     way = planned(scenario)
-    drawn = list(strokes(found))
-    both = way, what_if(scenario, way)
-    return gcode_page.page_text(long_name("circle"), found, summarise(found), drawn, both)
+    figures = summarise(found)
+    drawn, both = DrawnStrokes(found, figures), (way, what_if(scenario, way))
+    return gcode_page.page_text(long_name("circle"), found, figures, drawn, both)
 
 
 def on_a_machine(stop: float) -> str:

@@ -18,6 +18,10 @@ from motionfmu.base.errors import InputError
 
 # Rows of a block; a block of six numbers each is 6 MB.
 ROWS = 1 << 17
+# Arrays of so many bytes and more are made in a file.
+LARGE = 1 << 24
+# The folder of each such file that is in use.
+_ROOMS: "weakref.WeakKeyDictionary[mmap.mmap, Path]" = weakref.WeakKeyDictionary()
 TIME, ENDING = "time", ".npy"
 
 
@@ -170,6 +174,38 @@ def forget(array: Any) -> None:
         base = inner
     if isinstance(base, mmap.mmap) and hasattr(base, "madvise"):
         base.madvise(mmap.MADV_DONTNEED)
+
+
+def room(count: int, dtype: Any, beside: Any) -> NDArray[Any]:
+    """An array (n,) to be filled; a large one that is made of a mapped file is mapped, too.
+
+    Its file has no name and stands beside that one. Whoever passes the array in blocks lets its
+    pages go by `forget`, as those of a recorded signal.
+    """
+    kind = np.dtype(dtype)
+    size = count * kind.itemsize
+    folder = _folder(beside) if size >= LARGE else None
+    if folder is None:
+        return np.empty(count, kind)
+    try:
+        with tempfile.TemporaryFile(dir=folder) as file:
+            os.posix_fallocate(file.fileno(), 0, size)
+            mapped = mmap.mmap(file.fileno(), size)
+        _ROOMS[mapped] = folder
+        return np.ndarray((count,), kind, mapped)
+    except (OSError, AttributeError):  # a full disk, another system
+        return np.empty(count, kind)
+
+
+def _folder(array: Any) -> Path | None:
+    """The folder of the file in which an array is mapped, or of which `room` made it."""
+    while array is not None:
+        if isinstance(array, mmap.mmap):
+            return _ROOMS.get(array)
+        if isinstance(array, np.memmap) and array.filename is not None:
+            return Path(array.filename).parent
+        array = getattr(array, "base", None)
+    return None
 
 
 def write(folder: Path, signals: Mapping[str, NDArray[Any]], time: NDArray[Any]) -> None:

@@ -38,7 +38,7 @@ from motionfmu.cli.drawing_choices import (
 
 if TYPE_CHECKING:
     from motionfmu.analysis.cycle_time import CommandedMotion, Lifted
-    from motionfmu.analysis.gcode import Fault, Program
+    from motionfmu.analysis.gcode import Fault, Program, Summary
     from motionfmu.run.program_translation import MachineProgram
 
 Planned = tuple["CommandedMotion", list["Lifted"]]
@@ -88,7 +88,7 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
     With --machine its speeds, ramps, travel, tools and words count, where no option says other, and
     the time is that of its controller's planner, which tells where it goes.
     """
-    from motionfmu.analysis.gcode import read
+    from motionfmu.analysis.gcode import read, summarise
     from motionfmu.analysis.gcode.program import text_in
 
     given = settings(set_)
@@ -109,11 +109,11 @@ def gcode(  # noqa: PLR0913  (each is an option of the command)
         good = good and not program.faults
         tables = {"set": given} | ({"drawing": drawing} if drawing else {})
         planned = None if program.faults else _planned(file, machine, tables)
-        told[str(file)] = found = _numbers(program, planned)
+        told[str(file)] = found = _numbers(program, summary := summarise(program), planned)
         found |= _of_drawing(made)
         if not as_json:
             target = folder / f"{file.stem}.gcode" if folder else results(file.stem, "gcode")
-            _show(file, made, (program, planned), found, target)
+            _show(file, made, (program, summary, planned), found, target)
     if as_json:
         give(json.dumps(told, indent=1, allow_nan=False))
     if not good:
@@ -221,15 +221,13 @@ def _tell_plan(found: Planned) -> None:
     out.print(saved)
 
 
-def _numbers(program: "Program", planned: Planned | None) -> dict[str, Any]:
+def _numbers(program: "Program", summary: "Summary", planned: Planned | None) -> dict[str, Any]:
     from dataclasses import asdict
-
-    from motionfmu.analysis.gcode import summarise
 
     faults = [asdict(f) for f in program.faults]
     notes = [asdict(n) for n in program.notes]
     found = {"faults": faults, "more": program.more, "notes": notes}
-    found |= summarise(program).numbers()
+    found |= summary.numbers()
     if planned is not None:
         plan, lifted = planned
         found |= plan.numbers() | {"what_if": [asdict(x) for x in lifted]}
@@ -247,13 +245,13 @@ def _fault_places(made: Path, program: "Program") -> list[str]:
 def _show(
     file: Path,
     made: "MachineProgram",
-    read: tuple["Program", Planned | None],
+    read: tuple["Program", "Summary", Planned | None],
     found: dict[str, Any],
     target: Path,
 ) -> None:
     """Print what was found and write the report."""
-    from motionfmu.analysis.gcode import strokes, summarise
     from motionfmu.report import result_folder
+    from motionfmu.report.jobs.drawn_strokes import DrawnStrokes
     from motionfmu.report.jobs.gcode_page import (
         clock,
         fault_lines,
@@ -264,7 +262,7 @@ def _show(
     )
     from motionfmu.run.translated_places import in_source
 
-    program, planned = read
+    program, s, planned = read
     drawn = made.file != file
     told = [f"note: {note}" for note in made.told]
     told += _fault_places(made.file, program) if drawn else fault_lines(str(file), program)
@@ -275,7 +273,6 @@ def _show(
         out.print(text, markup=False, soft_wrap=True)
     if program.faults:
         return
-    s = summarise(program)
     time = s.time if planned is None else planned[0].time
     out.print(f"[bold]{file}[/]  {clock(time)}, {s.commands} commands, {s.stops} stops")
     low, high = s.feeds
@@ -291,11 +288,11 @@ def _show(
     out.print(table)
     if planned is not None:
         _tell_plan(planned)
-    path = list(strokes(program))
+    path = DrawnStrokes(program, s)
     result_folder.usable(target)
     with result_folder.whole(target) as part:
         if not (without := missing("report")):
-            write_path(file.stem, path, part)
+            write_path(file.stem, path.strokes, part)
         page = page_text(file.stem, program, s, path, planned)
         result_folder.write_result(part, page, found)
     if without:

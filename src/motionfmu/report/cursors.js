@@ -61,8 +61,6 @@ class Measured {
   constructor(plot, cursors) {
     Object.assign(this, { plot, cursors, place: plot.place });
     this.unit = unitOf(plot.layout.xaxis);
-    this.finest = plot.traces.map((own) => own.curve.time)
-      .reduce((a, b) => (b.length > a.length ? b : a));
     this.snapped = this.snapped.bind(this);
     const frame = this.place.parentElement;
     this.button = made(frame, "button", { type: "button", class: "measure", "aria-pressed": "false",
@@ -80,17 +78,23 @@ class Measured {
 
   get view() { return this.plot.view; }
 
+  // Times of the finest samples about a time.
+  finest(t) {
+    return this.plot.traces.map((own) => inView(own.curve, t, t).time)
+      .reduce((a, b) => (b.length > a.length ? b : a));
+  }
+
   // The nearest time at which there is a sample, within the run.
   snapped(t) {
-    const time = this.finest, k = Math.min(Math.max(upTo(time, t), 1), time.length - 1);
+    const time = this.finest(t), k = Math.min(Math.max(upTo(time, t), 1), time.length - 1);
     if (time.length < 2) return time[0];
     return t - time[k - 1] <= time[k] - t ? time[k - 1] : time[k];
   }
 
   // So many samples on.
   stepped(t, count) {
-    const k = upTo(this.finest, t + near(t)) - 1 + count;
-    return this.finest[Math.min(Math.max(k, 0), this.finest.length - 1)];
+    const time = this.finest(t), k = upTo(time, t + near(t)) - 1 + count;
+    return time[Math.min(Math.max(k, 0), time.length - 1)];
   }
 
   line(name, k) {
@@ -154,7 +158,8 @@ class Measured {
       const unit = unitOf(axis), title = unit ? ` [${unit}]` : "";
       const swatch = made(name, "i", { class: "swatch" });
       name.append(withoutMarks(trace.name || axis?.title?.text || "") + title);
-      if (!packed.all) made(name, "div", { class: "sub" }, "peaks of a longer recording");
+      if (!packed.all) made(name, "div", { class: "sub" }, curve.more
+        ? "peaks; zoomed in, all samples" : "peaks of a longer recording");
       const cells = COLUMNS.slice(1).map(() => made(tr, "td", { class: "n" }));
       return { tr, cells, curve, k, swatch };
     });

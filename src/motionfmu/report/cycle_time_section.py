@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.cycle_time import CAUSES, CommandedMotion, Lifted, Share
 from motionfmu.base import units
+from motionfmu.base.columns import forget
 from motionfmu.report.diagram import Diagram, path_diagram, path_lines
 from motionfmu.report.html_page import Page
 from motionfmu.report.html_tables import table
@@ -114,6 +115,7 @@ def path_by_cause(plan: CommandedMotion) -> Diagram:
                 words = [f"{r['speed']:.4g} mm/s" for r in rows[kept]]
             told = list(np.insert(np.array(words, object), gaps, ""))
         lines.append(path_lines(points, name=name, color=COLORS[name], width=2.2, hover=told))
+    forget(plan.rows)
     return path_diagram("".join("XYZ"[k] for k in shown), lines, HEIGHT)
 
 

@@ -12,9 +12,10 @@ from motionfmu.analysis.contour.circles import plane_axes
 from motionfmu.analysis.contour.geometry import norms
 from motionfmu.analysis.contour.order import distinct
 from motionfmu.analysis.contour.path import Path, outline
-from motionfmu.analysis.contour.scaled_values import blocks, places
+from motionfmu.analysis.contour.scaled_values import blocks, picked, places
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.iso9283.simplify import simplified
+from motionfmu.base.columns import forget, room
 from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.run.decimate import peaks_of
 
@@ -75,19 +76,23 @@ def draw(contour: ContourResult) -> ErrorPath:
     errors = contour.error.p95, contour.error.max
     magnify, end = magnification(errors, size, reach), scale_end(errors)
     kept, whole = _choose(contour, magnify, end)
-    foot = track.feet(kept) @ basis.T
-    gap = np.where(whole[:, None], places(contour.run.actual, kept) @ basis.T - foot, np.nan)
-    error = track.distance[kept]
+    actual, along = contour.run.actual, track.along
+    foot = picked(track.feet, kept, track.segment, along) @ basis.T
+    place = picked(lambda rows: places(actual, rows), kept, actual)
+    gap = np.where(whole[:, None], place @ basis.T - foot, np.nan)
+    error = picked(track.distance.__getitem__, kept, track.distance)
+    right = None if track.right is None else picked(track.right.__getitem__, kept, track.right)
+    time = contour.run.time
     return ErrorPath(
         names=tuple(_name(b) for b in basis),
         path=cutting,
         rapids=_outlined(path, np.flatnonzero(~path.cut), basis),
         foot=foot,
         gap=gap,
-        error=error if track.right is None else np.where(track.right[kept], -error, error),
-        time=contour.run.time[kept],
-        line=path.lines[track.segment[kept]],
-        hairs=_even(track.along[kept], ~np.isnan(gap[:, 0])),
+        error=error if right is None else np.where(right, -error, error),
+        time=picked(time.__getitem__, kept, time),
+        line=path.lines[picked(track.segment.__getitem__, kept, track.segment)],
+        hairs=_even(picked(along.__getitem__, kept, along), ~np.isnan(gap[:, 0])),
         magnify=magnify,
         end=end,
         outliers=_outliers(np.where(whole, np.abs(error), 0.0), end),
@@ -100,11 +105,18 @@ def _choose(contour: ContourResult, magnify: float, end: float) -> tuple[Index, 
     Where the curve has to be interrupted, the next sample is there but not drawn.
     """
     track, actual = contour.track, contour.run.actual
-    moved = np.empty(int(contour.cutting.sum()), dtype=np.int32)
+
+    def distances(first: int, last: int) -> Array:
+        for array in (moved, track.distance):
+            forget(array)
+        return track.distance[moved[first:last]][:, None]
+
+    moved = room(int(contour.cutting.sum()), np.int32, track.distance)
     count, joined, length, last = 0, 0, 0.0, None
     ways, joints = [np.zeros(1)], [np.zeros(0, dtype=np.int64)]
     stride = 1 + len(moved) // WAYS
-    for own in blocks(len(contour.cutting), actual):
+    shared = track.segment, track.along, track.distance, moved
+    for own in blocks(len(contour.cutting), actual, *shared):
         rows = own.start + np.flatnonzero(contour.cutting[own])
         if not len(rows):
             continue
@@ -126,15 +138,20 @@ def _choose(contour: ContourResult, magnify: float, end: float) -> tuple[Index, 
         count, last = count + len(rows), (shown[-1:], segment[-1:])
     even = stride * np.searchsorted(np.concatenate(ways), np.linspace(0.0, length, POINTS))
     parts = [np.minimum(even, len(moved) - 1)]
-    parts.append(peaks_of(len(moved), lambda a, b: track.distance[moved[a:b]][:, None], BUCKETS))
+    parts.append(peaks_of(len(moved), distances, BUCKETS))
     if joined <= JOINTS_MAX:
         parts += [*joints, *(j - 1 for j in joints)]
     chosen = distinct(np.concatenate(parts))
     rows = moved[chosen]
-    gap = places(actual, rows) - track.feet(rows)
+    foot = picked(track.feet, rows, track.segment, track.along)
+    gap = picked(lambda some: places(actual, some), rows, actual) - foot
     size = norms(gap)
     turned = norms(gap[1:] - gap[:-1]) > JUMP * np.maximum(size[1:], size[:-1])
-    corner = turned & (np.diff(track.segment[rows]) > 0) & (np.diff(chosen) == 1)
+    corner = (
+        turned
+        & (np.diff(picked(track.segment.__getitem__, rows, track.segment)) > 0)
+        & (np.diff(chosen) == 1)
+    )
     pause = np.diff(rows - chosen) > 0  # samples between that do not cut
     breaks = np.flatnonzero(corner | pause) + 1
     kept = np.insert(rows, breaks, rows[breaks])

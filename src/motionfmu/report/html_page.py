@@ -13,6 +13,7 @@ from typing import Any
 from motionfmu.report.diagram import Diagram
 from motionfmu.report.plotly_figure import plotly_figure
 from motionfmu.report.plotly_script import packed_script, packed_text
+from motionfmu.report.sample_files import SampleFiles
 from motionfmu.report.samples import Samples, bits, clock
 from motionfmu.report.style import dark_colors
 from motionfmu.run.checks import Verdict, tally
@@ -40,7 +41,8 @@ class PageFrame:
 class Page:
     """The sections and plots of a page, in the order in which they are added."""
 
-    def __init__(self) -> None:
+    def __init__(self, beside: SampleFiles | None = None) -> None:
+        self.beside = beside
         self.sections: list[str] = []
         self.contents: list[str] = []  # titles of the sections, as HTML
         self.plots: list[dict[str, Any]] = []
@@ -92,6 +94,8 @@ class Page:
         while True:
             text = packed_text(json.dumps(self._drawn(most) | data, separators=(",", ":")), QUICK)
             if len(text) <= room or most <= FEWEST:
+                if self.beside is not None:
+                    self.beside.write()
                 return text
             most //= 2
 
@@ -101,7 +105,7 @@ class Page:
         known: dict[bytes, int] = {}
         figures = []
         for plot in self.plots:
-            traces = [_trace(t, most, times, known) for t in plot["data"]]
+            traces = [_trace(t, (most, self.beside), times, known) for t in plot["data"]]
             figures.append(plot | {"data": traces})
         return {"figures": figures, "times": times}
 
@@ -114,12 +118,16 @@ def _script(name: str) -> str:
 
 
 def _trace(
-    drawn: dict[str, Any], most: int, times: list[dict[str, Any]], known: dict[bytes, int]
+    drawn: dict[str, Any],
+    kept: tuple[int, SampleFiles | None],
+    times: list[dict[str, Any]],
+    known: dict[bytes, int],
 ) -> dict[str, Any]:
     """A trace as the page's script takes it: samples packed, times named."""
     whole: Samples | None = drawn.get("samples")
     if whole is None:
         return drawn
+    most, beside = kept
     few = whole.few(most)
     key = sha256(few.time.tobytes()).digest()
     if key not in known:
@@ -127,6 +135,8 @@ def _trace(
         times.append(clock(few.time))
     samples = {"time": known[key], "values": bits(few.values)}
     samples |= {"steps": few.steps, "dots": few.dots, "all": few.all}
+    if beside is not None and (more := beside.more(few)) is not None:
+        samples["more"] = more
     if few.lines is not None:
         samples["lines"] = bits(few.lines)
     return drawn | {"samples": samples}

@@ -90,7 +90,8 @@ class Plot {
     for (const own of this.traces) {
       const { trace, packed } = own;
       own.curve = { time: await own.clock[packed.time], values: await unwoven(packed.values),
-        lines: packed.lines && await unwoven(packed.lines), steps: packed.steps, dots: packed.dots };
+        lines: packed.lines && await unwoven(packed.lines), steps: packed.steps, dots: packed.dots,
+        more: packed.more };
       own.band = this.data.push({ type: "scatter", mode: "lines", fill: "toself", x: [], y: [],
         fillcolor: clear(trace.line.color, 0.2), line: { color: clear(trace.line.color, 0.6),
           width: 0.8 }, hoverinfo: "skip", showlegend: false, legendgroup: `${own.k}`,
@@ -115,7 +116,7 @@ class Plot {
       const range = change["xaxis.range"] ?? ("xaxis.range[0]" in change
         ? [change["xaxis.range[0]"], change["xaxis.range[1]"]] : null);
       if (change["xaxis.autorange"]) Plotly.relayout(this.place, { "xaxis.range": [...this.span] });
-      else if (range) { this.refine(range); this.moved?.(range); }
+      else if (range) { this.refined = this.refine(range); this.moved?.(range); }
     });
   }
 
@@ -133,6 +134,15 @@ class Plot {
 
   // Draw what is between two times; the latest of many calls counts.
   async refine([from, to]) {
+    const turn = this.turn = (this.turn ?? 0) + 1, beside = BESIDE * (to - from);
+    const long = this.traces.map((own) => own.curve).filter((curve) => curve.more);
+    const found = await Promise.all(long.map((c) => allOf(c, from - beside, to + beside)));
+    if (turn !== this.turn) return;
+    long.forEach((curve, k) => { curve.all = found[k] === curve ? null : found[k]; });
+    await this.draw(from, to);
+  }
+
+  async draw(from, to) {
     const beside = BESIDE * (to - from), columns = Math.max(200, this.place.clientWidth);
     const ends = [Math.max(this.span[0], from - beside), Math.min(this.span[1], to + beside)];
     const share = Math.max(1, (ends[1] - ends[0]) / (to - from || 1));
@@ -142,7 +152,7 @@ class Plot {
     for (const { trace, k, band, curve } of this.traces) {
       const axis = this.layout["yaxis" + (trace.yaxis ?? "y").slice(1)];
       const height = axis.range ? axis.range[1] - axis.range[0] : 0;
-      const shown = drawn(curve, ...ends, Math.round(columns * share), height);
+      const shown = drawn(inView(curve, from, to), ...ends, Math.round(columns * share), height);
       const dotted = curve.dots && !shown.band;
       bands ||= shown.band !== null;
       which.push(k, band);

@@ -82,7 +82,7 @@ def save(
         if kept.signals:
             told("signals")
             write(part / SIGNALS, result.signals, result.time)
-        from motionfmu.report import write_report
+        from motionfmu.report.run_page import ReportFiles, write_files
         from motionfmu.report.run_summary import summary_of
 
         told("analyses")
@@ -103,7 +103,8 @@ def save(
             way = track(contour)
             write(part / TRACK, way, way.pop("time"))
         told("report")
-        shown = write_report(result, contour, part, ran, kept.pictures).name
+        wanted = ReportFiles(kept.pictures, kept.signals)
+        shown = write_files(result, contour, part, ran, wanted).name
     return folder.resolve() / shown
 
 

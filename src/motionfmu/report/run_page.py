@@ -1,6 +1,7 @@
 """The report as one HTML page that needs no network."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
@@ -28,6 +29,7 @@ from motionfmu.report.path_chart import outlier_words, path_chart, path_titles
 from motionfmu.report.polar_chart import polar_chart
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary, as_written, summary_of
+from motionfmu.report.sample_files import SampleFiles
 from motionfmu.report.signal_chart import add_charts, write_charts
 from motionfmu.report.signal_page import (
     add_performance,
@@ -65,6 +67,14 @@ FOOTER = (
 )
 
 
+@dataclass(frozen=True)
+class ReportFiles:
+    """The files that stand beside the page of a run."""
+
+    pictures: bool = False
+    samples: bool = True  # of curves of more than a page can hold
+
+
 def write_report(
     result: ReportInput,
     contour: ContourResult | None,
@@ -98,24 +108,35 @@ def write_report(
     OSError
         The folder cannot be written.
     """
-    folder = Path(folder)
+    return write_files(result, contour, Path(folder), ran, ReportFiles(pictures))
+
+
+def write_files(
+    result: ReportInput,
+    contour: ContourResult | None,
+    folder: Path,
+    ran: RunSummary | None,
+    wanted: ReportFiles,
+) -> Path:
+    """Write the page of a run, with the files that are wanted beside it."""
+    beside = SampleFiles(folder) if wanted.samples else None
     charts = as_written(result, result.figures())
     ran = ran or summary_of(result, contour)
     if contour is None:
-        page = plain_text(result, charts, ran)
+        page = plain_text(result, charts, ran, beside)
         folder.mkdir(parents=True, exist_ok=True)
     else:
         drawing = draw(contour)
-        page = page_text((result, ran), contour, drawing, charts)
+        page = page_text((result, ran), contour, drawing, charts, beside)
         numbers = json_of(contour.numbers())
         folder.mkdir(parents=True, exist_ok=True)
-        if pictures:
+        if wanted.pictures:
             from motionfmu.report.matplotlib_figure import write_picture
 
             titles = path_titles(result.name, contour, drawing)
             write_picture(folder / "path", *titles, path_chart(drawing))
         (folder / NUMBERS).write_text(numbers + "\n", encoding="utf-8")
-    if pictures:
+    if wanted.pictures:
         write_charts(charts, folder)
         if result.resolver.document.body.iso9283 is not None and not result.no_iso9283:
             write_iso9283(result.name, result.iso9283(), folder)
@@ -128,10 +149,11 @@ def page_text(
     contour: ContourResult,
     drawing: ErrorPath,
     charts: Sequence[Chart],
+    beside: SampleFiles | None = None,
 ) -> str:
     """The whole HTML page of a run with a contour."""
     result, ran = run
-    page = Page()
+    page = Page(beside)
     page.sections.append(_cards(contour))
     _add_path(page, contour, drawing, result.scenario.document.controller_axes)
     add_verdict(page, result)

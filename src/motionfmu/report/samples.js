@@ -1,5 +1,5 @@
 "use strict";
-// Curves over time: all samples are in the page, what is in view is drawn.
+// Curves over time: all samples are in the page or beside it, what is in view is drawn.
 
 const GAP = -(2 ** 31);
 
@@ -42,10 +42,19 @@ function upTo(time, t) {
   return low;
 }
 
+// The samples of a curve that tell most of what is between two times.
+function inView(curve, from, to) {
+  const { all, time } = curve;
+  if (!all) return curve;
+  const [first, last] = [Math.max(from, time[0]), Math.min(to, time[time.length - 1])];
+  return first >= all.time[0] && last <= all.time[all.time.length - 1] ? all : curve;
+}
+
 const near = (t) => 1e-9 * Math.max(1, Math.abs(t));
 
 // A curve's value at a time: its sample there, else the one that holds, or between two.
-function valueAt({ time, values, steps, dots }, t) {
+function valueAt(curve, t) {
+  const { time, values, steps, dots } = inView(curve, t, t);
   const k = upTo(time, t + near(t)) - 1;
   if (k < 0 || t > time[time.length - 1] + near(t)) return NaN;
   if (steps || dots || time[k] >= t - near(t)) return values[k];
@@ -53,7 +62,8 @@ function valueAt({ time, values, steps, dots }, t) {
 }
 
 // Least, largest, mean and RMS of the samples between two times.
-function between({ time, values }, from, to) {
+function between(curve, from, to) {
+  const { time, values } = inView(curve, from, to);
   const found = { least: Infinity, largest: -Infinity, mean: NaN, rms: NaN };
   let count = 0, sum = 0, squares = 0;
   const last = upTo(time, to + near(to));
@@ -96,6 +106,55 @@ function binned({ time, values }, first, last, count) {
     if (c && !Number.isNaN(mean[c - 1])) found.drift += Math.abs(mean[c] - mean[c - 1]);
   }
   return found;
+}
+
+// Pieces of long curves are files beside the page, which are scripts, for a page from a disk may
+// read no others. So many of them are read for a view at most, and so many are kept.
+const VIEW_MOST = 8, PIECES_KEPT = 200;
+const pieces = new Map(), told = new Map();
+
+function piece(name, found) { told.get(name)?.(found); }
+
+function pieceOf(folder, name) {
+  const kept = pieces.get(name);
+  if (kept) { pieces.delete(name); pieces.set(name, kept); return kept; }
+  const read = new Promise((done, failed) => {
+    const script = document.createElement("script");
+    told.set(name, done);
+    script.onload = () => script.remove();
+    script.onerror = () => failed(new Error(`${folder}/${name}.js is not there`));
+    script.src = `${folder}/${name}.js`;
+    document.head.append(script);
+  }).then(async ({ time, values, lines }) => ({ time: await timesOf(time),
+    values: await unwoven(values), lines: lines && await unwoven(lines) }));
+  pieces.set(name, read);
+  if (pieces.size > PIECES_KEPT) pieces.delete(pieces.keys().next().value);
+  return read;
+}
+
+const joined = (parts) => {
+  const found = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
+  parts.reduce((at, part) => (found.set(part, at), at + part.length), 0);
+  return found;
+};
+
+// All samples of a long curve between two times; the curve as it is, where there are too many or
+// their files are not beside the page.
+async function allOf(curve, from, to) {
+  const { more } = curve;
+  if (!more) return curve;
+  const first = Math.max(0, upTo(more.begins, from) - 1), last = Math.max(1, upTo(more.begins, to));
+  if (last - first > VIEW_MOST) return curve;
+  try {
+    const names = Array.from({ length: last - first }, (_, k) => `${more.curve}.${first + k}`);
+    const parts = await Promise.all(names.map((name) => pieceOf(more.folder, name)));
+    const [time, values] = ["time", "values"].map((key) => joined(parts.map((part) => part[key])));
+    const lines = parts[0].lines && joined(parts.map((part) => part.lines));
+    return { ...curve, all: null, time, values, lines };
+  } catch {
+    curve.more = null; // a page that was sent alone
+    return curve;
+  }
 }
 
 // What is drawn of a curve from one time to another, in so many columns of the screen: every

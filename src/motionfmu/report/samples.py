@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.columns import forget
 from motionfmu.run.decimate import MOST, Read, at, few, reader
 
 LEVEL = 3  # of zlib: a third of the time of its usual one, 3 % larger
@@ -16,6 +17,15 @@ LEVEL = 3  # of zlib: a third of the time of its usual one, 3 % larger
 COARSE = 1e-6
 GAP = 1 << 31  # the number of steps, below 0, that stands for NaN
 EVEN = 1e-9  # [s] times that are so near to even ones are kept as start and step
+
+
+@dataclass(frozen=True)
+class SampleSource:
+    """A recording that is read block by block."""
+
+    time: NDArray[Any]  # (n,) increases
+    read: Read  # its values
+    lines: Read | None = None
 
 
 @dataclass(frozen=True)
@@ -28,6 +38,7 @@ class Samples:
     dots: bool = False  # single events, no line between them
     lines: NDArray[Any] | None = None  # (n,) lines of the program, which are shown beside the value
     all: bool = True  # none of the recorded samples are left out
+    source: SampleSource | None = None  # all of a recording that is too long for a page
 
     @classmethod
     def made(
@@ -44,7 +55,10 @@ class Samples:
             every = 0, len(time)
             return cls(time, read(*every), steps, lines=None if lines is None else lines(*every))
         said = None if lines is None else at(lines, kept)
-        return cls(time[kept], at(read, kept), steps, lines=said, all=False)
+        source = SampleSource(time, read, lines)
+        few_times = at(reader(time), kept)
+        forget(time)
+        return cls(few_times, at(read, kept), steps, lines=said, all=False, source=source)
 
     def few(self, most: int) -> "Samples":
         """The samples that a page holds: of more than so many the peaks."""
@@ -52,7 +66,7 @@ class Samples:
             return self
         lines = None if self.lines is None else reader(self.lines)
         made = Samples.made(self.time, reader(self.values), self.steps, lines, most)
-        return replace(made, dots=self.dots)
+        return replace(made, dots=self.dots, source=self.source)
 
 
 def bits(values: NDArray[Any]) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from motionfmu.report.limit_section import add_limit_use
 from motionfmu.report.record_section import add_record
 from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary
+from motionfmu.report.sample_files import SampleFiles
 from motionfmu.report.signal_chart import add_charts
 from motionfmu.report.signal_words import words_of
 from motionfmu.report.tool_section import add_tools
@@ -66,10 +67,15 @@ def add_verdict(page: Page, result: ReportInput) -> None:
         page.section("Expected as written", note, expected_table(result.checks, words))
 
 
-def plain_text(result: ReportInput, charts: Sequence[Chart], ran: RunSummary) -> str:
+def plain_text(
+    result: ReportInput,
+    charts: Sequence[Chart],
+    ran: RunSummary,
+    beside: SampleFiles | None = None,
+) -> str:
     """The whole HTML page of a run without a contour."""
     # If there are no figures, the recorded signals are shown.
-    page = Page()
+    page = Page(beside)
     add_verdict(page, result)
     add_summary(page, result, ran)
     if result.warnings:

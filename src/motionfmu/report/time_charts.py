@@ -8,7 +8,7 @@ import numpy as np
 
 from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.arcs import Array
-from motionfmu.base.columns import in_blocks
+from motionfmu.base.columns import forget, in_blocks
 from motionfmu.report.diagram import (
     Diagram,
     LevelMark,
@@ -49,10 +49,12 @@ def error_chart(contour: ContourResult) -> Diagram:
 
     def error(first: int, last: int) -> Array:
         own = slice(first, last)
+        forget(track.distance)
         value = np.where(contour.cutting[own], track.distance[own], np.nan) * factor
         return value if track.right is None else np.where(track.right[own], -value, value)
 
     def lines(first: int, last: int) -> Array:
+        forget(track.segment)
         return contour.run.path.lines[track.segment[first:last]]
 
     samples = Samples.made(time, error, lines=lines)

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.contour import ContourInput, ContourResult, Path, Trace, analyse
-from motionfmu.analysis.contour.planned_geometry import path_of_text
 from motionfmu.analysis.contour.pulse_path import PulsePaths
 from motionfmu.analysis.contour.scaled_values import ScaledValues
 from motionfmu.base import units
@@ -73,9 +72,9 @@ def contour_of(
 
 
 def _path(run: RunRecord, known: PulsePaths) -> Path:
-    if run.geometry is None:
+    if run.planned is None:
         raise ValueError("the library wrote no path")
-    return known.path(run.geometry, lambda text: path_of_text(text, "planned path"))
+    return run.planned.path(known)
 
 
 def _traces(run: RunRecord, hidden: Collection[str]) -> tuple[Trace, ...]:

@@ -72,7 +72,8 @@ def plan_rows(scenario: RunPlan, set: Mapping[str, Any]) -> NDArray[Any]:
             raise scenario.located(error, system, set) from None
         finally:
             slave.free()
-        return np.load(file)
+        rows: NDArray[Any] = np.load(file, mmap_mode="r").view(np.ndarray)
+        return rows  # a file that is mapped stays until it is let go
 
 
 def bounded(scenario: RunPlan, options: Options) -> Options:

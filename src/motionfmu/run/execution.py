@@ -1,6 +1,6 @@
 """One run of a scenario: the job for an engine, and the result made of what the engine gives."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -8,9 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.columns import ROWS, forget, room
 from motionfmu.base.errors import InputError
 from motionfmu.run.engines.engine_job import EngineJob, EngineResult
 from motionfmu.run.overrides import overrides
+from motionfmu.run.planned_text import PlannedText
 from motionfmu.run.result import Result
 from motionfmu.run.run_plan import Options, RunPlan
 from motionfmu.scenarios import recording
@@ -81,10 +83,10 @@ class Execution:
                 never = (f"the run ended by its fault, {stopped}: {done} never came",)
         return Result(
             scenario=self.scenario,
-            time=self._time(ran.steps) if ran.time is None else ran.time,
+            time=self._time(ran.steps, ran.signals) if ran.time is None else ran.time,
             signals=ran.signals,
             parameters={s.end.name: s.values for s in self.system.settings},
-            geometry=planned.read_text(encoding="utf-8") if planned.is_file() else None,
+            planned=PlannedText(planned) if planned.is_file() else None,
             warnings=(*ran.warnings, *never),
             options=options.given() | {"engine": ran.engine},
             overrides=overrides(self.scenario, options, self.system),
@@ -103,11 +105,15 @@ class Execution:
         told = f"{until.signals[ran.which].name} at {at:.9g} s"
         return told, at if ran.which == 0 else None
 
-    def _time(self, steps: int) -> NDArray[np.float64]:
-        """Times of the rows of so many steps [s]."""
-        first = self.system.begin // self.system.every
-        rows = np.arange(first, first + self.system.rows(steps), dtype=np.float64)
-        return rows * (self.system.sample_ns * 1e-9)
+    def _time(self, steps: int, signals: Mapping[str, NDArray[Any]]) -> NDArray[np.float64]:
+        """Times of the rows of so many steps [s], beside the signals where these have files."""
+        first, count = self.system.begin // self.system.every, self.system.rows(steps)
+        found = room(count, np.float64, next(iter(signals.values()), None))
+        for begin in range(0, count, ROWS):
+            rows = np.arange(first + begin, first + min(begin + ROWS, count), dtype=np.float64)
+            found[begin : begin + len(rows)] = rows * (self.system.sample_ns * 1e-9)
+            forget(found)
+        return found
 
     def _seconds(self, steps: int) -> float:
         """Duration of so many steps [s]."""

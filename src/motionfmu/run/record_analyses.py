@@ -13,6 +13,7 @@ from motionfmu.analysis.iso9283 import Evaluation
 from motionfmu.base.errors import InputError, NoNumber
 from motionfmu.records import Record
 from motionfmu.run.iso9283_of import evaluation_of
+from motionfmu.run.planned_text import PlannedText
 from motionfmu.run.result import Result
 from motionfmu.scenarios.record_signals import in_unit_of
 from motionfmu.scenarios.system import Resolver
@@ -108,7 +109,7 @@ class RecordedTool:
     run: Result
     time: NDArray[np.float64]  # (n,) [s]
     signals: Mapping[str, Array]
-    geometry: str | None = None
+    planned: PlannedText | None = None
 
     @property
     def resolver(self) -> Resolver:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from motionfmu.analysis.contour.pulse_path import PulsePaths
     from motionfmu.analysis.iso9283 import Evaluation
     from motionfmu.records import Record
+    from motionfmu.run.planned_text import PlannedText
 
 
 def since(time: NDArray[np.float64], x: NDArray[Any]) -> float | None:
@@ -61,8 +62,8 @@ class Result(Mapping[str, NDArray[Any]]):
         they are asked for; what is not saved goes with the result.
     parameters : dict
         Value of every parameter that was set, by name.
-    geometry : str or None
-        The planned path as the library wrote it (CSV), if the scenario has a contour.
+    planned : PlannedText or None
+        What the library wrote of the planned path, if the scenario has a contour.
     warnings : tuple of str
         What the FMUs warned of, FMUs that do not agree on a machine, grids that do not divide each
         other; each once.
@@ -90,7 +91,7 @@ class Result(Mapping[str, NDArray[Any]]):
     time: NDArray[np.float64]
     signals: Mapping[str, NDArray[Any]]
     parameters: dict[str, Any]
-    geometry: str | None = None
+    planned: "PlannedText | None" = None
     warnings: tuple[str, ...] = ()
     options: Mapping[str, Any] = field(default_factory=dict)
     overrides: list[str] = field(default_factory=list)
@@ -255,6 +256,17 @@ class Result(Mapping[str, NDArray[Any]]):
             One value per element.
         """
         return values.value_of(self.resolver, self.parameters, name)
+
+    @property
+    def geometry(self) -> str | None:
+        """The planned path as the library wrote it.
+
+        Returns
+        -------
+        str or None
+            CSV; None if the scenario has no contour.
+        """
+        return None if self.planned is None else self.planned.text()
 
     def contour(self, progress: Callable[[float], None] = lambda share: None) -> "ContourResult":
         """The contour error of this run against the planned geometry.

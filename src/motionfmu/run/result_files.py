@@ -111,19 +111,25 @@ def track(contour: "ContourResult") -> dict[str, Any]:
     count = len(cut)
 
     def error(rows: slice) -> Any:
+        forget(way.distance)
         size = way.distance[rows]
         size = size if way.right is None else np.where(way.right[rows], -size, size)
         return np.where(cut[rows], size, np.nan)
 
+    def foot(rows: slice) -> Any:
+        for array in (way.segment, way.along):
+            forget(array)
+        return way.feet(rows)
+
     def gap(rows: slice) -> Any:
         forget(actual)
-        return np.where(cut[rows, None], places(actual, rows) - way.feet(rows), np.nan)
+        return np.where(cut[rows, None], places(actual, rows) - foot(rows), np.nan)
 
     found: dict[str, Any] = {
         "time": contour.run.time,
         "along": way.along,
         "error": LazyArray((count,), np.dtype("f8"), error),
-        "foot": LazyArray((count, 3), np.dtype("f4"), way.feet),
+        "foot": LazyArray((count, 3), np.dtype("f4"), foot),
         "gap": LazyArray((count, 3), np.dtype("f4"), gap),
         "commands": contour.commands,
     }

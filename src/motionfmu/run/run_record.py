@@ -6,6 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.run.planned_text import PlannedText
 from motionfmu.scenarios.system import Resolver
 
 
@@ -14,7 +15,7 @@ class RunRecord(Protocol):
 
     time: NDArray[np.float64]  # [s], shape (N,)
     signals: Mapping[str, NDArray[Any]]
-    geometry: str | None
+    planned: PlannedText | None
 
     @property
     def resolver(self) -> Resolver:

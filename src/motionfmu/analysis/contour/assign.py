@@ -12,6 +12,7 @@ from motionfmu.analysis.contour.geometry import norms
 from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.scaled_values import BLOCK, blocks, places
 from motionfmu.analysis.contour.segments import Index
+from motionfmu.base.columns import forget, room
 
 # Successive samples are searched in groups of so many, of which the middle one comes first.
 STRIDE = 32
@@ -44,10 +45,9 @@ def assign(
     decrease, they are the result. Stretches where they do are solved by dynamic programming, each
     by itself; if what is found there does not fit what is around it, both become one stretch.
     """
-    if (first > last).any() or _falls(first) or _falls(last):
-        raise ValueError("candidates must not be empty nor decrease with time")
-    low, high = np.asarray(first).astype(np.int32), np.asarray(last).astype(np.int32)
-    for some in blocks(len(low), points):
+    count = len(first)
+    low, high, own = _rooms(first, last)
+    for some in blocks(count, points, low, high):
         several = some.start + np.flatnonzero(low[some] < high[some])
         if len(several):
             part = places(points, several)
@@ -55,21 +55,51 @@ def assign(
         progress(some.stop / len(low))
     if not len(low):
         return low
-    alone, solved = low.copy(), np.zeros(len(low), dtype=bool)
+    alone, solved = None, np.zeros(len(low), dtype=bool)
     while True:
-        own = np.minimum.accumulate(high[::-1])[::-1]
-        bad = np.maximum.accumulate(low) > own
-        # a path that comes back may have farther segments between two that are as near
-        between = np.flatnonzero((low < own) & (own < high))
-        bad[between] = ~_as_near(points, path, between, (low, own))
+        _from_behind(high, own)
+        bad, most = np.empty(count, dtype=bool), low[0]
+        for some in blocks(count, low, high, own):
+            upto = np.maximum.accumulate(np.maximum(low[some], most))
+            most = upto[-1]
+            bad[some] = upto > own[some]
+            # a path that comes back may have farther segments between two that are as near
+            inside = (low[some] < own[some]) & (own[some] < high[some])
+            between = some.start + np.flatnonzero(inside)
+            bad[between] = ~_as_near(points, path, between, (low, own))
         if not bad.any():
             return own
+        alone = low.copy() if alone is None else alone
         for a, b in _stretches(bad | solved):
             if bad[a:b].any():
                 candidates = np.asarray(first[a:b]), np.asarray(last[a:b])
                 part = places(points, slice(a, b))
                 low[a:b] = high[a:b] = _solved(part, path, candidates, alone[a:b])
                 solved[a:b] = True
+
+
+def _rooms(first: Index, last: Index) -> tuple[Index, Index, Index]:
+    """Copies of candidates, which must not decrease nor be empty, and room for a result."""
+    count, wrong = len(first), "candidates must not be empty nor decrease with time"
+    low, high, own = (room(count, np.int32, first) for _ in range(3))
+    for some in blocks(count, first, last, low, high):
+        low[some], high[some] = first[some], last[some]
+        if (first[some] > last[some]).any():
+            raise ValueError(wrong)
+        if any(_falls(x[max(0, some.start - 1) : some.stop]) for x in (first, last)):
+            raise ValueError(wrong)
+    return low, high, own
+
+
+def _from_behind(high: Index, own: Index) -> None:
+    """Fill in the least of all values from each on."""
+    least = high[-1]
+    for some in reversed(list(blocks(len(high), high, own))):
+        back = high[some][::-1]
+        np.minimum.accumulate(np.minimum(back, least), out=own[some][::-1])
+        least = own[some.start]
+        for array in (high, own):
+            forget(array)
 
 
 def _as_near(points: Any, path: Path, rows: Index, segments: tuple[Index, Index]) -> Any:

@@ -1,5 +1,6 @@
 """Input and result of a contour analysis."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
@@ -17,6 +18,7 @@ from motionfmu.analysis.contour.ranges import largest, parts
 from motionfmu.analysis.contour.scaled_values import ScaledValues, blocks, finite
 from motionfmu.analysis.contour.segments import KINDS
 from motionfmu.analysis.contour.track import Track
+from motionfmu.base.columns import forget, room
 from motionfmu.base.errors import NoNumber
 
 # Most commands, and most corners, that `ContourResult.numbers` has.
@@ -195,10 +197,12 @@ class ContourResult:
     def _error(self) -> dict[str, Any]:
         least = most = None
         if (right := self.track.right) is not None:
-            rows = np.flatnonzero(self.cutting)
-            signed = self.track.distance[rows]
-            np.negative(signed, out=signed, where=right[rows])
-            least, most = float(signed.min()), float(signed.max())
+            least, most = math.inf, -math.inf
+            for own in blocks(len(right), right, self.track.distance):
+                signed = np.where(right[own], -self.track.distance[own], self.track.distance[own])
+                signed = signed[self.cutting[own]]
+                least = min(least, float(signed.min(initial=math.inf)))
+                most = max(most, float(signed.max(initial=-math.inf)))
         return asdict(self.error) | {"signed_min": least, "signed_max": most}
 
     def _following(self) -> dict[str, Any]:
@@ -227,20 +231,31 @@ class ContourResult:
         length, largest and RMS error [mm], time of the largest [s].
         """
         path = self.run.path
-        found = np.flatnonzero(self.cutting)
-        owners = self.track.segment[found]
-        cuts = np.concatenate([[0], np.flatnonzero(np.diff(owners)) + 1, [len(owners)]])
+        segment, distance = self.track.segment, self.track.distance
+        count, last, filled = int(np.count_nonzero(self.cutting)), -1, 0
+        found, begins, firsts = room(count, np.int64, distance), [], []
+        for block in blocks(len(segment), segment, found):
+            places = block.start + np.flatnonzero(self.cutting[block])
+            owners = segment[places]
+            first = np.flatnonzero(np.diff(owners, prepend=last))
+            begins.append(filled + first)
+            firsts.append(owners[first])
+            found[filled : filled + len(places)] = places
+            filled, last = filled + len(places), owners[-1] if len(owners) else last
+        cuts = np.concatenate([*begins, [count]])
         rows = np.empty(len(cuts) - 1, dtype=COMMANDS)
-        own = owners[cuts[:-1]]
+        own = np.concatenate(firsts)
         rows["command"], rows["line"] = path.commands[own], path.lines[own]
         rows["kind"] = np.array(KINDS)[path.segments.columns.kind[own]]
         rows["length"] = path.lengths[own]
         for some, samples, first in parts(cuts[:-1], cuts[1:]):
-            size = self.track.distance[found[samples]]
+            size = distance[found[samples]]
             rows["max"][some], worst = largest(size, first)
             square = np.add.reduceat(size * size, first) / np.diff(first, append=len(size))
             rows["rms"][some] = np.sqrt(square)
             rows["time"][some] = self.run.time[found[samples[worst]]]
+            for array in (found, distance, self.run.time):
+                forget(array)
         return rows
 
     def number(self, name: str) -> float:

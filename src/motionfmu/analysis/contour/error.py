@@ -70,16 +70,21 @@ def analyse(
     track = follow(run.actual, path, owners)
     progress(0.85)
     tracks = (track, command.track)
-    cutting = path.cut[track.segment]
-    cutting &= command.moved > instants.shifted(command.moved, -window)
+    cutting = np.empty(len(instants), dtype=bool)
+    both, moved = np.empty_like(cutting), instants.shifted(command.moved, -window)
+    shared = (track.segment, command.track.segment, command.moved, moved)
+    for own in blocks(len(cutting), *shared):
+        cutting[own] = path.cut[track.segment[own]]
+        cutting[own] &= command.moved[own] > moved[own]
+        both[own] = cutting[own] & path.cut[command.track.segment[own]]
     if not cutting.any():
         raise ValueError("the run never moves on a line, arc or helix: it has no contour")
     settle = SETTLE * window
     circles, missing = circular_tests(path, (instants, run.actual), tracks, settle, run.run_in)
     corners = find_corners(path, instants, tracks, cutting, window)
-    both = cutting & path.cut[command.track.segment]
     error = statistics(path, run.time, track, cutting)
     command_error = statistics(path, run.time, command.track, both)
+    path.segments.release()
     progress(1.0)
     return ContourResult(
         run=run,
@@ -98,17 +103,23 @@ def analyse(
 
 def statistics(path: Path, time: Array, track: Track, chosen: NDArray[np.bool_]) -> Statistics:
     """Statistics of the distance over chosen samples, one at least."""
-    rows = np.flatnonzero(chosen)
-    size = track.distance[rows]
-    worst = int(rows[np.argmax(size)])
+    size, filled = np.empty(np.count_nonzero(chosen)), 0
+    worst, top = 0, -1.0
+    for block in blocks(len(chosen), track.distance):
+        part = track.distance[block][chosen[block]]
+        if len(part) and float(part.max()) > top:
+            top = float(part.max())
+            worst = block.start + int(np.flatnonzero(chosen[block])[np.argmax(part)])
+        size[filled : filled + len(part)] = part
+        filled += len(part)
     x, y, z = track.feet(np.array([worst]))[0].tolist()
     mean, square = float(size.mean()), float(np.einsum("i,i->", size, size))
-    top = float(size.max())
+    rms = math.sqrt(square / len(size))
     own = int(track.segment[worst])
-    p50, p95, p99 = quantiles(size, (0.5, 0.95, 0.99))
+    p50, p95, p99 = quantiles(size, (0.5, 0.95, 0.99), ours=True)
     return Statistics(
         max=top,
-        rms=math.sqrt(square / len(size)),
+        rms=rms,
         mean=mean,
         p50=p50,
         p95=p95,

@@ -11,6 +11,7 @@ from motionfmu.analysis.contour.arcs import Array
 from motionfmu.analysis.contour.order import median
 from motionfmu.analysis.contour.scaled_values import blocks
 from motionfmu.analysis.contour.segments import Index
+from motionfmu.base.columns import room
 
 # Samples are evenly spaced if each lies within this part of a step of its place; k times a step,
 # rounded, is far nearer even after days.
@@ -48,17 +49,19 @@ class Instants:
 
     def shifted(self, values: Any, shift: float) -> Any:
         """Values (n,) that hold at each time plus a shift [s]."""
-        found = np.empty_like(values)
         count = len(self)
+        found = room(count, values.dtype, values)
         k = math.floor(shift / self.step)
         if self.even and 2.0 * EVEN < shift / self.step - k < 1.0 - 2.0 * EVEN:
             k = min(max(k, -count), count)
-            if k >= 0:
-                found[: count - k], found[count - k :] = values[k:], values[-1]
-            else:
-                found[-k:], found[:-k] = values[:k], values[0]
+            for own in blocks(count, values, found):
+                low, high = own.start + k, own.stop + k
+                if low >= 0 and high <= count:
+                    found[own] = values[low:high]
+                else:
+                    found[own] = values[np.clip(np.arange(low, high), 0, count - 1)]
             return found
-        for own in blocks(count, self.time):
+        for own in blocks(count, self.time, values, found):
             found[own] = values[self._at(own, shift)]
         return found
 
@@ -81,10 +84,10 @@ class Instants:
         """Speed [mm/s] at samples of a position along the path [mm], averaged over `span` [s]."""
         time = self.time
         begin, end, _ = (own or slice(None)).indices(len(time))
-        found = np.empty(max(0, end - begin))
+        found = room(max(0, end - begin), np.float64, along)
         part, whole = math.modf(0.5 * span / self.step)
         reach = int(whole)
-        for block in blocks(len(found), time):
+        for block in blocks(len(found), time, along, found):
             low, high = begin + block.start, begin + block.stop
             if self.even and low > reach and high + reach < len(time):
                 way = along[low - reach - 1 : high + reach + 1]

@@ -8,12 +8,16 @@ import numpy as np
 from motionfmu.analysis.contour.arcs import Array
 
 
-def quantiles(values: Array, shares: Sequence[float]) -> list[float]:
-    """The values below which these shares of the values (n,) lie, linearly interpolated."""
+def quantiles(values: Array, shares: Sequence[float], ours: bool = False) -> list[float]:
+    """The values below which these shares of the values (n,) lie, linearly interpolated.
+
+    With `ours` the values may be put into another order.
+    """
     places = [share * (len(values) - 1) for share in shares]
     low = [int(place) for place in places]
     high = [min(k + 1, len(values) - 1) for k in low]
-    ordered = np.partition(values, sorted({*low, *high}))
+    ordered = values if ours else values.copy()
+    ordered.partition(sorted({*low, *high}))
     ends = zip(places, low, high, strict=True)
     return [float(ordered[a] + (ordered[b] - ordered[a]) * (place - a)) for place, a, b in ends]
 

@@ -4,6 +4,7 @@ import csv
 import io
 import math
 from collections.abc import Callable
+from itertools import islice
 from pathlib import Path as File
 from typing import TextIO
 
@@ -37,6 +38,7 @@ INNER = [f"inner_{k}_{axis}" for k in (0, 1) for axis in AXES]
 # End points as the library rounds them in the file must meet the arc it describes [mm]:
 # far above the rounding of 9 digits, far below any error that matters.
 MEETS = 1e-4
+PIECE = 1 << 15  # lines of the file that are read at a time
 
 
 class RowFault(ValueError):
@@ -71,37 +73,39 @@ def path_of(stream: TextIO, name: str) -> Path:
     if missing:
         raise ValueError(f"{name}:1: column {missing[0]!r} is missing")
     wanted = [c for c in (*COLUMNS, *INNER) if c in head]
-    begin = stream.tell()
-    if not stream.read(1):
-        raise ValueError(f"{name}: no motion in the planned geometry")
-    stream.seek(begin)
     places = [head.index(c) for c in wanted]
-    try:
-        table = np.loadtxt(stream, delimiter=",", comments=None, usecols=places, ndmin=2)
-        if not np.isfinite(table).all():
-            raise ValueError
-    except ValueError:
-        stream.seek(begin)
-        table = _slowly(stream, (head, wanted), name)
-    moves = np.flatnonzero(table[:, wanted.index("type")].astype(np.int64) != DELAY)
-    if not len(moves):
+    found, first = [], 2
+    while lines := list(islice(stream, PIECE)):
+        try:
+            table = np.loadtxt(lines, delimiter=",", comments=None, usecols=places, ndmin=2)
+            if not np.isfinite(table).all():
+                raise ValueError
+        except ValueError:
+            table = _slowly(lines, (head, wanted), (name, first))
+        moves = np.flatnonzero(table[:, wanted.index("type")].astype(np.int64) != DELAY)
+        try:
+            if len(moves):
+                found.append(_columns(table[moves], wanted))
+        except RowFault as error:
+            raise ValueError(f"{name}:{int(moves[error.row]) + first}: {error}") from None
+        first += len(lines)
+    if not found:
         raise ValueError(f"{name}: no motion in the planned geometry")
-    try:
-        return Path(Segments(_columns(table[moves], wanted)))
-    except RowFault as error:
-        line = int(moves[error.row]) + 2
-        raise ValueError(f"{name}:{line}: {error}") from None
+    return Path(Segments(SegmentColumns.joined(found)))
 
 
-def _slowly(stream: TextIO, columns: tuple[list[str], list[str]], name: str) -> Array:
-    """Read the table row by row, because a value in it is wrong and the message must name it."""
-    reader = csv.DictReader(stream, columns[0])
+def _slowly(
+    lines: list[str], columns: tuple[list[str], list[str]], place: tuple[str, int]
+) -> Array:
+    """Read lines row by row, because a value in them is wrong and the message must name it."""
+    reader = csv.DictReader(lines, columns[0])
     rows = []
     for row in reader:
         try:
             rows.append([_number(row, c) for c in columns[1]])
         except ValueError as error:
-            raise ValueError(f"{name}:{reader.line_num + 1}: {error}") from None
+            told = f"{place[0]}:{reader.line_num + place[1] - 1}: {error}"
+            raise ValueError(told) from None
     return np.array(rows).reshape(-1, len(columns[1]))
 
 

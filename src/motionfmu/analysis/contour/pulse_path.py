@@ -14,6 +14,7 @@ from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.scaled_values import ScaledValues, blocks, places
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.contour.track import Track, follow
+from motionfmu.base.columns import room
 
 FIFO_DEPTH = 63
 # Commands on their way beside the FIFO stock: one in the DDA, a transaction of 16, one spare.
@@ -132,15 +133,17 @@ def _written(run: ContourInput) -> tuple[Index, Index]:
     """First and last segment on which the pulses may be, by what was written to the card (n,)."""
     path, wait, shifted = run.path, _wait(run), run.instants.shifted
     older = _segments(path, run.command)
-    newer = older if run.newest is None else np.maximum(older, _segments(path, run.newest))
+    newer = older if run.newest is None else _segments(path, run.newest)
+    for own in blocks(len(older), older, newer):
+        np.maximum(newer[own], older[own], out=newer[own])
     return shifted(older, -wait), shifted(newer, wait)
 
 
 def _segments(path: Path, command: Index) -> Index:
     """Segment of the newest command so far (n,)."""
-    found = np.empty(len(command), dtype=np.int32)
+    found = room(len(command), np.int32, command)
     newest = command[0]
-    for own in blocks(len(command), command):
+    for own in blocks(len(command), command, found):
         upto = np.maximum.accumulate(np.maximum(command[own], newest))
         newest = upto[-1]
         found[own] = path.segment_of(upto)
@@ -148,8 +151,11 @@ def _segments(path: Path, command: Index) -> Index:
 
 
 def _moved(pulses: Array | ScaledValues) -> Index:
-    found = np.zeros(len(pulses), dtype=np.int32)
-    for own in blocks(len(pulses) - 1, pulses):
+    found = room(len(pulses), np.int32, pulses)
+    found[0] = count = 0
+    for own in blocks(len(pulses) - 1, pulses, found):
         place = places(pulses, slice(own.start, own.stop + 1))
-        found[own.start + 1 : own.stop + 1] = (place[1:] != place[:-1]).any(axis=1)
-    return np.cumsum(found, out=found)
+        upto = count + np.cumsum((place[1:] != place[:-1]).any(axis=1))
+        found[own.start + 1 : own.stop + 1] = upto
+        count = upto[-1]
+    return found

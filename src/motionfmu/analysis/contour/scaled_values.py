@@ -1,6 +1,6 @@
 """Recorded signals in other units, converted part by part, so that no copy is made of them."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,7 @@ from motionfmu.base.columns import forget
 
 # Samples of a block: enough that there are few calls, few enough that they take little memory.
 BLOCK = 1 << 15
+FAR = 256  # rows far apart that are read at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +59,17 @@ def places(values: Any, rows: Any) -> Array:
     for column, by, out in zip(columns, each.tolist(), found, strict=False):
         np.divide(column, by, out=out)
     return found.T
+
+
+def picked(read: Callable[[Any], Array], rows: Any, *passed: Any) -> Array:
+    """What `read` gives of rows that lie far apart, some at a time."""
+    # A page of a mapped file brings those around it along, 64 kB.
+    parts = []
+    for first in range(0, max(1, len(rows)), FAR):
+        parts.append(read(rows[first : first + FAR]))
+        for array in passed:
+            forget(array)
+    return np.concatenate(parts)
 
 
 def finite(values: Any, own: slice) -> Any:

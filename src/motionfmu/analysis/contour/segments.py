@@ -22,6 +22,7 @@ LINE, ARC, CUBIC = 0, 1, 2
 RUN = 256
 # So many segments are kept as objects, with the values computed from them.
 KEPT = 64
+MANY = 1 << 18  # segments whose columns are too large to be kept for later
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,17 @@ class SegmentColumns:
     axis: Array  # (k, 3)
     turned: Array  # (k, 3) its angle [rad], rise and growth [mm]
     curves: dict[int, Cubic]  # by row
+
+    @classmethod
+    def joined(cls, parts: "list[SegmentColumns]") -> "SegmentColumns":
+        """The rows of several tables, one behind the other."""
+        if len(parts) == 1:
+            return parts[0]
+        names = [name for name in cls.__dataclass_fields__ if name != "curves"]
+        columns = {name: np.concatenate([getattr(p, name) for p in parts]) for name in names}
+        begins = np.cumsum([0, *(len(p.command) for p in parts)]).tolist()
+        pairs = zip(begins, parts, strict=False)
+        return cls(**columns, curves={b + i: c for b, p in pairs for i, c in p.curves.items()})
 
 
 class Segments(Sequence[Segment]):
@@ -145,6 +157,12 @@ class Segments(Sequence[Segment]):
         jumps = np.concatenate([[0.0], norms(c.start[1:] - self.ends[:-1])])
         end = np.cumsum(own + jumps)
         return end - own, end
+
+    def release(self) -> None:
+        """Let go what was computed of very many segments; it is computed again when needed."""
+        if len(self) > MANY:
+            for name in ("way", "ends", "directions"):
+                self.__dict__.pop(name, None)
 
     def foot(self, points: Array, which: Index) -> Foot:
         """Nearest point to each of the points (n, 3) [mm] on the segment of its number (n,)."""

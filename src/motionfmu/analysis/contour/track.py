@@ -10,6 +10,7 @@ from motionfmu.analysis.contour.arcs import TURN, Array, unwrapped
 from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.scaled_values import blocks, places
 from motionfmu.analysis.contour.segments import ARC, Index
+from motionfmu.base.columns import room
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +42,9 @@ class Track:
 def follow(positions: Any, path: Path, owners: Index) -> Track:
     """Nearest points of positions (n, 3 or more) [mm] on the segments they belong to."""
     count = len(owners)
-    along, distance = np.empty(count), np.empty(count)
-    right = None if path.normal is None else np.empty(count, dtype=bool)
-    for own in blocks(count, positions):
+    along, distance = (room(count, np.float64, positions) for _ in range(2))
+    right = None if path.normal is None else room(count, np.bool_, positions)
+    for own in blocks(count, positions, owners, along, distance, right):
         points, which = places(positions, own), owners[own]
         near = path.segments.foot(points, which)
         along[own], distance[own] = near.along, near.distance
@@ -52,7 +53,7 @@ def follow(positions: Any, path: Path, owners: Index) -> Track:
             left = (v * z - w * y, w * x - u * z, u * y - v * x)  # tangent x gap
             right[own] = sum(n * c for n, c in zip(path.normal, left, strict=True)) > 0.0
     _unwrap(along, path, owners)
-    for own in blocks(count):
+    for own in blocks(count, along, owners):
         along[own] += path.offsets[owners[own]]
     return Track(path, owners, along, distance, right)
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.base.columns import forget
 from motionfmu.base.motion_rows import CAUSES, NUMBER_OF
 from motionfmu.run import Scenario
 from motionfmu.run.controller_plan import plan_rows
@@ -95,6 +96,7 @@ class CommandedMotion:
         """
         found = self.rows if rows is None else rows
         keys, counts = np.unique(found["cause"] * 8 + found["axis"], return_counts=True)
+        forget(found)
         shares = [
             Share(CAUSES[int(k) // 8], self._name(int(k % 8)), int(n) * self.frame)
             for k, n in zip(keys, counts, strict=True)
@@ -121,6 +123,7 @@ class CommandedMotion:
         lost = np.where(rows["cause"] == DWELL, 0.0, (1.0 - driven) * self.frame)
         lines, of = np.unique(rows["line"], return_inverse=True)
         total, missed = np.bincount(of) * self.frame, np.bincount(of, lost)
+        forget(rows)
         order = np.argsort(-missed, kind="stable")[:most]
         return [
             Block(int(lines[k]), float(total[k]), float(missed[k]), self.shares(rows[of == k]))

@@ -1,8 +1,9 @@
 """A part program as the commands that the C interpreter makes of it."""
 
 import ctypes
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -144,17 +145,12 @@ class Program:
     ----------
     text : str
         As read.
-    commands : ndarray
-        Structured, a row each; the names of its fields are those of ``commands.dtype``, places
-        in machine coordinates [mm], feeds [mm/s], dwells [s].
     faults : list of Fault
         None if the program is good, at most 20; the commands are those before the first.
     more : bool
         There are more faults than these.
     notes : list of Fault
         Words that are accepted and do nothing here, each once.
-    files : dict of str to str
-        Texts of the files that it calls, by their names without ending.
     axes : sequence of ControllerAxis
         Name and unit of each of its six axes.
     """
@@ -170,29 +166,74 @@ class Program:
             lambda rows, count: check(reader.pointer, rows, count),
             self.axes,
         )
-        self.commands = self._read()
         texts.tell()
-        self.files = {n: t.decode(errors="replace") for n, t in texts.of.items() if n}
+
+    @property
+    def files(self) -> dict[str, str]:
+        """Texts of the files that it calls.
+
+        Returns
+        -------
+        dict of str to str
+            By their names without ending.
+        """
+        return {n: t.decode(errors="replace") for n, t in self._texts.of.items() if n}
+
+    @cached_property
+    def commands(self) -> np.ndarray:
+        """All its commands.
+
+        Returns
+        -------
+        ndarray
+            Structured, a row each of 0.4 kB; the names of its fields are those of
+            ``commands.dtype``, places in machine coordinates [mm], feeds [mm/s], dwells [s].
+            `blocks` passes them without holding all.
+        """
+        raw = [rows.view(np.uint8) for rows in self._read()]
+        return np.concatenate(raw).view(dtype("gcode_command"))
 
     def __repr__(self) -> str:
         faults = f"{len(self.faults)}{' or more' if self.more else ''}"
         return f"<Program: {len(self.commands)} commands, {faults} faults>"
 
-    def _read(self) -> np.ndarray:
+    def blocks(self) -> Iterator[np.ndarray]:
+        """Its commands in blocks, which are read anew each time.
+
+        Yields
+        ------
+        ndarray
+            As `commands`, the next ones; only an empty program has an empty block, one.
+        """
+        if "commands" in self.__dict__:
+            every = range(0, max(1, len(self.commands)), ROOM)
+            yield from (self.commands[first : first + ROOM] for first in every)
+            return
+        before = None
+        for rows in self._read():
+            if len(rows) and before is not None:
+                yield before
+            before = rows if before is None or len(rows) else before
+        if before is not None:
+            yield before
+
+    def _read(self) -> Iterator[np.ndarray]:
         c, result, report = library(), ctypes.c_int32(_MORE), Struct("report")
-        parts, kind = [], dtype("gcode_command")
+        kind = dtype("gcode_command")
+        reader = _copy(self._reader)
+        c.binding_gcode_begin(reader.pointer, *self._texts.call())
         c.binding_gcode_read.restype = ctypes.c_int64
         while result.value == _MORE:
             rows = np.zeros(ROOM * kind.itemsize, np.uint8)  # whole structs: fields are not all
             count = c.binding_gcode_read(
-                self._reader.pointer,
+                reader.pointer,
                 rows.ctypes.data_as(ctypes.c_void_p),
                 ctypes.c_int64(ROOM),
                 ctypes.byref(result),
                 report.pointer,
             )
-            parts.append(rows[: count * kind.itemsize].copy())
-        return np.concatenate(parts).view(kind)
+            yield rows[: count * kind.itemsize].view(kind)
+        self._texts.tell()
 
     def seconds(self) -> np.ndarray:
         """Time of each command on the machine.
@@ -202,7 +243,7 @@ class Program:
         (n,) ndarray
             [s] from its begin to that of the next one that takes time, to a period of points.
         """
-        return self._driven(None)[0]
+        return self._driven(None).seconds
 
     def places(self) -> np.ndarray:
         """Where the tool is at the end of each period.
@@ -212,22 +253,80 @@ class Program:
         (n, 6) ndarray
             [mm] in machine coordinates, a row for each ``period`` from the start on.
         """
-        places = np.zeros((self._driven(None)[1], AXES))
+        places = np.zeros((self._driven(None).periods, AXES))
         self._driven(places)
         return places
 
-    def _driven(self, places: np.ndarray | None) -> tuple[np.ndarray, int]:
-        """Times of the commands, and the number of periods."""
-        times, drive = np.zeros(len(self.commands)), library().binding_gcode_time
+    def drive(self, places: np.ndarray | None = None) -> "ProgramDrive":
+        """A machine that stands before the program.
+
+        Parameters
+        ----------
+        places : ndarray, optional
+            (n, 6) room for where the tool is at the end of each period [mm].
+
+        Returns
+        -------
+        ProgramDrive
+            It takes the program's blocks.
+        """
+        return ProgramDrive(self._reader, places)
+
+    def _driven(self, places: np.ndarray | None) -> "ProgramDrive":
+        drive = self.drive(places)
+        for rows, last in marked(self.blocks()):
+            drive.take(rows, last)
+        return drive
+
+
+class ProgramDrive:
+    """A machine that drives the commands of a program, which it gets in blocks."""
+
+    def __init__(self, reader: Struct, places: np.ndarray | None = None) -> None:
+        self._reader = _copy(reader)
+        self._places = places
+        self._room, self._count = np.zeros(ROOM), 0
+        self.periods = 0
+        library().binding_gcode_stand(self._reader.pointer)
+
+    @property
+    def seconds(self) -> np.ndarray:
+        """Time of each command so far (n,) [s]."""
+        return self._room[: self._count]
+
+    def take(self, rows: np.ndarray, last: bool) -> None:
+        """ProgramDrive the next commands, as far as they alone tell the way."""
+        self._count += len(rows)
+        if self._count > len(self._room):
+            self._room = np.append(self._room, np.zeros(len(self._room)))
+        drive, places = library().binding_gcode_time, self._places
         drive.restype = ctypes.c_int64
-        periods = drive(
+        self.periods = drive(
             self._reader.pointer,
-            self.commands.ctypes.data_as(ctypes.c_void_p),
-            ctypes.c_int64(len(times)),
-            times.ctypes.data_as(ctypes.c_void_p),
+            rows.ctypes.data_as(ctypes.c_void_p),
+            ctypes.c_int64(len(rows)),
+            ctypes.c_int32(last),
+            self._room.ctypes.data_as(ctypes.c_void_p),
             None if places is None else places.ctypes.data_as(ctypes.c_void_p),
         )
-        return times, periods
+
+
+def marked(blocks: Iterable[np.ndarray]) -> Iterator[tuple[np.ndarray, bool]]:
+    """Each block, and whether it is the last."""
+    before = None
+    for rows in blocks:
+        if before is not None:
+            yield before, False
+        before = rows
+    if before is not None:
+        yield before, True
+
+
+def _copy(struct: Struct) -> Struct:
+    """A struct of the reader with the same settings, in memory of its own."""
+    found = Struct("gcode_reader")
+    found.restore(struct.saved())
+    return found
 
 
 def _reader(settings: dict[str, Any], tools: str = "") -> Struct:

@@ -1,19 +1,20 @@
 """Figures of a part program: time, lengths, extents and tools."""
 
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.analysis.gcode.program import AXES, TYPES, Program
+from motionfmu.analysis.gcode.program import AXES, TYPES, Program, marked
 from motionfmu.base.binding import library
 
 # Largest angle of an arc between two points [rad]; number of points of a curve.
 STEP, CURVE = 0.05, 41
 MOTIONS = ("line", "cw_arc", "ccw_arc", "cw_helix", "ccw_helix", "curve")
+RAPIDS = ("rapid", "rapid_joints")
 
 
 @dataclass(frozen=True)
@@ -78,31 +79,46 @@ class Summary:
         return asdict(self)
 
 
-def _kinds(commands: np.ndarray) -> NDArray[np.str_]:
-    return np.array(TYPES)[commands["type"]]
+def _are(commands: np.ndarray, names: Sequence[str]) -> NDArray[np.bool_]:
+    """Which commands are of some kinds."""
+    return np.isin(np.array(TYPES), names)[commands["type"]]
 
 
-def tools_of(commands: np.ndarray) -> NDArray[np.int64]:
-    """The tool in the spindle at each command."""
-    kinds = _kinds(commands)
-    known = (kinds == "outputs") | commands["changes"]
+def tools_of(commands: np.ndarray, before: int = 0) -> NDArray[np.int32]:
+    """The tool in the spindle at each command, behind others that left one there."""
+    known = _are(commands, ("outputs",)) | commands["changes"]
     last = np.maximum.accumulate(np.where(known, np.arange(len(commands)), -1))
-    found = np.where(last >= 0, commands["tool"][np.maximum(last, 0)], 0)
-    return found.astype(np.int64)
+    found = np.where(last >= 0, commands["tool"][np.maximum(last, 0)], before)
+    return found.astype(np.int32)
 
 
 def _extents(commands: np.ndarray) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Smallest and largest coordinates of each path [mm], exact."""
-    low = np.minimum(commands["start"], commands["end"])
-    high = np.maximum(commands["start"], commands["end"])
-    low, high = np.ascontiguousarray(low), np.ascontiguousarray(high)
-    for i in np.flatnonzero(commands["arc"] | commands["cubic"]):
-        library().binding_gcode_extent(
-            ctypes.c_void_p(commands[i : i + 1].ctypes.data),
-            ctypes.c_void_p(low[i].ctypes.data),
-            ctypes.c_void_p(high[i].ctypes.data),
-        )
+    low, high = np.empty((len(commands), AXES)), np.empty((len(commands), AXES))
+    library().binding_gcode_extents(
+        ctypes.c_void_p(commands.ctypes.data),
+        ctypes.c_int64(len(commands)),
+        ctypes.c_void_p(low.ctypes.data),
+        ctypes.c_void_p(high.ctypes.data),
+    )
     return low, high
+
+
+class _Box:
+    """Smallest and largest coordinates of what was put into it, by axis."""
+
+    def __init__(self) -> None:
+        self._low, self._high = np.full(AXES, np.inf), np.full(AXES, -np.inf)
+
+    def put(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> None:
+        np.minimum(self._low, low.min(axis=0, initial=np.inf), out=self._low)
+        np.maximum(self._high, high.max(axis=0, initial=-np.inf), out=self._high)
+
+    def ends(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Both of each axis; 0 if nothing was put into it."""
+        if np.isinf(self._low).any():
+            return (0.0,) * AXES, (0.0,) * AXES
+        return tuple(map(float, self._low)), tuple(map(float, self._high))
 
 
 def summarise(program: Program) -> Summary:
@@ -117,42 +133,41 @@ def summarise(program: Program) -> Summary:
     -------
     Summary
     """
-    c = program.commands
-    kinds, tools, seconds = _kinds(c), tools_of(c), program.seconds()
-    feed, rapid = np.isin(kinds, MOTIONS), np.isin(kinds, ("rapid", "rapid_joints"))
-    low, high = _extents(c)
+    drive, tool, stops, every = program.drive(), 0, 0, _Box()
+    boxes: dict[int, _Box] = {}  # of the moves with feed, by tool
+    least, most = np.inf, -np.inf
+    columns: list[tuple[NDArray[Any], ...]] = []
+    for c, last in marked(program.blocks()):
+        drive.take(c, last)
+        feed, rapid = _are(c, MOTIONS), _are(c, RAPIDS)
+        tools = tools_of(c, tool)
+        tool = int(tools[-1]) if len(c) else tool
+        low, high = _extents(c)
+        every.put(low[feed | rapid], high[feed | rapid])
+        for used in dict.fromkeys(tools[feed | rapid].tolist()):
+            own = feed & (tools == used)
+            boxes.setdefault(used, _Box()).put(low[own], high[own])
+        feeds = c["feed"][feed] * 60.0
+        least, most = min(least, feeds.min(initial=np.inf)), max(most, feeds.max(initial=-np.inf))
+        stops += int(_are(c, ("stop",)).sum())
+        columns.append((feed, rapid, tools, c["length"].copy()))
+    feed, rapid, tools, length = (np.concatenate(parts) for parts in zip(*columns, strict=True))
+    seconds = drive.seconds
     uses = []
-    for tool in dict.fromkeys(tools[feed | rapid].tolist()):
-        own = tools == tool
-        cut = own & feed
-        uses.append(
-            Use(
-                int(tool),
-                float(seconds[own].sum()),
-                float(c["length"][cut].sum()),
-                *(_bounds(low[cut], high[cut])),
-            )
-        )
-    moves = feed | rapid
-    feeds = c["feed"][feed] * 60.0
+    for used, box in boxes.items():
+        own = tools == used
+        way = float(length[own & feed].sum())
+        uses.append(Use(used, float(seconds[own].sum()), way, *box.ends()))
     return Summary(
         time=float(seconds.sum()),
-        feed_way=float(c["length"][feed].sum()),
-        rapid_way=float(c["length"][rapid].sum()),
-        **dict(zip(("low", "high"), _bounds(low[moves], high[moves]), strict=True)),
-        feeds=(float(feeds.min()), float(feeds.max())) if feed.any() else (0.0, 0.0),
+        feed_way=float(length[feed].sum()),
+        rapid_way=float(length[rapid].sum()),
+        **dict(zip(("low", "high"), every.ends(), strict=True)),
+        feeds=(float(least), float(most)) if feed.any() else (0.0, 0.0),
         tools=uses,
-        commands=len(c),
-        stops=int((kinds == "stop").sum()),
+        commands=len(feed),
+        stops=stops,
     )
-
-
-def _bounds(
-    low: NDArray[np.float64], high: NDArray[np.float64]
-) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    if not len(low):
-        return (0.0,) * AXES, (0.0,) * AXES
-    return tuple(map(float, low.min(axis=0))), tuple(map(float, high.max(axis=0)))
 
 
 @dataclass(frozen=True)
@@ -192,13 +207,38 @@ def strokes(program: Program, chord: float | None = None) -> Iterator[Stroke]:
     ------
     Stroke
     """
-    kinds, tools = _kinds(program.commands), tools_of(program.commands)
-    moves = np.isin(kinds, (*MOTIONS, "rapid", "rapid_joints"))
-    raw = program.commands.view(np.uint8).reshape(len(kinds), -1)[moves]
-    c: np.ndarray = raw.ravel().view(program.commands.dtype)  # whole structs
-    if not len(c):
-        return
-    rapid, tools = np.isin(_kinds(c), ("rapid", "rapid_joints")), tools[moves]
+    waiting: list[Stroke] = []
+    for piece in pieces(program, chord):
+        if waiting and (piece.rapid, piece.tool) != (waiting[0].rapid, waiting[0].tool):
+            yield _joined(waiting)
+            waiting = []
+        waiting.append(piece)
+    if waiting:
+        yield _joined(waiting)
+
+
+def _joined(parts: Sequence[Stroke]) -> Stroke:
+    if len(parts) == 1:
+        return parts[0]
+    columns = [np.concatenate([getattr(p, n) for p in parts]) for n in ("points", "feed", "line")]
+    return Stroke(parts[0].rapid, parts[0].tool, *columns)
+
+
+def pieces(program: Program, chord: float | None = None) -> Iterator[Stroke]:
+    """The strokes as they come, each in one piece or several."""
+    tool = 0
+    for commands in program.blocks():
+        tools = tools_of(commands, tool)
+        tool = int(tools[-1]) if len(tools) else tool
+        moves = _are(commands, (*MOTIONS, *RAPIDS))
+        if moves.any():
+            raw = commands.view(np.uint8).reshape(len(commands), -1)[moves]  # whole structs
+            yield from _pieces(raw.ravel().view(commands.dtype), tools[moves], chord)
+
+
+def _pieces(c: np.ndarray, tools: NDArray[np.int32], chord: float | None) -> Iterator[Stroke]:
+    """The strokes of some moves."""
+    rapid = _are(c, RAPIDS)
     step = np.full(len(c), STEP)
     if chord is not None:  # chord = r (1 - cos(step / 2)), nearly r step^2 / 8
         step = np.minimum(STEP, np.sqrt(8.0 * chord / np.maximum(c["radius"], chord)))

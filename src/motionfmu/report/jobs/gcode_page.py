@@ -15,6 +15,7 @@ from motionfmu.report.cycle_time_section import add_cycle_time
 from motionfmu.report.diagram import DOT, Diagram, path_diagram, path_lines
 from motionfmu.report.html_page import Page, PageFrame
 from motionfmu.report.html_tables import cards, table
+from motionfmu.report.jobs.drawn_strokes import DrawnStrokes
 from motionfmu.report.style import AXES, RAPID, heat
 
 SHORT = 24  # [characters] a text that is told again behind what is wrong with it
@@ -46,7 +47,7 @@ def page_text(
     name: str,
     program: Program,
     summary: Summary,
-    drawn: Sequence[Stroke],
+    path: DrawnStrokes,
     planned: tuple[CommandedMotion, Sequence[Lifted]] | None = None,
 ) -> str:
     """The whole HTML page; with the plan of a machine's controller, where the time goes."""
@@ -71,10 +72,14 @@ def page_text(
         ("Commands", f"{summary.commands}", f"of {program.text.count(chr(10)) + 1} lines"),
     ]
     page.sections.append(cards(rows))
-    if drawn:
+    if drawn := path.strokes:
         note = "Rapids are dotted." if any(s.rapid for s in drawn) else ""
         note += "" if len(summary.tools) < 2 else " A colour each tool."
-        page.section("Path", note, page.place("path", path_of_program(drawn, by_feed=False)))
+        note += f" Drawn to within {path.within:.3g} mm." if path.within else ""
+        note += f" One of {path.every} pairs of strokes is drawn." if path.every > 1 else ""
+        page.section(
+            "Path", note.strip(), page.place("path", path_of_program(drawn, by_feed=False))
+        )
         if low < high:
             place = page.place("feeds", path_of_program(drawn, by_feed=True))
             page.section("Feed along the path", "As programmed.", place)
@@ -191,17 +196,27 @@ def place(name: str, f: Fault) -> str:
     return f"{file}:{f.line}:{f.column}"
 
 
+def _line(text: str, number: int) -> str | None:
+    """A line of a text, from 1 on; the others are not made."""
+    begin = 0
+    for _ in range(number - 1):
+        begin = text.find("\n", begin) + 1
+        if not begin:
+            return None
+    end = text.find("\n", begin)
+    return None if number < 1 else text[begin : end if end >= 0 else len(text)]
+
+
 def fault_lines(name: str, program: Program) -> list[str]:
     """Each fault with its place, its line and a mark below the text."""
     texts = {"": program.text, **program.files}
     told = []
     for f in program.faults:
-        lines = texts[f.file].split("\n")
         about = f' "{f.text}"' if 0 < len(f.text) <= SHORT else ""
         about += f" ({f.limits})" if f.limits else ""
         told.append(f"{place(name, f)}: {f.why}{about}")
-        if 0 < f.line <= len(lines):
-            text = lines[f.line - 1].removeprefix("\ufeff").rstrip("\r").replace("\t", " ")
+        if (line := _line(texts[f.file], f.line)) is not None:
+            text = line.removeprefix("\ufeff").rstrip("\r").replace("\t", " ")
             told += [f"    {text}", " " * (f.column + 3) + "^" + "~" * max(0, f.length - 1)]
     if program.more:
         told.append(f"{name}: {len(program.faults)} faults are told, there are more")

@@ -60,7 +60,7 @@ def scene_of(
     name = tool_signal(run)
     if not view.show or name is None or len(run.time) < 2 or no_arm(run):
         return None
-    count, base = len(run.time), _base(run, name)
+    count, base, time = len(run.time), _base(run, name), reader(run.time)
     tool = _in_world(run, name, base)
     joints, arm = joint_signal(run, name), None
     if joints is not None:
@@ -75,13 +75,13 @@ def scene_of(
     before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
     way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
     return Scene(
-        run.time[frames],
+        at(time, frames),
         at(tool, frames),
         at(reader(run[joints]), frames) if arm and joints else None,
         arm,
-        run.time[kept],
+        at(time, kept),
         at(tool, kept),
-        way / (run.time[after] - run.time[before]),
+        way / (at(time, after) - at(time, before)),
         tuple(lines),
         at(stands, frames) if stands else None,
         rapids(run, kept, works),
