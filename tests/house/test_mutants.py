@@ -108,6 +108,13 @@ def test_tests_of_a_module_are_those_that_name_it() -> None:
     assert len(near) == 3 and "tune" in near[0]
 
 
+def test_tests_of_a_private_function_are_those_of_its_callers() -> None:
+    file = ROOT / "src/motionfmu/run/session.py"
+    lines = file.read_text().splitlines()
+    line = next(k for k, text in enumerate(lines, 1) if "def _side_by_side(" in text)
+    assert "tests/runs/test_side_by_side.py" in of_python(ROOT, file, line + 1)
+
+
 def test_tests_that_make_test_leaves_out_are_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -70,14 +70,27 @@ def _module(tree: Path, file: Path) -> str:
 
 
 def _functions(text: str, line: int) -> set[str]:
-    """Names of the function, and of the class, that a line stands in; without underscores."""
+    """Names of the function, and of the class, that a line stands in, or of those that call it.
+
+    A name with an underscore is not a test's: in its place are the functions of the module that
+    call it, and so on.
+    """
     kinds = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef
-    inside = [
-        node.name
-        for node in ast.walk(ast.parse(text))
-        if isinstance(node, kinds) and node.lineno <= line <= (node.end_lineno or 0)
-    ]
-    return {name for name in inside if not name.startswith("_")}
+    nodes = [node for node in ast.walk(ast.parse(text)) if isinstance(node, kinds)]
+    named = {
+        node.name: {n.attr if isinstance(n, ast.Attribute) else getattr(n, "id", "")
+                    for n in ast.walk(node)}
+        for node in nodes
+        if not isinstance(node, ast.ClassDef)
+    }  # fmt: skip
+    waiting = [n.name for n in nodes if n.lineno <= line <= (n.end_lineno or 0)]
+    found: set[str] = set()
+    while waiting:
+        if (name := waiting.pop()) not in found:
+            found.add(name)
+            if name.startswith("_"):
+                waiting += [caller for caller, names in named.items() if name in names]
+    return {name for name in found if not name.startswith("_")}
 
 
 def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:

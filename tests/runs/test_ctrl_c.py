@@ -126,3 +126,13 @@ def test_an_interrupt_of_a_check_in_processes_ends_them_all(tmp_path: Path) -> N
         time.sleep(0.01)  # whoever reaps them may be behind
         assert time.monotonic() < end
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("ignored", [True, False])
+def test_a_signal_that_is_ignored_stays_so(ignored: bool) -> None:
+    """In the background of a shell Ctrl-C is another program's; elsewhere it is told in a line."""
+    shown = "import motionfmu.__main__ as m, signal; print(repr(signal.getsignal(signal.SIGINT)))"
+    before = "SIG_IGN" if ignored else "default_int_handler"
+    program = f"import signal; signal.signal(signal.SIGINT, signal.{before}); {shown}"
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert ("SIG_IGN" if ignored else "function _stop") in ran.stdout, ran.stderr

@@ -169,6 +169,7 @@ def test_a_best_run_at_the_edge_of_the_study_is_said(tmp_path: Path) -> None:
     assert outcome.best == 48
     assert outcome.at_the_edge == [f"{n} = 1000, the largest of the study" for n in names]
     assert "The best run is at the edge of the study" in sweep_page.page_text(outcome)
+    assert outcome.summary[-1] == f"at the edge of the study: {'; '.join(outcome.at_the_edge)}"
     # A cost that does not depend on an axis has no edge there.
     outcome.rows[1:] = [replace(r, values=(float(-(r.run // 7)), 0.0, 0.0)) for r in last]
     assert outcome.at_the_edge == [f"{names[0]} = 1000, the largest of the study"]

@@ -488,9 +488,18 @@ static void scenario(uint64_t seed)
     }
 }
 
+/* Each status has a text of its own. */
+static void texts(void)
+{
+    for (int a = ADC_OK + 1; a <= ADC_BAD_IGNORED; a++)
+        for (int b = ADC_OK + 1; b < a; b++)
+            CHECK(strcmp(adc_status_text((enum adc_status)a), adc_status_text((enum adc_status)b)));
+}
+
 int main(void)
 {
     codes();
+    texts();
     settings();
     single();
     free_run();
