@@ -144,7 +144,7 @@ def test_the_scope_has_every_step_and_a_recording_that_has_begun_is_whole() -> N
     assert rows.tobytes() == one.rows.tobytes()
 
 
-def test_going_back_ends_a_recording_where_it_is() -> None:
+def test_going_back_ends_a_recording_where_it_is(tmp_path: Path) -> None:
     found: list[Any] = []
     with LiveMachine("circle") as machine:
         scope = LiveScope(machine, found.append)
@@ -155,11 +155,15 @@ def test_going_back_ends_a_recording_where_it_is() -> None:
         scope.channels(["mcc.path_feed"])
         scope.trigger(TriggerSetting("mcc.path_feed", "level", -1.0, pre=0.0, length=500))
         scope.fill(100)
+        assert scope.record(tmp_path / "file.csv", None, None) == 1000
         machine.back(0.09)
         scope.back()
         assert [len(f.rows) for f in found] == [100] and scope.ring.end == 900
         scope.fill(600)
         assert [len(f.rows) for f in found] == [100, 500]
+        (file,) = scope.end_records()  # a file goes on from where the machine went back to
+        file.whole()
+        assert file.rows == len((tmp_path / "file.csv").read_text().splitlines()) - 1 == 600
 
 
 def test_a_record_is_whole_in_csv_and_numpy(tmp_path: Path) -> None:

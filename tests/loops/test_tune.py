@@ -25,7 +25,7 @@ from motionfmu.study.tune.curve import Loop, margin
 from motionfmu.study.tune.solve import solve
 from motionfmu.study.tune.steps import ArrayWithSlopes, lifted, system
 from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
-from motionfmu.study.tune.tuning_words import assumptions
+from motionfmu.study.tune.tuning_words import assumptions, summed
 
 GAINS = ["mcc.p_gain", "drives.velocity_gain", "drives.velocity_time"]
 SIGNALS = Signals("card.pulses", "machine.table_position", ("drives.torque", "card.dac"))
@@ -452,3 +452,16 @@ def test_limits_that_nothing_keeps_are_told() -> None:
     study = Formula(lambda k: 1.0 / k, (1.0, 100.0), limit=0.5)
     with pytest.raises(InputError, match=r"no gains .*; nearest: largest gain, axis 1, plant 0"):
         solve(study)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("cost", "axes", "words"),
+    [
+        ("ise", [2], ""),
+        ("ise", [1, 2], ", ise is the sum over axes 1, 2"),
+        (problem.CONTOUR, [1, 2], ""),
+    ],
+)
+def test_a_cost_is_a_sum_only_of_several_axes(cost: str, axes: list[int], words: str) -> None:
+    made: Any = SimpleNamespace(problem=SimpleNamespace(cost=cost), axes=axes)
+    assert summed(made) == words

@@ -166,7 +166,7 @@ def test_the_command_reads_a_ballbar_in_two_files_without_times(tmp_path: Path) 
         wrong = within(*line, folder=tmp_path)
         assert wrong.returncode == 2 and words in wrong.stderr, wrong.stderr
     one = within("contour", "ccw.csv", "--radius", 100, folder=tmp_path)
-    assert "One way round" in one.stdout
+    assert "One way round" in one.stdout and one.returncode == 0, one.stderr
 
 
 @pytest.mark.more
