@@ -22,7 +22,7 @@ from motionfmu.study.tune import RanAway, Tuned, choice, problem, tune
 from motionfmu.study.tune.axis_study import AxisStudy, Signals
 from motionfmu.study.tune.choice import DecisionVariable
 from motionfmu.study.tune.curve import Loop, margin
-from motionfmu.study.tune.problem import CONTOUR
+from motionfmu.study.tune.problem import ON_PATH
 from motionfmu.study.tune.solve import solve
 from motionfmu.study.tune.steps import ArrayWithSlopes, lifted, system
 from motionfmu.study.tune.tuning_functions import CostAndLimits, TuningFunctions
@@ -460,7 +460,7 @@ def test_limits_that_nothing_keeps_are_told() -> None:
     [
         ("ise", [2], ""),
         ("ise", [1, 2], ", ise is the sum over axes 1, 2"),
-        (CONTOUR, [1, 2], ""),
+        (min(ON_PATH), [1, 2], ""),
     ],
 )
 def test_a_cost_is_a_sum_only_of_several_axes(cost: str, axes: list[int], words: str) -> None:
