@@ -45,6 +45,10 @@ def test_known_machine_is_found(seed):
     assert {"machine.table_mass", "machine.table_coulomb", "machine.table_viscous"} <= {
         p.name for p in told
     }
+    curve = found.curve  # the friction of the record, and that of the law, over speed
+    assert len(curve.speed) > 10 and curve.speed[0] < 0.0 < curve.speed[-1]
+    size = np.abs(curve.law).max()
+    assert np.abs(curve.drive - curve.law).max() < 0.1 * size and np.ptp(curve.law) > 0.5 * size
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.05])
