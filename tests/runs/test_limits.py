@@ -85,23 +85,26 @@ def test_only_regular_files_are_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "what"),
     [
-        ({"sampling": "random", "runs": 2_000_000}, "2000000 runs of 1 axes; 1000000 are the most"),
+        (
+            {"sampling": "random", "runs": 20_000_000},
+            "20000000 runs of 1 axes; 10000000 are the most",
+        ),
         (
             {
                 "axis": {f"mcc.p_gain[{i}]": [1, 2, 3] for i in range(1, 7)}
-                | {"mcc.irq_latency": {"from": 1e-4, "to": 1e-3, "n": 2000}}
+                | {"mcc.irq_latency": {"from": 1e-4, "to": 1e-3, "n": 20_000}}
             },
-            "1458000 runs of 7 axes; 1000000 are the most",
+            "14580000 runs of 7 axes; 7142857 are the most",
         ),
         (
             {
                 "sampling": "latin",
-                "runs": 900_000,
+                "runs": 4_500_000,
                 "axis": {
                     f"{n}[{i}]": [1, 2] for i in range(1, 7) for n in ("mcc.p_gain", "mcc.ppr")
                 },
             },
-            "900000 runs of 12 axes; 833333 are the most",
+            "4500000 runs of 12 axes; 4166666 are the most",
         ),
     ],
 )

@@ -1,5 +1,6 @@
 """Studies: points, rows whatever runs them, resuming after a kill, errors as rows, pictures."""
 
+import hashlib
 import json
 import os
 import shutil
@@ -10,7 +11,6 @@ import time
 import zipfile
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,13 +20,22 @@ import pytest
 from conftest import ROOT
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from page_curves import page_data
 
 import motionfmu
 from motionfmu.run.session import Session
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.body import Bounds
 from motionfmu.scenarios.system import End
-from motionfmu.study import book, processes, study_axes, study_columns, worker
+from motionfmu.study import (
+    book,
+    open_runs,
+    processes,
+    study_axes,
+    study_columns,
+    study_table,
+    worker,
+)
 from motionfmu.sweep import Outcome, Study, Ways, conduct, study
 
 CIRCLE = ROOT / "scenarios/circle_theory"
@@ -226,6 +235,97 @@ def test_rows_of_mismatched_gains_are_those_of_theory(tmp_path: Path, here: None
     assert outcome.best == 0 and max(outcome.cost) > 0.4
 
 
+class CountedRow(worker.Row):
+    """A row that is counted as long as it is there."""
+
+    now = most = 0
+
+    def __init__(self, *given: object, **named: object) -> None:
+        super().__init__(*given, **named)
+        CountedRow.now += 1
+        CountedRow.most = max(CountedRow.most, CountedRow.now)
+
+    def __del__(self) -> None:
+        CountedRow.now -= 1
+
+
+@pytest.mark.parametrize("sampling", ["grid", "random"])
+def test_rows_in_memory_do_not_grow_with_the_runs(
+    sampling: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Journal, table, page: a group of rows, a neighbour, what is drawn; not four times as many."""
+    group, most = 200, []
+    monkeypatch.setattr(study_table, "GROUP", group)
+    monkeypatch.setattr("motionfmu.report.studies.drawn_rows.DRAWN", group)
+    monkeypatch.setattr("motionfmu.report.matplotlib_figure.write_picture", lambda *_: None)
+    for module in (book, study_table):
+        monkeypatch.setattr(module, "Row", CountedRow)
+
+    def ended(job: object, tasks: open_runs.OpenRuns, _: int) -> Iterator[worker.Row]:
+        order = np.random.default_rng(1).permutation(len(tasks))  # as workers might end
+        for k in order:
+            run, _ = tasks[int(k)]
+            bad = run % 50 == 7
+            values = (None,) * 3 if bad else (1.0 + run, float(run), 0.0)
+            yield CountedRow(run, "error" if bad else "ok", f"no {run}" * bad, None, values)
+
+    monkeypatch.setattr(processes, "rows", ended)
+    for runs in (1000, 4000):
+        axis: dict[str, object] = {GAIN: {"from": 1.0, "to": 600.0}, TAU: {"from": 1e-3, "to": 0.1}}
+        more: dict[str, object] = {"sampling": sampling, "runs": runs}
+        if sampling == "grid":
+            axis, more = {GAIN: {"from": 1, "to": runs // 4, "n": runs // 4}, TAU: [1, 2, 3, 4]}, {}
+        CountedRow.most = CountedRow.now = 0
+        outcome = conduct(study(CIRCLE, {**SHORT, "axis": axis, **more}), tmp_path / f"{runs}")
+        most.append(CountedRow.most)
+        assert [row.run for row in outcome.rows] == list(range(runs))
+        assert outcome.errors == runs // 50 and outcome.best == 0
+        found = table(outcome.folder)
+        assert [r[RESULTS[1]] for r in found] == [
+            None if k % 50 == 7 else float(k) for k in range(runs)
+        ]
+        assert [(r[GAIN], r[TAU]) for r in found] == [*outcome.study.points]
+        page = (outcome.folder / "report.html").read_text()
+        assert f"of {runs} runs are drawn" in page
+        (drawn,) = page_data(page)["figures"]
+        assert "best: run 0" in {trace.get("name") for trace in drawn["data"]}
+        del outcome
+    assert group <= most[0] < 5 * group and most[1] < 1.2 * most[0]
+
+
+def test_points_made_when_asked_for_are_those_of_a_list(tmp_path: Path) -> None:
+    """And a study keeps the digest that it had when they were one, so that it is gone on with."""
+    axis: dict[str, object] = {GAIN: {"from": 1, "to": 7, "n": 7}, "mcc.acc_type": ["T", "S"]}
+    grid = study(CIRCLE, {**SHORT, "axis": {**axis, TAU: [0.25, 0.5, 0.75]}})
+    whole = [(g, t, x) for g in range(1, 8) for t in ("T", "S") for x in (0.25, 0.5, 0.75)]
+    drawn = study(
+        CIRCLE,
+        {
+            **SHORT,
+            "sampling": "random",
+            "runs": 50,
+            "axis": {GAIN: {"from": 1, "to": 7}, TAU: {"mean": 0.5, "deviation": 0.01}},
+        },
+    )
+    for chosen, listed in ((grid, whole), (drawn, [*drawn.points])):
+        points = chosen.points
+        assert points == listed and len(points) == len(listed) and points[-1] == listed[-1]
+        assert points[3:40:5] == listed[3:40:5] and [points[k] for k in (0, 9)] == listed[0:10:9]
+        assert [type(x) for x in points[4]] == [type(x) for x in listed[4]]
+        for i in range(points.width):
+            assert sorted(points.different(i)) == sorted({point[i] for point in listed})
+        with pytest.raises(IndexError):
+            points[len(listed)]
+        text = json.dumps([chosen.job.__dict__, listed], default=str, sort_keys=True)
+        assert chosen.digest == hashlib.sha256(text.encode()).hexdigest()
+    open_ones = open_runs.OpenRuns(grid.points, bytearray([1, 0, 2] * 14))
+    assert [*open_ones] == open_ones[:] == [(k, whole[k]) for k in range(1, 42, 3)]
+    queue = open_runs.Queue(open_ones)
+    first = queue.take(3)
+    queue.give_back(first[1:])
+    assert [first[0], *queue.take(99)] == [*open_ones] and len(queue) == 0
+
+
 # ---- errors
 
 
@@ -280,7 +380,10 @@ def test_a_run_that_ends_its_process_is_a_row_and_is_tried_again(
 
 @pytest.mark.long
 def test_ten_thousand_rows_are_what_single_runs_give_in_flat_memory(tmp_path: Path) -> None:
-    """500 rows of them, drawn evenly; what workers hold after 1,000 runs is enough for 10,000."""
+    """500 rows of them, drawn evenly, and the hash of each column.
+
+    What workers hold after 1,000 runs is enough for 10,000.
+    """
     count, held = 10_000, {}
     axis = {TAU: {"from": 1e-3, "to": 0.05, "n": 2500}, GAIN: [100, 200, 300, 400]}
     chosen = study(CIRCLE, {**SHORT, "stop": 0.01, "axis": axis})
@@ -289,13 +392,24 @@ def test_ten_thousand_rows_are_what_single_runs_give_in_flat_memory(tmp_path: Pa
         if done in (1000, count - 100):
             held[done] = max(resident(child) for child in children())
 
-    rows = conduct(chosen, tmp_path / "s", Ways(workers=2, progress=progress)).rows
-    assert [row.run for row in rows] == list(range(count))
+    conduct(chosen, tmp_path / "s", Ways(workers=2, progress=progress))
     assert held[count - 100] < 1.05 * held[1000]
-    with closing(worker.Worker(chosen.job)) as alone:
-        found = [alone.rows([(run, chosen.points[run])])[0] for run in range(7, count, 20)]
-    assert found == rows[7::20] and len(found) == 500
-    assert len({row.values for row in found}) > 400, "rows that do not differ show no mixing"
+    rows = table(tmp_path / "s")
+    assert [row["run"] for row in rows] == list(range(count))
+    scenario, alone = motionfmu.load(CIRCLE), []
+    recorded = study_columns.signals(scenario, chosen.columns)
+    for run in range(7, count, 20):
+        point = dict(zip(chosen.job.axes, chosen.points[run], strict=True))
+        result = scenario.run(set=point, stop=0.01, record=[end.name for end in recorded])
+        values = [column.of(result) for column in chosen.columns]
+        alone.append({"run": run, **point, **dict(zip(chosen.job.columns, values, strict=True))})
+    sampled = rows[7::20]
+    assert len(alone) == len(sampled) == 500 and {row["status"] for row in rows} == {"ok"}
+    for name in alone[0]:
+        one, whole = (np.array([row[name] for row in some]) for some in (alone, sampled))
+        digests = {hashlib.sha256(values.tobytes()).hexdigest() for values in (one, whole)}
+        assert one.dtype == whole.dtype and len(digests) == 1, name
+    assert len({row[RESULTS[0]] for row in alone}) > 400, "equal rows show no mixing"
 
 
 def children() -> list[int]:

@@ -164,19 +164,21 @@ def test_a_best_run_at_the_edge_of_the_study_is_said(tmp_path: Path) -> None:
     outcome = synthetic(names, "grid", 7, tmp_path)
     assert outcome.at_the_edge == []
     assert "edge of the study" not in sweep_page.page_text(outcome)
-    last = [replace(r, values=(float(-r.run), 0.0, 0.0)) for r in outcome.rows[1:]]
-    outcome.rows[1:] = last
+    first, *rest = outcome.rows
+    last = [replace(r, values=(float(-r.run), 0.0, 0.0)) for r in rest]
+    outcome = replace(outcome, rows=[first, *last])
     assert outcome.best == 48
     assert outcome.at_the_edge == [f"{n} = 1000, the largest of the study" for n in names]
     assert "The best run is at the edge of the study" in sweep_page.page_text(outcome)
     assert outcome.summary[-1] == f"at the edge of the study: {'; '.join(outcome.at_the_edge)}"
     # A cost that does not depend on an axis has no edge there.
-    outcome.rows[1:] = [replace(r, values=(float(-(r.run // 7)), 0.0, 0.0)) for r in last]
+    level = [replace(r, values=(float(-(r.run // 7)), 0.0, 0.0)) for r in last]
+    outcome = replace(outcome, rows=[first, *level])
     assert outcome.at_the_edge == [f"{names[0]} = 1000, the largest of the study"]
     drawn = synthetic(names, "latin", 60, tmp_path)
-    drawn.rows[1:] = [
-        replace(r, values=(drawn.study.points[r.run][0], 0.0, 0.0)) for r in drawn.rows[1:]
-    ]
+    first, *rest = drawn.rows
+    slope = [replace(r, values=(drawn.study.points[r.run][0], 0.0, 0.0)) for r in rest]
+    drawn = replace(drawn, rows=[first, *slope])
     assert [t.partition(" = ")[0] for t in drawn.at_the_edge] == names[:1]
 
 

@@ -3,23 +3,29 @@
 Each row is written to the journal (JSON, one line for each row) as soon as its run has ended. When
 a study ends, and when it is resumed, the journal is merged into the Parquet file, which is written
 under another name and renamed. So a study that is killed loses only the runs that were not done.
+
+No row stays in memory. Of each run it is known whether it is done and where its line is, 9 bytes,
+so that the merge reads lines in the order of runs.
 """
 
 import contextlib
+import heapq
 import json
 import os
-from collections.abc import Iterable
-from dataclasses import asdict
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
+
+import numpy as np
 
 from motionfmu.base.errors import InputError
 from motionfmu.base.locking import lock
 from motionfmu.study.study_definition import Study
-from motionfmu.study.worker import CRASH, Row
+from motionfmu.study.study_table import TableRows, write
+from motionfmu.study.worker import ERROR, OK, Row
 
 TABLE, JOURNAL = "sweep.parquet", "sweep.jsonl"
-ABOUT = b"motionfmu"  # key of the table's metadata
+DONE = {OK: 1, ERROR: 2}  # a run that crashed is not done when a study is resumed
 
 
 class Book:
@@ -32,7 +38,8 @@ class Book:
     def __init__(self, folder: Path, study: Study, fresh: bool = False) -> None:
         self.folder, self.study = _usable(folder), study
         self.table, self.journal = self.folder / TABLE, self.folder / JOURNAL
-        self.done: dict[int, Row] = {}  # by number of the run; a crashed run is not done
+        self.done = bytearray(len(study.points))  # 1: has a row, 2: one with an error; else 0
+        self._lines = np.full(len(study.points), -1, dtype=np.int64)  # places in the journal [byte]
         self._new = [f for f in (self.folder, *self.folder.parents) if not f.exists()]
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -49,21 +56,35 @@ class Book:
             raise
 
     def _resume(self) -> None:
-        found = {}
         if self.table.exists():
-            self._same(_about(self.table).get("study"), self.table)
-            found = {row.run: row for row in read(self.table)}
-        lines = _whole_lines(self._file)
-        if lines:
-            self._same(lines[0].get("study"), self.journal)
-        for line in lines[1:]:
-            row = Row(**line | {"values": tuple(line["values"])})
-            found[row.run] = row
-        self.done = {run: row for run, row in found.items() if row.status != CRASH}
-        if len(lines) > 1:
-            self._write_table(self.done.values())
+            rows = TableRows(self.table)
+            self._same(rows.about.get("study"), self.table)
+            for run, status, _, _ in rows.own():
+                self.done[run] = DONE.get(status, 0)
+        self._end = 0
+        with self.journal.open("rb") as journal:
+            for place, line in _whole_lines(journal):
+                if not place:
+                    self._same(line.get("study"), self.journal)
+                else:
+                    self._lines[line["run"]] = place
+                    self.done[line["run"]] = DONE.get(line["status"], 0)
+        if (self._lines >= 0).any():
+            self._lines[np.frombuffer(self.done, np.uint8) == 0] = -1  # to be run again
+            self._fold()
         os.ftruncate(self._file, 0)
+        self._lines.fill(-1)
         self._line({"study": self.study.digest})
+
+    @property
+    def count(self) -> int:
+        """Runs that have a row."""
+        return len(self.done) - self.done.count(0)
+
+    @property
+    def errors(self) -> int:
+        """Runs whose row is an error."""
+        return self.done.count(DONE[ERROR])
 
     def _same(self, digest: Any, file: Path) -> None:
         if digest != self.study.digest:
@@ -80,28 +101,47 @@ class Book:
                 raise OSError(28, "No space left on device")
         except OSError as error:
             raise InputError(f"cannot write {self.journal}: {error.strerror}") from None
+        self._end += len(data)
 
     def add(self, row: Row) -> None:
         """Add a row to the journal."""
-        self._line(asdict(row))
-        self.done[row.run] = row
+        place = self._end
+        self._line(vars(row))
+        self._lines[row.run] = place
+        self.done[row.run] = DONE.get(row.status, DONE[ERROR])
 
-    def finish(self) -> list[Row]:
+    def finish(self) -> TableRows:
         """Merge the journal into the table and remove it."""
-        rows = [self.done[run] for run in sorted(self.done)]
-        self._write_table(rows)
+        self._fold()
         self.journal.unlink()
-        return rows
+        return TableRows(self.table)
 
-    def _write_table(self, rows: Iterable[Row]) -> None:
+    def _fold(self) -> None:
+        """Write the table anew from its rows and those of the journal, which count more."""
         try:
-            write(self.table, self.study, sorted(rows, key=lambda row: row.run))
+            with self.journal.open("rb") as journal:
+                both = heapq.merge(self._kept(), self._new_rows(journal), key=lambda row: row.run)
+                write(self.table, self.study, both)
         except OSError as error:
             raise InputError(f"cannot write {self.table}: {error.strerror or error}") from None
 
+    def _kept(self) -> Iterator[Row]:
+        """Rows of the table that stay: a run that crashed is no row, a line replaces one."""
+        if self.table.exists():
+            for row in TableRows(self.table):
+                if row.status in DONE and self._lines[row.run] < 0:
+                    yield row
+
+    def _new_rows(self, journal: BinaryIO) -> Iterator[Row]:
+        """Rows of the journal in the order of runs."""
+        for run in np.flatnonzero(self._lines >= 0):
+            journal.seek(int(self._lines[run]))
+            line = json.loads(journal.readline())
+            yield Row(**line | {"values": tuple(line["values"])})
+
     def close(self) -> None:
         """Release the folder for other processes; an empty journal or folder is removed."""
-        if not self.done and not self.table.exists() and self.journal.exists():
+        if not self.count and not self.table.exists() and self.journal.exists():
             self.journal.unlink()
             for folder in self._new:
                 with contextlib.suppress(OSError):
@@ -146,85 +186,14 @@ def _is_same(file: int, path: Path) -> bool:
         return False
 
 
-def _whole_lines(file: int) -> list[dict[str, Any]]:
-    """Lines of a journal up to an incomplete one, which a killed process left."""
-    data = os.pread(file, os.fstat(file).st_size, 0)
-    found = []
-    for line in data.split(b"\n")[:-1]:
+def _whole_lines(journal: BinaryIO) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Places and contents of a journal's lines up to an incomplete one, which a kill has left."""
+    place = 0
+    for line in journal:
         try:
-            found.append(json.loads(line))
+            if not line.endswith(b"\n"):
+                return
+            yield place, json.loads(line)
         except ValueError:
-            break
-    return found
-
-
-def _about(table: Path) -> dict[str, Any]:
-    """Metadata of a table about its study."""
-    import pyarrow.parquet as pq
-
-    try:
-        metadata = pq.read_schema(table).metadata or {}
-        return dict(json.loads(metadata.get(ABOUT, b"{}")))
-    except (OSError, ValueError) as error:
-        raise InputError(f"{table}: not a table of a study ({error})") from None
-
-
-def read(table: Path) -> list[Row]:
-    """Read the rows of a sweep.parquet, in its order."""
-    import pyarrow.parquet as pq
-
-    names = _about(table)["results"]
-    data = pq.read_table(table)
-    columns = [data.column(n).to_pylist() for n in ("run", "status", "message", "checks")]
-    values = [data.column(n).to_pylist() for n in names]
-    numbers = zip(*values, strict=True) if values else ((),) * data.num_rows
-    return [
-        Row(run, status, message, checks, tuple(v))
-        for run, status, message, checks, v in zip(*columns, numbers, strict=True)
-    ]
-
-
-def write(table: Path, study: Study, rows: list[Row]) -> None:
-    """Write the rows of a study, whole or not at all.
-
-    Columns: ``run``; one per axis; ``status``, ``message``, ``checks``; one per result. The
-    metadata ``motionfmu`` says which study they belong to, that of a column its unit.
-    """
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    types = {"Float64": pa.float64(), "Int32": pa.int64(), "Boolean": pa.bool_()}
-    columns: list[list[Any]] = [[row.run for row in rows]]
-    fields = [pa.field("run", pa.int64())]
-    for i, axis in enumerate(study.axes):
-        kind = types.get(axis.end.port.type, pa.string())
-        fields.append(pa.field(axis.name, kind, metadata={"unit": axis.unit}))
-        columns.append([study.points[row.run][i] for row in rows])
-    fields += [pa.field("status", pa.string()), pa.field("message", pa.string())]
-    fields.append(pa.field("checks", pa.bool_()))
-    columns += [[row.status for row in rows], [row.message for row in rows]]
-    columns.append([row.checks for row in rows])
-    for i, column in enumerate(study.columns):
-        fields.append(pa.field(column.name, pa.float64(), metadata={"unit": column.unit}))
-        columns.append([row.values[i] for row in rows])
-    about = {
-        "study": study.digest,
-        "scenario": study.name,
-        "about": study.about,
-        "sampling": study.sampling,
-        "seed": study.seed,
-        "runs": len(study.points),
-        "axes": list(study.job.axes),
-        "results": list(study.job.columns),
-        "cost": study.cost,
-    }
-    schema = pa.schema(fields, metadata={ABOUT: json.dumps(about).encode()})
-    arrays = [pa.array(c, f.type) for c, f in zip(columns, fields, strict=True)]
-    part = table.with_name(f".{table.name}.part")
-    try:
-        pq.write_table(pa.Table.from_arrays(arrays, schema=schema), part)
-        with part.open("rb") as written:
-            os.fsync(written.fileno())
-        part.replace(table)
-    finally:
-        part.unlink(missing_ok=True)
+            return
+        place += len(line)

@@ -13,11 +13,9 @@ from typing import Any
 
 from motionfmu.base.children import child
 from motionfmu.base.errors import InputError
-from motionfmu.study.study_axes import Point
+from motionfmu.study.open_runs import Queue, Task
 from motionfmu.study.study_definition import WorkerJob
 from motionfmu.study.worker import CRASH, Row
-
-Task = tuple[int, Point]
 
 # Groups of points that a worker has: one runs, the others wait, so that it never has to wait.
 AHEAD = 4
@@ -66,7 +64,7 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
     """Run points in processes of this machine; rows as they come."""
     # A run that ends its process gives a row that says so. A worker that cannot begin is an
     # InputError.
-    pending = deque(tasks)
+    pending = Queue(tasks)
     alone: deque[Task] = deque()  # of a group that has ended its process: whose fault is it?
     running: list[_Process] = []
     unready = 0  # processes ended by a signal before their first run, since one was heard of
@@ -91,7 +89,7 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
                         lost = _crashed(one, job, unready)
                         alone.extend(lost if len(lost) > 1 else ())
                         for group in reversed(one.groups):
-                            pending.extendleft(reversed(group))
+                            pending.give_back(group)
                         if len(lost) == 1:
                             yield _row_of(lost[0], one, job)
                     else:
@@ -101,7 +99,7 @@ def rows(job: WorkerJob, tasks: Sequence[Task], workers: int) -> Iterator[Row]:
                 _end(one)
 
 
-def _deal(running: list[_Process], pending: deque[Task], alone: deque[Task]) -> None:
+def _deal(running: list[_Process], pending: Queue, alone: deque[Task]) -> None:
     """Hand out groups of points; the last points only to workers that have none."""
     for one in running:
         ahead = AHEAD if len(pending) > AHEAD * one.lanes * len(running) else 1
@@ -110,7 +108,7 @@ def _deal(running: list[_Process], pending: deque[Task], alone: deque[Task]) -> 
                 group = [alone.popleft()]
             else:
                 share = -(-len(pending) // len(running))
-                group = [pending.popleft() for _ in range(min(one.lanes, share))]
+                group = pending.take(min(one.lanes, share))
             one.groups.append(group)
             with contextlib.suppress(BrokenPipeError, ConnectionResetError):
                 one.pipe.send(group)  # its end is seen when we receive

@@ -1,9 +1,8 @@
 """The axes of a study: the variables that it varies, and the points at which it runs."""
 
-import itertools
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
@@ -18,9 +17,13 @@ from motionfmu.scenarios.system import End
 
 Value = float | int | bool | str
 Point = tuple[Value, ...]
+AxisValues = (
+    list[Value] | NDArray[Any]
+)  # one value for each value of a grid's axis, or for each run
 SAMPLINGS = ("grid", "random", "latin")
-RUNS_MAX = 1_000_000  # a day on forty cores; their table is still a gigabyte at most
-VALUES_MAX = 10_000_000  # runs times axes
+RUNS_MAX = 10_000_000  # some hours on a hundred cores
+VALUES_MAX = 50_000_000  # runs times axes: 8 bytes for each that is drawn
+BLOCK = 10_000  # points made at a time
 STANDARD = NormalDist()
 _STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
@@ -203,15 +206,81 @@ def count(axes: Sequence[Axis]) -> int:
     return math.prod(n or 1 for n in sizes)
 
 
-def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> list[Point]:
+class StudyPoints(Sequence[Point]):
+    """The points of a study in the order of its rows, each made when it is asked for.
+
+    Of a grid the values of its axes are kept, of drawn points 8 bytes for each value. So points
+    take no room to speak of beside what they are for.
+    """
+
+    def __init__(self, columns: Sequence[AxisValues], numeric: Sequence[bool], grid: bool) -> None:
+        self._columns, self._numeric, self._grid = tuple(columns), tuple(numeric), grid
+        sizes = [len(c) for c in columns]
+        self._count = math.prod(sizes) if grid else sizes[0]
+        self._strides = [math.prod(sizes[i + 1 :]) for i in range(len(sizes))]
+
+    def __len__(self) -> int:
+        return self._count
+
+    def __getitem__(self, which: Any) -> Any:
+        if isinstance(which, slice):
+            runs = range(*which.indices(self._count))
+            return list(zip(*(self.column(i, runs) for i in range(self.width)), strict=True))
+        if not -self._count <= which < self._count:
+            raise IndexError(which)
+        place = which % self._count
+        return self[place : place + 1][0]
+
+    def __iter__(self) -> Iterator[Point]:
+        for first in range(0, self._count, BLOCK):
+            yield from self[first : first + BLOCK]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Sequence) and len(self) == len(other) and [*self] == [*other]
+
+    @property
+    def width(self) -> int:
+        """Number of values of a point."""
+        return len(self._columns)
+
+    def column(self, i: int, runs: Sequence[int] | NDArray[np.int64]) -> list[Value]:
+        """Values of one axis at some runs."""
+        column = self._columns[i]
+        if isinstance(column, np.ndarray):
+            found: list[Value] = column[np.asarray(runs, dtype=np.int64)].tolist()
+            return found
+        if self._grid:
+            return [column[run // self._strides[i] % len(column)] for run in runs]
+        return [column[run] for run in runs]
+
+    def numbers(self, i: int) -> NDArray[np.float64]:
+        """Values of an axis of numbers at all runs."""
+        found = np.asarray(self._columns[i], dtype=np.float64)
+        if not self._grid:
+            return found
+        inner = np.repeat(found, self._strides[i])
+        return np.tile(inner, self._count // max(len(inner), 1))
+
+    def different(self, i: int) -> list[Value]:
+        """The values that an axis takes, each once: numbers in their order, others as they come."""
+        column = self._columns[i]
+        if isinstance(column, np.ndarray):
+            found: list[Value] = np.unique(column).tolist()
+            return found
+        once = list(dict.fromkeys(column))
+        return sorted(once) if self._numeric[i] else once  # type: ignore[type-var]
+
+
+def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> StudyPoints:
     """All points of a study, in the order of its rows.
 
     ``grid``: every combination, the last axis fastest, whatever `runs` is; ``random``: independent
     draws; ``latin``: each axis' distribution cut into `runs` parts of equal probability, each taken
     once (Latin hypercube). The same seed draws the same points.
     """
+    numeric = [axis.end.port.type in ("Float64", "Int32") for axis in axes]
     if sampling == "grid":
-        return list(itertools.product(*(a.grid() for a in axes)))
+        return StudyPoints([a.grid() for a in axes], numeric, True)
     random = np.random.default_rng(seed)
     if sampling == "latin":
         from scipy.stats import qmc  # takes half a second to import, and no worker needs it
@@ -219,5 +288,13 @@ def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> list[Po
         shares = qmc.LatinHypercube(len(axes), rng=random).random(runs)
     else:
         shares = random.random((runs, len(axes)))
-    columns = [axis.drawn(shares[:, i]) for i, axis in enumerate(axes)]
-    return list(zip(*columns, strict=True))
+    drawn = [_drawn(*of, shares[:, i]) for i, of in enumerate(zip(axes, numeric, strict=True))]
+    return StudyPoints(drawn, numeric, False)
+
+
+def _drawn(axis: Axis, numeric: bool, shares: NDArray[np.float64]) -> AxisValues:
+    """An axis' values at its shares: numbers block by block, as an array."""
+    blocks = (shares[first : first + BLOCK] for first in range(0, len(shares), BLOCK))
+    if numeric:
+        return np.concatenate([np.array(axis.drawn(block)) for block in blocks])
+    return [value for block in blocks for value in axis.drawn(block)]

@@ -4,6 +4,7 @@ import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -42,8 +43,8 @@ class Study:
         Name of the scenario's folder; what the first line of the study's file says.
     axes : tuple of Axis
     columns : tuple of Column
-    points : list of tuple
-        One value per axis; the order of the rows.
+    points : sequence of tuple
+        One value per axis; the order of the rows. Each is made when it is asked for.
     job : WorkerJob
         For the workers.
     sampling, seed : str, int
@@ -58,7 +59,7 @@ class Study:
     about: str
     axes: tuple[ax.Axis, ...]
     columns: tuple[Column, ...]
-    points: list[ax.Point] = field(repr=False)
+    points: ax.StudyPoints = field(repr=False)
     job: WorkerJob
     sampling: str
     seed: int
@@ -74,11 +75,16 @@ class Study:
         """The column that is drawn: the cost, else the first column."""
         return self.cost or self.columns[0].name
 
-    @property
+    @cached_property
     def digest(self) -> str:
         """Hash of all that must be equal for rows to belong to one study."""
-        text = json.dumps([self.job.__dict__, self.points], default=str, sort_keys=True)
-        return hashlib.sha256(text.encode()).hexdigest()
+        job = json.dumps(self.job.__dict__, default=str, sort_keys=True)
+        found = hashlib.sha256(f"[{job}, [".encode())  # JSON of both, block by block
+        for first in range(0, len(self.points), ax.BLOCK):
+            block = json.dumps(self.points[first : first + ax.BLOCK], default=str)
+            found.update((", " * (first > 0) + block[1:-1]).encode())
+        found.update(b"]]")
+        return found.hexdigest()
 
 
 def study(path: str | Path, given: Mapping[str, Any] | None = None) -> Study:

@@ -5,13 +5,13 @@ from pathlib import Path
 
 from motionfmu.study import processes
 from motionfmu.study.book import Book
+from motionfmu.study.open_runs import OpenRuns
 from motionfmu.study.study_definition import Study
 from motionfmu.study.study_outcome import Outcome, Ways
-from motionfmu.study.worker import ERROR, OK, Row
+from motionfmu.study.worker import OK, Row
 
 
-def _rows(study: Study, ways: Ways, done: set[int]) -> Iterator[Row]:
-    tasks = [(run, point) for run, point in enumerate(study.points) if run not in done]
+def _rows(study: Study, ways: Ways, tasks: OpenRuns) -> Iterator[Row]:
     if not tasks:
         return iter(())
     if ways.scheduler:
@@ -42,10 +42,10 @@ def conduct(study: Study, folder: str | Path, ways: Ways | None = None) -> Outco
     """
     asked = ways or Ways()
     with Book(Path(folder), study, asked.fresh) as book:
-        resumed = len(book.done)
-        done, errors = resumed, sum(r.status == ERROR for r in book.done.values())
+        resumed, errors = book.count, book.errors
+        done = resumed
         asked.progress(done, errors)
-        for row in _rows(study, asked, set(book.done)):
+        for row in _rows(study, asked, OpenRuns(study.points, book.done)):
             book.add(row)
             done, errors = done + 1, errors + (row.status != OK)
             asked.progress(done, errors)

@@ -28,6 +28,7 @@ from motionfmu.report.studies.cost_field import (
     dimensions,
     field,
     kind,
+    least_cost,
     levels,
     logarithmic,
     never_negative,
@@ -77,7 +78,7 @@ def _points(outcome: "Outcome", size: float = 1.0) -> list[tuple[dict[str, Any],
     found: list[tuple[dict[str, Any], Any, Any]] = []
     if (best := outcome.best) is not None:
         place = dict(zip(outcome.study.job.axes, outcome.study.points[best], strict=True))
-        cost = float(cost_of(outcome)[best])
+        cost = least_cost(outcome)
         found.append((BEST | {"name": f"best: run {best}"}, place, cost))
     if tuned := outcome.study.tuned:
         found.append((TUNED | {"name": "tuned"}, tuned, None))

@@ -73,6 +73,12 @@ def cost_of(outcome: "Outcome") -> Array:
     return outcome.cost * _scaled(outcome, unit)[0]
 
 
+def least_cost(outcome: "Outcome") -> float | None:
+    """The cost of the best run as it is drawn, or None."""
+    unit = next(c.unit for c in outcome.study.columns if c.name == outcome.study.shown)
+    return None if outcome.least is None else outcome.least * _scaled(outcome, unit)[0]
+
+
 def _scaled(outcome: "Outcome", unit: str) -> tuple[float, str]:
     """Factor and unit in which the cost reads well."""
     known = np.abs(outcome.cost[np.isfinite(outcome.cost)])

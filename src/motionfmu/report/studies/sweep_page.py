@@ -1,7 +1,6 @@
 """The page of a study: its cost over what was varied, its best runs, its errors."""
 
 import os
-from collections import Counter
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,12 +19,13 @@ from motionfmu.report.studies.cost_field import (
     MATRIX,
     cost_label,
     cost_of,
-    dimensions,
     kind,
+    least_cost,
 )
+from motionfmu.report.studies.drawn_rows import drawn_rows
 
 if TYPE_CHECKING:
-    from motionfmu.study.study_outcome import Outcome
+    from motionfmu.study.study_outcome import Outcome, Told
 
 PAGE = "report.html"
 BEST_SHOWN, ERRORS_SHOWN = 10, 20
@@ -38,7 +38,7 @@ WORDS = {
 
 def write_sweep(outcome: "Outcome", folder: Path) -> Path:
     """Write report.html and, with a cost, sweep.png and sweep.svg."""
-    part = folder / f".{PAGE}.part{os.getpid()}"
+    part, drawn = folder / f".{PAGE}.part{os.getpid()}", drawn_rows(outcome)
     try:
         if np.isfinite(outcome.cost).any():
             from motionfmu.report.matplotlib_figure import write_picture
@@ -46,9 +46,9 @@ def write_sweep(outcome: "Outcome", folder: Path) -> Path:
             title = f"{outcome.study.name}: {cost_label(outcome)}"
             best, note = outcome.best, ""
             if best is not None:
-                note = f"smallest {cost_of(outcome)[best]:.4g} in run {best}"
-            write_picture(folder / "sweep", title, note, cost_chart(outcome))
-        part.write_text(page_text(outcome), encoding="utf-8")
+                note = f"smallest {least_cost(outcome):.4g} in run {best}"
+            write_picture(folder / "sweep", title, note, cost_chart(drawn))
+        part.write_text(page_text(outcome, drawn), encoding="utf-8")
         part.replace(folder / PAGE)
     except OSError as error:
         raise InputError(f"cannot write {folder}: {error.strerror or error}") from None
@@ -57,22 +57,26 @@ def write_sweep(outcome: "Outcome", folder: Path) -> Path:
     return folder / PAGE
 
 
-def page_text(outcome: "Outcome") -> str:
-    """The page of a study: HTML that needs no network."""
+def page_text(outcome: "Outcome", drawn: "Outcome | None" = None) -> str:
+    """The page of a study, and of its rows that are drawn: HTML that needs no network."""
     page, study = Page(), outcome.study
     page.sections.append(_cards(outcome))
     if np.isfinite(outcome.cost).any():
-        way = kind(outcome)
-        content = page.place("cost", cost_chart(outcome)) + picture_links("sweep")
-        page.section(escape(cost_label(outcome)), f"{WORDS[way]} {_told_best(outcome)}", content)
+        drawn = drawn or drawn_rows(outcome)
+        words = [WORDS[kind(drawn)]]
+        if (shown := len(drawn.rows)) < (runs := len(outcome.rows)):
+            words.append(f"{shown} of {runs} runs are drawn, the best one among them.")
+        content = page.place("cost", cost_chart(drawn)) + picture_links("sweep")
+        words.append(_told_best(outcome))
+        page.section(escape(cost_label(outcome)), " ".join(words), content)
         if outcome.best is not None:
             note = "Smallest cost first; checks: those of the scenario."
             page.section("Best runs", note, table(*best_rows(outcome), numeric=2))
     if outcome.errors:
-        page.section("Errors", "Runs that gave no row, by message.", _told(outcome, False))
-    if any(row.status == "ok" and row.message for row in outcome.rows):
+        page.section("Errors", "Runs that gave no row, by message.", _told(outcome.counts.wrong))
+    if outcome.counts.missing.first:
         note = "Runs with an empty cell, by the reason."
-        page.section("Missing numbers", note, _told(outcome, True))
+        page.section("Missing numbers", note, _told(outcome.counts.missing))
     page.section("What was varied", "", _varied(outcome))
     footer = f"{escape(study.sampling)} of {len(study.points)} runs"
     footer += "" if study.sampling == "grid" else f", seed {study.seed}"
@@ -98,14 +102,13 @@ def _number(value: Any) -> str:
 
 def _cards(outcome: "Outcome") -> str:
     rows, study, best = outcome.rows, outcome.study, outcome.best
-    held = sum(row.checks is True for row in rows)
     shown = [("Runs", str(len(rows)), f"{outcome.errors} with an error")]
-    if any(row.checks is not None for row in rows):
-        shown.append(("Checks hold", str(held), f"of {len(rows)} runs"))
+    if outcome.counts.judged:
+        shown.append(("Checks hold", str(outcome.counts.held), f"of {len(rows)} runs"))
     if best is not None:
         point = zip(study.axes, study.points[best], strict=True)
         where = ", ".join(f"{a.name} = {_number(v)} {spelled(a.unit)}".strip() for a, v in point)
-        shown.append((f"Smallest {cost_label(outcome)}", f"{cost_of(outcome)[best]:.4g}", where))
+        shown.append((f"Smallest {cost_label(outcome)}", f"{least_cost(outcome):.4g}", where))
     return cards(shown)
 
 
@@ -130,26 +133,26 @@ def best_rows(outcome: "Outcome") -> tuple[list[str], list[list[str]]]:
     return ["Run", "Checks", *map(escape, units)], body
 
 
-def _told(outcome: "Outcome", ok: bool) -> str:
-    """Messages of the rows that are ok, or of the others."""
-    rows = [row for row in outcome.rows if row.message and (row.status == "ok") is ok]
-    told = Counter(row.message for row in rows)
-    first = {row.message: row.run for row in reversed(rows)}
+def _told(messages: "Told") -> str:
+    """A table of messages, the most frequent first."""
     body: list[tuple[str, str, str]] = [
-        (escape(text), str(n), str(first[text])) for text, n in told.most_common(ERRORS_SHOWN)
+        (escape(text), str(n), str(messages.first[text]))
+        for text, n in messages.times.most_common(ERRORS_SHOWN)
     ]
-    if more := len(told) - len(body):
+    if more := len(messages.times) - len(body):
         body.append((f"{more} more messages", "", ""))
+    if messages.others:
+        body.append(("Other messages", str(messages.others), ""))
     return table(("Message", "Runs", "First run"), body)
 
 
 def _varied(outcome: "Outcome") -> str:
     body = []
-    for shown in dimensions(outcome):
-        different = list(dict.fromkeys(shown.values))
-        if shown.numeric:
-            ends = f"{shown.numbers.min():g} … {shown.numbers.max():g}"
+    for i, axis in enumerate(outcome.study.axes):
+        different = outcome.study.points.different(i)
+        if axis.end.port.type in ("Float64", "Int32"):
+            ends = f"{different[0]:g} … {different[-1]:g}"
         else:
             ends = escape(", ".join(map(str, different)))
-        body.append((escape(shown.label), str(len(different)), ends))
+        body.append((escape(label(axis.name, axis.unit)), str(len(different)), ends))
     return table(("Variable", "Different values", "Range"), body)

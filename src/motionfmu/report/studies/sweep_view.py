@@ -9,6 +9,7 @@ from motionfmu.report.matplotlib_figure import picture
 from motionfmu.report.notebook_view import beside, cells, images, view
 from motionfmu.report.studies.cost_chart import cost_chart
 from motionfmu.report.studies.cost_field import cost_label
+from motionfmu.report.studies.drawn_rows import drawn_rows
 from motionfmu.report.studies.sweep_page import best_rows
 
 if TYPE_CHECKING:
@@ -29,5 +30,5 @@ def sweep_html(outcome: "Outcome") -> str:
     if outcome.best is not None:
         heads, rows = best_rows(outcome)
         left += cells(heads, rows[:_ROWS], range(2, len(heads)))
-    drawn = picture(label, "", cost_chart(outcome), width=_INCHES)
+    drawn = picture(label, "", cost_chart(drawn_rows(outcome)), width=_INCHES)
     return view(head, beside(left, images(drawn, label)))
