@@ -72,7 +72,7 @@ check: needs .venv/installed          ## formatting, lint, types, plain sentence
 	$(BIN)/mypy
 	$(BIN)/python tests/helpers/plain_english.py
 
-bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures, --profile counts by part
+bench: build                    ## speed, as ratios measured in one run; BENCH=--renew keeps its figures, --profile counts by part, --cluster takes a study on dask
 	@cmake --build build --target fused_circle fused_six_axes fused_profiled count_here card_cost interpreter_cost kinematics_cost lookahead_cost scurve_batch
 	PYTHONPATH=tests/helpers $(BIN)/python tests/bench/bench.py $(BENCH)
 

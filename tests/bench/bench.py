@@ -4,8 +4,8 @@ Every time is processor time, the median of several rounds, and the runs take tu
 machine slows all of them alike; instructions are counted beside. README.md beside this file says
 what each line means and where the time goes. `--renew` keeps the figures as those to compare with,
 `--quick` takes one round, a rough look that is never kept; `--long` does long work alone,
-`--profile` tells where the instructions of a step go, `--growth` how cost grows with size, and
-`--peers` has other people's tools beside ours.
+`--cluster` does a study on a cluster, `--profile` tells where the instructions of a step go,
+`--growth` how cost grows with size, and `--peers` has other people's tools beside ours.
 """
 
 import math
@@ -16,6 +16,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import cluster
 import commands
 import counting
 import figures
@@ -366,6 +367,8 @@ if __name__ == "__main__":
     elif "--long" in sys.argv:
         long = [*long_page.figures_of_long_page(), *long_run.figures_of_long_work()]
         figures.show(long, None, figures.Kept.SHOWN)
+    elif "--cluster" in sys.argv:
+        figures.show(cluster.figures_of_a_cluster(), None, figures.Kept.SHOWN)
     else:
         one, more = figures.Kept.ONE_ROUND, figures.Kept.SHOWN
         main(one if QUICK else figures.Kept.NEW if RENEW else more)

@@ -149,6 +149,47 @@ def test_a_worker_of_a_cluster_that_is_killed_is_replaced(
     assert set(before) != set(processes())
 
 
+@pytest.mark.more
+def test_a_run_that_ends_its_process_on_a_cluster_is_a_row_with_its_message(
+    tmp_path: Path, undisturbed: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One gain ends the process that runs it, as often as it is tried; a worker is killed, too."""
+    distributed = pytest.importorskip("distributed")
+    dask = pytest.importorskip("dask")
+    site, deadly = tmp_path / "site", 20
+    site.mkdir()
+    (site / "sitecustomize.py").write_text(
+        "import os, sys\n"
+        "if any('multiprocessing' in word for word in sys.orig_argv):\n"
+        "    import motionfmu.run.session as s\n"
+        "    made = s.Session._execution_of\n"
+        "    def deadly(self, given, folder):\n"
+        f"        if given.get('{GAIN}') == {101 + deadly}: os.kill(os.getpid(), 11)\n"
+        "        return made(self, given, folder)\n"
+        "    s.Session._execution_of = deadly\n"
+    )
+    monkeypatch.setenv("PYTHONPATH", str(site))
+    monkeypatch.setattr(cluster, "CHUNK_MAX", 4)
+    given: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        distributed.LocalCluster(host="127.0.0.1", **given) as workers,
+    ):
+        ways = Ways(
+            scheduler=workers.scheduler_address,
+            progress=killing({8}, lambda: [one.pid for one in workers.workers.values()]),
+        )
+        rows = table(conduct(gains(), tmp_path / "s", ways))
+    assert [row["run"] for row in rows] == list(range(len(undisturbed)))
+    assert [row["run"] for row in rows if row["status"] != "ok"] == [deadly]
+    lost = rows.pop(deadly)
+    assert lost["status"] == worker.CRASH and lost["message"].startswith(
+        "the run ended its process"
+    )
+    assert [lost[name] for name in RESULTS] == [None, None] and lost["checks"] is None
+    assert rows == [row for row in undisturbed if row["run"] != deadly]
+
+
 class Scheduled:
     """A future of a cluster on which all that is in flight beside a deadly run is lost with it."""
 
@@ -164,8 +205,9 @@ class Scheduled:
         lost = any(DEADLY in one.runs for one in self._flying)
         return distributed.KilledWorker("run", None, 3) if lost else None
 
-    def result(self) -> tuple[float, list[worker.Row]]:
-        return 0.01, [worker.Row(n, worker.OK, "", None, ()) for n in self.runs]
+    def result(self) -> cluster.Ran:
+        rows = [worker.Row(n, worker.OK, "", None, ()) for n in self.runs]
+        return cluster.Ran(0.01, 8, rows)
 
     def release(self) -> None:
         self._flying.remove(self)

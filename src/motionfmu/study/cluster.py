@@ -3,28 +3,41 @@
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from typing import Any
 
+from motionfmu.base import heap
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
-from motionfmu.study.processes import Task
+from motionfmu.study.open_runs import Queue, Task
 from motionfmu.study.study_definition import WorkerJob
-from motionfmu.study.worker import CRASH, Row, chunk
+from motionfmu.study.worker import CRASH, Row, serving
 
 TIMEOUT = 10  # [s] in which the scheduler must answer and a worker be there
-CHUNK = 1.0  # [s] of work in a chunk: to hand one out costs a thousandth of that
-CHUNK_MAX = 200
+CHUNK = 1.0  # [s] of a processor in a chunk: to hand one out costs some thousandths of that
+CHUNK_MAX = 2000  # runs in a chunk
 LOST = 120  # [s] without any worker, after which the study ends
 LOOK = 1.0  # [s] without news, after which one looks whether there are workers
 AHEAD = 2  # chunks handed out per thread of the cluster, so that none waits for its next one
 
 
-def _timed(job: WorkerJob, tasks: Sequence[Task]) -> tuple[float, list[Row]]:
-    """Seconds that a chunk took, and its rows."""
-    start = time.perf_counter()
-    found = chunk(job, tasks)
-    return time.perf_counter() - start, found
+@dataclass(frozen=True)
+class Ran:
+    """What a worker gives back for a chunk."""
+
+    seconds: float  # of a processor; a busy machine does not change it
+    lanes: int  # points that the worker runs side by side
+    rows: list[Row]
+
+
+def _ran(job: WorkerJob, tasks: Sequence[Task]) -> Ran:
+    """Run a chunk in a process of the cluster, which keeps the memory that its runs free."""
+    heap.keep_freed()
+    worker = serving(job)  # made once, so it is no part of what a run takes
+    start = time.thread_time()
+    found = worker.rows(tasks)
+    return Ran(time.thread_time() - start, worker.lanes, found)
 
 
 def rows(job: WorkerJob, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]:
@@ -64,30 +77,38 @@ def _next(client: Any, finished: "SimpleQueue[Any]") -> Any:
                 raise TimeoutError from None
 
 
+def _size(ran: Ran) -> int:
+    """Runs of the next chunks: a second of work, in whole groups that go side by side."""
+    size = int(CHUNK * len(ran.rows) / max(ran.seconds, 1e-6))
+    return max(1, min(CHUNK_MAX, size - size % ran.lanes or size))
+
+
+# CCN 16: one case for each end of a chunk.
 def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]:
     import distributed
 
-    pending, size = deque(tasks), 1
-    # Tasks of chunks that lost their workers again and again. dask suspects all that a lost worker
-    # had, so each of them runs with nothing beside it.
-    alone: deque[Task] = deque()
+    pending, size, lanes = Queue(tasks), 1, 1
+    # Chunks that lost their workers again and again. dask suspects all that a lost worker had, so
+    # each of them runs with nothing beside it, and the one whose fault it is run by run.
+    alone: deque[list[Task]] = deque()
     sent: dict[Any, list[Task]] = {}
     by_itself: Any = None  # the one that runs so
     finished: SimpleQueue[Any] = SimpleQueue()
 
     def submit(part: list[Task]) -> Any:
-        future = client.submit(_timed, job, part, pure=False)
+        future = client.submit(_ran, job, part, pure=False)
         sent[future] = part
         future.add_done_callback(finished.put)
         return future
 
     def send() -> None:
         nonlocal by_itself
-        threads = sum(client.nthreads().values()) or 1
-        while pending and len(sent) < AHEAD * threads:
-            submit([pending.popleft() for _ in range(min(size, len(pending)))])
+        places = AHEAD * (sum(client.nthreads().values()) or 1)
+        while pending and len(sent) < places:
+            share = -(-len(pending) // places)  # the last chunks are small, so that all end at once
+            submit(pending.take(min(size, max(lanes, share))))
         if alone and not sent:
-            by_itself = submit([alone.popleft()])
+            by_itself = submit(alone.popleft())
 
     send()
     while sent:
@@ -95,15 +116,17 @@ def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]
         part = sent.pop(future)
         error = future.exception()
         if error is None:
-            seconds, found = future.result()
-            size = max(1, min(CHUNK_MAX, int(CHUNK * len(part) / max(seconds, 1e-6))))
-            yield from found
+            ran = future.result()
+            size, lanes = _size(ran), ran.lanes
+            yield from ran.rows
         elif isinstance(error, InputError):
             raise error
         elif not isinstance(error, distributed.KilledWorker):
             raise InputError(f"a worker of the cluster failed: {error}")
         elif future is not by_itself:
-            alone.extend(part)
+            alone.append(part)
+        elif len(part) > 1:
+            alone.extendleft([task] for task in reversed(part))
         else:
             told = "the run ended its process again and again"
             yield Row(part[0][0], CRASH, told, None, (None,) * len(job.columns))

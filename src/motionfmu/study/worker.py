@@ -1,7 +1,7 @@
 """Runs points of a study, one after another, in a process of its own.
 
 Every run gives a `Row`, even one that failed. `motionfmu.study.processes` starts `main`,
-`motionfmu.study.cluster` calls `chunk`.
+`motionfmu.study.cluster` calls `serving`.
 """
 
 import signal
@@ -118,15 +118,20 @@ def _told(error: Exception) -> str:
 _kept = threading.local()  # one session per thread: a process of a cluster may have several
 
 
-def chunk(job: WorkerJob, points: Sequence[tuple[int, Point]]) -> list[Row]:
-    """Run some points; the session stays for the next call."""
+def serving(job: WorkerJob) -> Worker:
+    """This thread's worker for a study; it stays for the next call."""
     worker: Worker | None = getattr(_kept, "worker", None)
     if worker is None or worker.job != job:
         if worker is not None:
             _kept.worker = None
             worker.close()
         worker = _kept.worker = Worker(job)
-    return worker.rows(points)
+    return worker
+
+
+def chunk(job: WorkerJob, points: Sequence[tuple[int, Point]]) -> list[Row]:
+    """Run some points in this thread."""
+    return serving(job).rows(points)
 
 
 def main(pipe: int) -> None:
