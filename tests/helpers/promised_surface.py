@@ -23,6 +23,7 @@ import zipfile
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from contextlib import chdir, redirect_stderr, redirect_stdout, suppress
+from functools import cached_property
 from pathlib import Path
 from types import UnionType
 from typing import Any, Union, get_args, get_origin
@@ -248,7 +249,7 @@ def _members(of: Any) -> list[str]:
 
 
 def _told(member: Any) -> bool:
-    kinds = (property, classmethod, staticmethod)
+    kinds = (property, cached_property, classmethod, staticmethod)
     called = inspect.isfunction(member) or isinstance(member, kinds)
     return called and bool(getattr(member, "__doc__", None))
 

@@ -114,7 +114,8 @@ def _tell_best(chosen: "Study", outcome: "Outcome", best: int) -> None:
 
     for axis, value in zip(chosen.axes, chosen.points[best], strict=True):
         out.print(f"  {axis.name} = {value} {spelled(axis.unit)}".rstrip(), markup=False)
-    unit, least = next(c.unit for c in chosen.columns if c.name == chosen.cost), outcome.least
+    unit = next(c.unit for c in chosen.columns if c.name == chosen.cost)
+    least = float(outcome.cost[best])
     text = length(least) if unit == "mm" else f"{least:.6g} {spelled(unit)}".rstrip()
     cost = f"{chosen.cost} = {text}".replace("[", r"\[")
     out.print(f"  {cost}  [dim]smallest, run {best}[/]")

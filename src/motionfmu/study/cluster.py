@@ -64,6 +64,14 @@ def rows(job: WorkerJob, tasks: Sequence[Task], scheduler: str) -> Iterator[Row]
             raise InputError(f"--scheduler {scheduler}: it has lost all its workers") from None
 
 
+def _threads(client: Any) -> int:
+    """Threads of all workers; 0 as well where the scheduler is too busy to say."""
+    try:
+        return sum(client.nthreads().values())
+    except TimeoutError:
+        return 0
+
+
 def _next(client: Any, finished: "SimpleQueue[Any]") -> Any:
     """The next future that is done; a TimeoutError where no worker is left to do one."""
     last = time.monotonic()
@@ -71,7 +79,7 @@ def _next(client: Any, finished: "SimpleQueue[Any]") -> Any:
         try:
             return finished.get(timeout=LOOK)
         except Empty:
-            if client.nthreads():
+            if _threads(client):
                 last = time.monotonic()
             elif time.monotonic() - last > LOST:
                 raise TimeoutError from None
@@ -83,7 +91,17 @@ def _size(ran: Ran) -> int:
     return max(1, min(CHUNK_MAX, size - size % ran.lanes or size))
 
 
-# CCN 16: one case for each end of a chunk.
+def _found(future: Any) -> Any:
+    """What a chunk gave, or its error; a TimeoutError where its rows were lost with its worker."""
+    import distributed
+
+    try:
+        return future.exception(TIMEOUT) or future.result(TIMEOUT)
+    except (distributed.KilledWorker, TimeoutError) as error:
+        # It had ended well, then its worker was lost with the rows.
+        return error
+
+
 def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]:
     import distributed
 
@@ -103,7 +121,7 @@ def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]
 
     def send() -> None:
         nonlocal by_itself
-        places = AHEAD * (sum(client.nthreads().values()) or 1)
+        places = AHEAD * (_threads(client) or 1)
         while pending and len(sent) < places:
             share = -(-len(pending) // places)  # the last chunks are small, so that all end at once
             submit(pending.take(min(size, max(lanes, share))))
@@ -114,15 +132,16 @@ def _chunks(client: Any, job: WorkerJob, tasks: Sequence[Task]) -> Iterator[Row]
     while sent:
         future = _next(client, finished)
         part = sent.pop(future)
-        error = future.exception()
-        if error is None:
-            ran = future.result()
-            size, lanes = _size(ran), ran.lanes
-            yield from ran.rows
-        elif isinstance(error, InputError):
-            raise error
-        elif not isinstance(error, distributed.KilledWorker):
-            raise InputError(f"a worker of the cluster failed: {error}")
+        found = _found(future)
+        if isinstance(found, Ran):
+            size, lanes = _size(found), found.lanes
+            yield from found.rows
+        elif isinstance(found, InputError):
+            raise found
+        elif isinstance(found, TimeoutError):
+            pending.give_back(part)
+        elif not isinstance(found, distributed.KilledWorker):
+            raise InputError(f"a worker of the cluster failed: {found}")
         elif future is not by_itself:
             alone.append(part)
         elif len(part) > 1:

@@ -268,7 +268,7 @@ class StudyPoints(Sequence[Point]):
             found: list[Value] = np.unique(column).tolist()
             return found
         once = list(dict.fromkeys(column))
-        return sorted(once) if self._numeric[i] else once  # type: ignore[type-var]
+        return sorted(once) if self._numeric[i] else once
 
 
 def points(axes: Sequence[Axis], sampling: str, runs: int, seed: int) -> StudyPoints:

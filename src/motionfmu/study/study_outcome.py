@@ -148,9 +148,9 @@ class Outcome:
             One per row, in the variable's unit.
         """
         rows, i = self.rows, self.study.job.axes.index(name)
-        whole = isinstance(rows, TableRows)
-        runs = rows.numbers("run").astype(np.int64) if whole else [row.run for row in rows]
-        return self.study.points.column(i, runs)
+        if isinstance(rows, TableRows):
+            return self.study.points.column(i, rows.numbers("run").astype(np.int64))
+        return self.study.points.column(i, [row.run for row in rows])
 
     def column(self, name: str) -> NDArray[np.float64]:
         """Values of a result.
