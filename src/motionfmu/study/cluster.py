@@ -17,7 +17,7 @@ from motionfmu.study.worker import CRASH, Row, serving
 TIMEOUT = 10  # [s] in which the scheduler must answer and a worker be there
 CHUNK = 1.0  # [s] of a processor in a chunk: to hand one out costs some thousandths of that
 CHUNK_MAX = 2000  # runs in a chunk
-LOST = 120  # [s] without any worker, after which the study ends
+LOST = 120  # [s] without any worker, after which the study ends; rows not there are made anew
 LOOK = 1.0  # [s] without news, after which one looks whether there are workers
 AHEAD = 2  # chunks handed out per thread of the cluster, so that none waits for its next one
 
@@ -96,7 +96,7 @@ def _found(future: Any) -> Any:
     import distributed
 
     try:
-        return future.exception(TIMEOUT) or future.result(TIMEOUT)
+        return future.exception(LOST) or future.result(LOST)
     except (distributed.KilledWorker, TimeoutError) as error:
         # It had ended well, then its worker was lost with the rows.
         return error
