@@ -105,30 +105,52 @@ static PLANT_INLINE void plant_steps_of(int lanes, plant_function *rhs, double *
     }
 }
 
-static void plant_steps_plain(struct plant_block *b, double h, int64_t steps)
+/* Integrate a block by so many steps of h [s]. */
+typedef void plant_stepper(struct plant_block *b, double h, int64_t steps);
+
+/* PLANT_FLAT: rates are inlined, so that states stay in registers from one to the next. A plant of
+ * one lane has too many of them. */
+#define STEPS(n, rhs) PLANT_CASE(n, plant_steps_of(n, rhs, b->x, b->u, b->c, h, steps))
+PLANT_FLAT static void plant_steps_plain(struct plant_block *b, double h, int64_t steps)
 {
-#define STEPS(n) PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n, b->x, b->u, b->c, h, steps))
+#define PLAIN(n) STEPS(n, plant_rhs_##n)
     switch (b->lanes) {
-        PLANT_WIDTHS(STEPS)
+        PLANT_WIDTHS(PLAIN)
     }
+#undef PLAIN
+}
 #undef STEPS
+
+/* Vectors of the sums between rates are as wide as those of the rates: a wide load would wait for
+ * two narrow stores. One lane alone has many states, which are vectors themselves. */
+#define WIDE(n) (n > 2 || PLANT_LANES == 1)
+#define STEPS(n, which) \
+    PLANT_CASE(n, if (which) plant_steps_of(n, plant_rhs_##n##_avx2, b->x, b->u, b->c, h, steps))
+PLANT_FLAT EL_AVX2 static void plant_steps_avx2(struct plant_block *b, double h, int64_t steps)
+{
+#define MANY(n) STEPS(n, WIDE(n))
+    switch (b->lanes) {
+        PLANT_WIDTHS(MANY)
+    }
+#undef MANY
 }
 
-/* The sums between the rates use wide vectors, too: a wide load would wait for two narrow
- * stores. */
-EL_AVX2 static void plant_steps_avx2(struct plant_block *b, double h, int64_t steps)
+PLANT_FLAT EL_AVX2_TWO static void plant_steps_two(struct plant_block *b, double h, int64_t steps)
 {
-#define STEPS(n) PLANT_CASE(n, plant_steps_of(n, plant_rhs_##n##_avx2, b->x, b->u, b->c, h, steps))
+#define FEW(n) STEPS(n, !WIDE(n))
     switch (b->lanes) {
-        PLANT_WIDTHS(STEPS)
+        PLANT_WIDTHS(FEW)
     }
-#undef STEPS
+#undef FEW
 }
+#undef STEPS
 
-/* Whether wide vectors pay: not for a block of one or two lanes, unless the plant has only one. */
-static bool plant_wide(const struct plant_block *b)
+/* The one for a block. */
+static plant_stepper *plant_steps_for(const struct plant_block *b)
 {
-    return (b->lanes > 2 || PLANT_LANES == 1) && plant_has_avx2();
+    return !plant_has_avx2() ? plant_steps_plain
+           : WIDE(b->lanes)  ? plant_steps_avx2
+                             : plant_steps_two;
 }
 
 /* One step of h [s] by Bogacki and Shampine (1989) to y. Returns its error relative to the allowed
@@ -198,8 +220,7 @@ static int plant_advance(struct fmu *f, int64_t now, int64_t steps)
     const double h = 1e-9 * (double)step;
     for (int n = 0; n < f->s.m.blocks && !PLANT_CONTROLLED; n++) {
         struct plant_block *b = &f->s.m.block[n];
-        (plant_wide(b) ? plant_steps_avx2 : plant_steps_plain)(b, h / b->sub_steps,
-                                                               steps * b->sub_steps);
+        plant_steps_for(b)(b, h / b->sub_steps, steps * b->sub_steps);
     }
     for (int64_t k = 1; k <= steps && PLANT_CONTROLLED; k++) {
         for (int n = 0; n < f->s.m.blocks; n++) {
@@ -255,7 +276,7 @@ static PLANT_INLINE bool plant_outputs_of(int lanes, plant_function *outputs, co
 
 static bool plant_outputs(const struct plant_block *b, double *y)
 {
-    const bool wide = plant_wide(b);
+    const bool wide = plant_has_avx2();
     bool good = false;
 #define OUTPUTS(n) \
     PLANT_CASE(n, good = plant_outputs_of(n, wide ? plant_outputs_##n##_avx2 : plant_outputs_##n, \

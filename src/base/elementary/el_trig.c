@@ -229,6 +229,24 @@ EL_AVX2 static inline four_bits quick_four(four x, four *sine, four *cosine)
     return ((y != ph + (pl + pe)) & ~tiny) | (z != qh + (ql + qe)) | (size >= (int64_t)MOST << 52);
 }
 
+/* Turn those of up to four angles again whose rounding is not certain. */
+EL_AVX2 static __attribute__((noinline)) void turn_again(four_bits open, int n,
+                                                         const double *restrict angle,
+                                                         double *restrict sine,
+                                                         double *restrict cosine)
+{
+    for (int k = 0; k < n; k++) {
+        if (open[k]) {
+            el_turns_each(1, angle + k, sine + k, cosine + k);
+        }
+    }
+}
+
+EL_AVX2 static inline bool any(four_bits open)
+{
+    return (open[0] | open[1] | open[2] | open[3]) != 0;
+}
+
 EL_AVX2 void el_turns_avx2(int n, const double *restrict angle, double *restrict sine,
                            double *restrict cosine)
 {
@@ -239,13 +257,24 @@ EL_AVX2 void el_turns_avx2(int n, const double *restrict angle, double *restrict
         const four_bits open = quick_four(x, &s, &c);
         memcpy(sine + i, &s, sizeof s);
         memcpy(cosine + i, &c, sizeof c);
-        for (int k = i; (open[0] | open[1] | open[2] | open[3]) && k < i + 4; k++) {
-            if (open[k - i]) {
-                el_turns_each(1, angle + k, sine + k, cosine + k);
-            }
+        if (any(open)) {
+            turn_again(open, 4, angle + i, sine + i, cosine + i);
         }
     }
-    el_turns_each(n - i, angle + i, sine + i, cosine + i);
+    if (n - i == 2) {
+        const four x = { angle[i], angle[i + 1] };
+        four s, c;
+        const four_bits open = quick_four(x, &s, &c);
+        sine[i] = s[0];
+        sine[i + 1] = s[1];
+        cosine[i] = c[0];
+        cosine[i + 1] = c[1];
+        if (any(open)) {
+            turn_again(open, 2, angle + i, sine + i, cosine + i);
+        }
+    } else {
+        el_turns_each(n - i, angle + i, sine + i, cosine + i);
+    }
 }
 #else
 void el_turns_avx2(int n, const double *restrict angle, double *restrict sine,

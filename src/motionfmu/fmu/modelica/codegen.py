@@ -369,6 +369,7 @@ def _header(
     members = "\n".join(f"    PLANT_{name} = {value}," for name, value in sizes.items())
     widths, together = (" ".join(f"X({w})" for w in several) for several in lanes)
     several = _SEVERAL.replace(_WIDTHS, together) if together else ""
+    flat = " __attribute__((flatten))" if len(lanes[0]) > 1 else ""
     return f"""#ifndef PLANT_H
 #define PLANT_H
 
@@ -385,8 +386,10 @@ enum {{
 #define PLANT_WIDTHS(X) {widths}
 #if defined(__GNUC__)
 #define PLANT_INLINE inline __attribute__((always_inline))
+#define PLANT_FLAT{flat}
 #else
 #define PLANT_INLINE inline
+#define PLANT_FLAT
 #endif
 /* A loop over two lanes becomes vectors only if it is not unrolled before. */
 #if defined(__GNUC__) && !defined(__clang__)
