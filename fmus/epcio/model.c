@@ -1,5 +1,6 @@
 /* FMU of the EPCIO card (core epcio): sampling grid, register and mailbox inputs, outputs. */
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #include "epcio.h"
@@ -14,6 +15,8 @@ struct model {
     int64_t instant;              /* [clock] next instant of that grid */
     bool powered;                 /* the first instant has passed */
     struct mailbox taken;         /* sequence numbers taken last from the host */
+    struct link_host levels;      /* taken last from the host */
+    bool levels_hold;             /* and nothing has changed them in the card since */
     int32_t reg_seq;              /* sequence number taken last from the mailbox of registers */
     enum epcio_status reg_status; /* status of that transaction */
     int32_t warned_length;        /* DDA length that has to wait and was warned of */
@@ -61,21 +64,35 @@ static void take_registers(struct fmu *f)
     }
     m->reg_seq = v->reg_seq;
     m->reg_status = s;
+    m->levels_hold = false;
 }
 
-static int read_host(struct fmu *f)
+/* Take the host's levels, unless they are those that hold in the card. */
+static int take_levels(struct fmu *f)
 {
+    enum { SIZE = offsetof(struct link_host, cmd_seq) }; /* of all that stands before the frames */
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     struct link_host link;
+    memset(&link, 0, SIZE);
     LINK_LEVELS(WIRES_READ)
     LINK_LEVELS_AUX(WIRES_READ)
+    if (m->levels_hold && memcmp(&m->levels, &link, SIZE) == 0)
+        return 0;
     const enum epcio_status s = host_take_levels(&m->taken, &m->card, &link);
+    memcpy(&m->levels, &link, SIZE);
+    m->levels_hold = s == EPCIO_OK;
     if (s == EPCIO_BAD_MINIMUM)
         return fmu_fail(f, "host_min_stock = %d: %s", (int)v->host_min_stock, epcio_status_text(s));
     if (s == EPCIO_BAD_GAIN || s == EPCIO_BAD_VOLTS)
         return fmu_fail(f, "host registers: %s", epcio_status_text(s));
-    if (wires_dda(f, s))
+    return wires_dda(f, s);
+}
+
+static int read_host(struct fmu *f)
+{
+    struct model *m = &f->s.m;
+    if (take_levels(f))
         return -1;
     take_registers(f);
     struct bus_write w;
@@ -122,6 +139,7 @@ static void read_pins(const struct vars *v, struct epcio_lines *l)
 
 static void read_remote(const struct vars *v, struct epcio_lines *l)
 {
+    memset(l->remote, 0, sizeof l->remote);
     for (int i = 0; i < EPCIO_SETS * REMOTE_IO_SLAVES; i++) {
         struct remote_io_lines *r = &l->remote[i / REMOTE_IO_SLAVES];
         const int slave = i % REMOTE_IO_SLAVES;
@@ -135,9 +153,11 @@ static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct epcio *card = &f->s.m.card;
-    struct epcio_lines lines = { .local.power = false };
+    struct epcio_lines lines;
+    memset(&lines, 0, offsetof(struct epcio_lines, remote));
     read_pins(v, &lines);
-    if (card->remote_used || v->reg_seq != f->s.m.reg_seq || !f->s.m.powered)
+    lines.remote_kept = !card->remote_used && v->reg_seq == f->s.m.reg_seq && f->s.m.powered;
+    if (!lines.remote_kept)
         read_remote(v, &lines);
     int bad = 0;
     enum epcio_status s = epcio_sample(card, &lines, &bad);

@@ -393,7 +393,7 @@ static void read_bus(struct fmu *f, int64_t at)
 #define READ(type, name, elements) LINK_CARRY(link.name, v->card_##name)
     LINK_SHOWN(READ)
     LINK_SHOWN_MACHINE(READ)
-    panel.signals = card_signals(&link);
+    card_signals(&link, &panel.signals);
     panel.signals.probe = v->probe_in;
     panel.signals.digital = (uint32_t)v->digital_in;
     memcpy(panel.signals.analog, v->analog_in, sizeof panel.signals.analog);

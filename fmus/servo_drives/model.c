@@ -12,6 +12,7 @@ struct model {
     struct drive_output next[CHANNELS]; /* outputs of the latest instant, shown at the next one */
     int64_t period;                     /* [ns] sampling grid */
     int64_t instant;                    /* [ns] next instant of that grid */
+    bool prompt;                        /* some channel is */
 };
 
 #include "fmi_model.h"
@@ -128,15 +129,18 @@ static int sample(struct fmu *f)
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
-    for (int i = 0; i < CHANNELS && f->tuned; i++)
+    for (int i = 0; i < CHANNELS && f->tuned; i++) {
         m->config[i] = config(&f->s.v, i);
+        m->prompt |= f->s.v.prompt[i];
+    }
     f->tuned = false;
     for (; m->instant < t1; m->instant += m->period) {
         if (m->instant > t0)
             publish(&f->s.v, m, true);
         if (sample(f))
             return -1;
-        publish(&f->s.v, m, false);
+        if (m->prompt)
+            publish(&f->s.v, m, false);
     }
     if (m->instant == t1)
         publish(&f->s.v, m, true);

@@ -251,19 +251,27 @@ static void plant_read(struct fmu *f)
     }
 }
 
-/* Whether all values are finite: 0 times a finite number is 0, times infinity or NaN it is NaN. */
+/* Whether all values are finite: of others no sum is. A sum that overflows is no proof. */
 static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 {
-    double rest[PLANT_WIDEST] = { 0.0 }, sum = 0.0;
+    double sum[PLANT_WIDEST] = { 0.0 }, all = 0.0;
     for (int k = 0; k < rows; k++) {
         for (int lane = 0; lane < lanes; lane++) {
-            rest[lane] += 0.0 * a[k * lanes + lane];
+            sum[lane] += a[k * lanes + lane];
         }
     }
     for (int lane = 0; lane < lanes; lane++) {
-        sum += rest[lane];
+        all += sum[lane];
     }
-    return sum == 0.0;
+    if (fabs(all) <= DBL_MAX) {
+        return true;
+    }
+    for (int i = 0; i < rows * lanes; i++) {
+        if (!(fabs(a[i]) <= DBL_MAX)) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* Compute the outputs y. Returns whether all states and outputs are finite. */

@@ -288,6 +288,23 @@ def test_an_acknowledge_keeps_what_fired_meanwhile() -> None:
     fmu.free()
 
 
+def test_a_dda_length_that_waits_is_taken_when_the_commands_are_out() -> None:
+    """Nothing on the wires has changed by then."""
+    fmu = card(host_dda_length=11)
+    assert fmu.call("SetDebugLogging", True, 0, None) == OK
+    send(fmu, 1, 0, [2000], [2000], [2000])
+    to_clock(fmu, TL)
+    assert fmu.set("host_dda_length", 10) == OK
+    to_clock(fmu, 2 * TL)
+    assert fmu.messages[-1][0] == WARNING and "host_dda_length = 10 waits" in fmu.said
+    to_clock(fmu, 3 * TL)
+    assert fmu.get("dda_time") == [2 * T * TICK]
+    to_clock(fmu, 12 * TL)
+    assert fmu.get("dda_time") == [T * TICK]
+    assert fmu.get("pulse_count")[0] == 6000
+    fmu.free()
+
+
 def test_refused_frames_are_counted_and_explained() -> None:
     fmu = card(active=[True, True, False, False, False, False])
     assert fmu.call("SetDebugLogging", True, 0, None) == OK

@@ -352,6 +352,18 @@ def test_remote_slaves() -> None:
     fmu.free()
 
 
+def test_a_slave_that_a_register_switches_on_shows_its_inputs_of_now() -> None:
+    fmu = card(rio_time=1000, io_remote_connected=[True] * 6)
+    to_clock(fmu, 3 * TL)
+    fmu.set("io_remote", [0x8001, *[0] * 23])
+    write(fmu, (0x602, 1))
+    to_clock(fmu, 3 * TL + 999)
+    assert fmu.get("remote_ready") == [0]
+    to_clock(fmu, 3 * TL + 1000)
+    assert (fmu.get("remote_ready"), fmu.get("remote_in_1")[0]) == ([1], 0x8001)
+    fmu.free()
+
+
 @pytest.mark.parametrize(
     ("address", "value", "said"),
     [
@@ -393,4 +405,21 @@ def test_parameters_that_do_not_fit_are_named(name: str, value: Any, message: st
     fmu.enter()
     assert fmu.call("ExitInitializationMode") == ERROR
     assert any(message in text for _, _, text in fmu.messages), fmu.messages
+    fmu.free()
+
+
+def test_a_module_that_is_reset_takes_the_hosts_levels_again() -> None:
+    """They have not changed, but the card's have: of DAC and DDA time."""
+    fmu = card(host_dac_volts=first(1.5, rest=0.0), host_dda_length=11, host_dda_divider=7)
+    to_clock(fmu, 10 * TL)
+    volts, time = fmu.get("dac")[0], fmu.get("dda_time")
+    assert volts == pytest.approx(1.5, abs=LSB)
+    assert time == [7 * 2**11 * TICK]
+    write(fmu, (0x700, 8), (0x700, 1))
+    shown = []
+    for instant in range(11, 40):
+        to_clock(fmu, instant * TL)
+        shown.append(fmu.get("dac")[0])
+    assert shown.count(0.0) == 1 and shown.count(volts) == len(shown) - 1
+    assert fmu.get("dda_time") == time
     fmu.free()

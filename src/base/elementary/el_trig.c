@@ -229,11 +229,10 @@ EL_AVX2 static inline four_bits quick_four(four x, four *sine, four *cosine)
     return ((y != ph + (pl + pe)) & ~tiny) | (z != qh + (ql + qe)) | (size >= (int64_t)MOST << 52);
 }
 
-/* Turn those of up to four angles again whose rounding is not certain. */
-EL_AVX2 static __attribute__((noinline)) void turn_again(four_bits open, int n,
-                                                         const double *restrict angle,
-                                                         double *restrict sine,
-                                                         double *restrict cosine)
+#define APART __attribute__((noinline))
+/* Turn those of up to four angles again whose rounding is not certain: rarely, so never inlined. */
+EL_AVX2 static APART void turn_again(four_bits open, int n, const double *restrict angle,
+                                     double *restrict sine, double *restrict cosine)
 {
     for (int k = 0; k < n; k++) {
         if (open[k]) {

@@ -18,8 +18,11 @@ int64_t dda_time(int32_t ticks, int32_t divider)
 
 int32_t dda_divider(int32_t ticks, double wanted, int32_t largest)
 {
-    double divider = round(wanted / ticks);
-    return divider > 1.0 ? divider < largest ? (int32_t)divider : largest : 1;
+    const double exact = wanted / ticks;
+    if (!(exact > 1.0))
+        return 1;
+    const int32_t whole = exact < largest ? (int32_t)exact : largest;
+    return whole + (whole < largest && exact - whole >= 0.5);
 }
 
 int32_t dda_largest(int32_t ticks)

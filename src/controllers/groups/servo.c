@@ -27,7 +27,8 @@ static void look(struct servo *s, struct mcc *m, const int32_t counts[AXES])
     memcpy(raw.enc, counts, sizeof raw.enc);
     memcpy(s->before, s->now, sizeof s->before);
     memcpy(s->now, s->next, sizeof s->now);
-    m->signals = signals_turned(&raw, &m->machine);
+    m->signals = raw;
+    signals_turn(&m->signals, &m->machine);
     for (int i = 0; i < AXES; i++) {
         m->signals.pulses[i] = s->now[i];
         m->signals.err[i] = (int32_t)((uint32_t)s->before[i] - (uint32_t)m->signals.enc[i]);

@@ -17,20 +17,20 @@ struct pcl_card card_of(const struct pcl *p, const struct link_card *link)
     return c;
 }
 
-struct signals card_signals(const struct link_card *link)
+void card_signals(const struct link_card *link, struct signals *s)
 {
-    struct signals s = { .stop = link->stopped,
-                         .home = (uint32_t)link->home,
-                         .upper = link->over_travel & 0x3f,
-                         .lower = (link->over_travel >> 8) & 0x3f,
-                         .enc_aux = { link->enc_count_7, link->enc_count_8, link->enc_count_9 } };
-
-    memcpy(s.pulses, link->pulse_count, sizeof s.pulses);
-    memcpy(s.enc, link->enc_count, sizeof s.enc);
-    memcpy(s.err, link->err_count, sizeof s.err);
-    memcpy(s.latch, link->latch_value, sizeof s.latch);
-    memcpy(s.latched, link->latch_seen, sizeof s.latched);
-    return s;
+    s->stop = link->stopped;
+    s->home = (uint32_t)link->home;
+    s->upper = link->over_travel & 0x3f;
+    s->lower = (link->over_travel >> 8) & 0x3f;
+    s->enc_aux[0] = link->enc_count_7;
+    s->enc_aux[1] = link->enc_count_8;
+    s->enc_aux[2] = link->enc_count_9;
+    memcpy(s->pulses, link->pulse_count, sizeof s->pulses);
+    memcpy(s->enc, link->enc_count, sizeof s->enc);
+    memcpy(s->err, link->err_count, sizeof s->err);
+    memcpy(s->latch, link->latch_value, sizeof s->latch);
+    memcpy(s->latched, link->latch_seen, sizeof s->latched);
 }
 
 void card_write(const struct pcl *p, const struct machine *m, bool used, struct link_host *link)
@@ -41,8 +41,10 @@ void card_write(const struct pcl *p, const struct machine *m, bool used, struct 
     link->min_stock = p->min_stock;
     link->ack_seq = p->ack_seq;
     link->clear_seq = 0; /* never: an emergency stop empties the FIFOs in the card */
-    for (int i = 0; i < ISR_PAGES; i++) {
-        link->irq_mask[i] = used ? pcl_mask(p, i) : 0;
+    memset(link->irq_mask, 0, sizeof link->irq_mask);
+    if (used) {
+        memcpy(link->irq_mask, p->isr.config.mask, sizeof link->irq_mask);
+        link->irq_mask[ISR_FIFO_PAGE] = pcl_mask(p, ISR_FIFO_PAGE);
     }
     memcpy(link->ack_flags, p->ack_flags, sizeof link->ack_flags);
     for (int i = 0; i < AXES; i++) {

@@ -8,9 +8,9 @@
 #include "signals.h"
 
 /* What the card shows: FIFO and interrupts, with the stock of the axis that p watches; and its
- * signals of the machine. */
+ * signals of the machine, all but probe, digital and analog inputs. */
 struct pcl_card card_of(const struct pcl *p, const struct link_card *link);
-struct signals card_signals(const struct link_card *link);
+void card_signals(const struct link_card *link, struct signals *s);
 
 /* Write what the card is given: settings of DDA and interrupts, and the transaction of p if its
  * number is new. With `used` the DDA runs and the sources pull the interrupt line. */

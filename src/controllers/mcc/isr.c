@@ -26,8 +26,12 @@ void isr_read(struct isr *q, const int32_t flags[ISR_PAGES], int32_t fifo, bool 
 int64_t isr_ready(const struct isr *q)
 {
     int64_t first = INT64_MAX;
+    int32_t waiting = 0;
 
     for (int i = 0; i < ISR_PAGES; i++) {
+        waiting |= q->waiting[i];
+    }
+    for (int i = 0; i < ISR_PAGES && waiting; i++) {
         first = q->waiting[i] && q->ready[i] < first ? q->ready[i] : first;
     }
     return first;

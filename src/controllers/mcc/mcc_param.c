@@ -131,7 +131,7 @@ int MCC_update_param(struct mcc *m)
     if (code) {
         return code;
     }
-    const struct signals card = signals_turned(&m->signals, &m->machine);
+    signals_turn(&m->signals, &m->machine); /* they are the card's until the axes have changed */
     for (int i = 0; i < AXES; i++) {
         keep_place(m, i, &w.axis[i]);
         set_homing(&m->homing.axis[i], &m->epcio_axis_param[i],
@@ -139,7 +139,7 @@ int MCC_update_param(struct mcc *m)
     }
     m->machine = w;
     m->curve_plan.limits = machine_speed_limits(&w);
-    m->signals = signals_turned(&card, &w);
+    signals_turn(&m->signals, &w);
     return MCC_NO_ERR;
 }
 

@@ -239,7 +239,7 @@ int MCC_set_P_gain(struct mcc *m, const int32_t gain[AXES])
         return MCC_INITIAL_MOTION;
     }
     for (int i = 0; i < AXES; i++) {
-        if (gain[i] < 0 || gain[i] > 65535) {
+        if ((uint32_t)gain[i] > UINT16_MAX) {
             return MCC_PARAMETER;
         }
     }

@@ -31,20 +31,17 @@ static inline int32_t signals_opposite(int32_t count)
     return (int32_t)(0u - (uint32_t)count);
 }
 
-/* The card's counts as the library's, or back: those of inverted axes change their sign. */
-static inline struct signals signals_turned(const struct signals *s, const struct machine *m)
+/* Make the card's counts those of the library, or back: of inverted axes they change their sign. */
+static inline void signals_turn(struct signals *s, const struct machine *m)
 {
-    struct signals t = *s;
-
     for (int i = 0; i < AXES; i++) {
         if (m->axis[i].inverted) {
-            t.pulses[i] = signals_opposite(t.pulses[i]);
-            t.enc[i] = signals_opposite(t.enc[i]);
-            t.err[i] = signals_opposite(t.err[i]);
-            t.latch[i] = signals_opposite(t.latch[i]);
+            s->pulses[i] = signals_opposite(s->pulses[i]);
+            s->enc[i] = signals_opposite(s->enc[i]);
+            s->err[i] = signals_opposite(s->err[i]);
+            s->latch[i] = signals_opposite(s->latch[i]);
         }
     }
-    return t;
 }
 
 #endif

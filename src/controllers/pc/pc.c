@@ -66,7 +66,8 @@ static void read_panel(struct pc *pc, const struct pc_panel *panel)
     if (!pc->config.no_panel) {
         MCC_set_P_gain(&pc->mcc, panel->p_gain);
     }
-    pc->mcc.signals = signals_turned(&panel->signals, &pc->mcc.machine);
+    pc->mcc.signals = panel->signals;
+    signals_turn(&pc->mcc.signals, &pc->mcc.machine);
     manual_look(&pc->mcc);
     mdi_look(&pc->mcc);
     readout_look(&pc->mcc);

@@ -137,7 +137,8 @@ static void look(const struct station *s, struct pcl_card *seen, struct pc_panel
 
     host_show(&s->card, &link);
     *seen = card_of(&s->pc.pcl, &link);
-    *panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0, .signals = card_signals(&link) };
+    *panel = (struct pc_panel){ .override = 1.0, .rapid = 1.0 };
+    card_signals(&link, &panel->signals);
     memcpy(panel->software_gain, s->software_gain, sizeof panel->software_gain);
 }
 

@@ -183,11 +183,12 @@ static bool follow(const struct drive_config *c, struct drive_state *s,
 enum drive_status drive_tick(const struct drive_config *c, struct drive_state *s,
                              const struct drive_input *in, struct drive_output *out)
 {
-    double counts = floor(in->phase * c->encoder_counts / c->encoder_lines);
-    if (!(fabs(counts) <= DRIVE_COUNTS_MAX))
+    const double exact = in->phase * c->encoder_counts / c->encoder_lines;
+    if (!(fabs(exact) <= DRIVE_COUNTS_MAX)) /* so large are whole numbers alone */
         return DRIVE_BAD_PHASE;
-    int64_t moved = s->primed ? (int64_t)counts - s->counts : 0;
-    s->counts = (int64_t)counts;
+    const int64_t counts = (int64_t)floor(exact);
+    const int64_t moved = s->primed ? counts - s->counts : 0;
+    s->counts = counts;
     int32_t pulses = (int32_t)((uint32_t)in->pulses - (uint32_t)s->pulses);
     s->pulses = in->pulses;
     s->primed = true;

@@ -1,7 +1,9 @@
 #include "epcio.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 _Static_assert((int)ADC_EVENT_COMPARE == (int)IRQ_ADC_COMP
                    && (int)ADC_EVENT_DONE == (int)IRQ_ADC_CONV
@@ -280,7 +282,9 @@ enum epcio_status epcio_sample(struct epcio *card, const struct epcio_lines *lin
             *bad = card->counter[k];
             return EPCIO_BAD_PHASE;
         }
-    card->lines = *lines;
+    memcpy(&card->lines, lines, offsetof(struct epcio_lines, remote));
+    if (!lines->remote_kept)
+        memcpy(card->lines.remote, lines->remote, sizeof lines->remote);
     for (int k = 0; k < card->counters; k++) {
         const int i = card->counter[k];
         (lines->unplugged[i] ? encoder_unplugged : encoder_sample)(&card->encoder[i],

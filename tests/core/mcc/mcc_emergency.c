@@ -58,7 +58,7 @@ static struct pcl_card show(struct bench *b)
     const struct signals before = b->panel.signals;
     struct link_card link;
     host_show(&b->card, &link);
-    b->panel.signals = card_signals(&link);
+    card_signals(&link, &b->panel.signals);
     b->panel.signals.home = before.home;
     b->moved = b->panel.signals.pulses[0] - before.pulses[0];
     for (int i = 0; i < AXES; i++) {
