@@ -244,4 +244,7 @@ def session(
             yield found
         except BaseException:
             page.screenshot(path=folder / "failed.png")
+            for part in ("#state", "#alarm", "#time", "#hand"):
+                print("the page shows", part, page.locator(part).inner_text())
+            print("the machine has", found.ask("values", names=list(channels)))
             raise

@@ -239,8 +239,9 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
         at.pace("10 \N{MULTIPLICATION SIGN}")
         at.lamp("Homed")
         at.state("^Ready$")
-        # To a target, held on the way, and on.
-        at.pace("1 \N{MULTIPLICATION SIGN}")
+        # To a target, held on the way, and on: so slowly that a slow hand is in time.
+        slow, quick = "0.05 \N{MULTIPLICATION SIGN}", "10 \N{MULTIPLICATION SIGN}"
+        at.pace(slow)
         target.fill("20000")
         target.press("Enter")
         at.click(go)
@@ -250,6 +251,7 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
         assert position(page, 1) < 19000
         at.click(go)
         at.state("^Accelerate$|^Cruise$")
+        at.pace(quick)
         at.state("^Ready$")
         until(page, NEAR, 20000)
         # The emergency stop of this machine is the same button; at rest it moves nothing.
@@ -258,9 +260,11 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
         at.state("^Ready$")
         target.fill("1000")
         target.press("Enter")
+        at.pace(slow)
         at.click(go)
         at.state("^Cruise$")
         page.locator("#stop").click()
+        at.pace(quick)
         at.state("^Ready$")
         assert position(page, 1) > 2000
         # A target beyond the stroke.
