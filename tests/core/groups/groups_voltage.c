@@ -162,9 +162,27 @@ static void counters(void)
             MCC_GROUP_PARAMETER);
 }
 
+/* Each axis has the settings of its own DAC, one that the group does not have those of another. */
+static void settings_of_axes(void)
+{
+    const struct machine motion = mcc_machine();
+    fresh();
+    for (int i = 0; i < 3; i++) {
+        struct group_dac d = settings(i);
+        d.axis.ppr = 1000 + i;
+        CHECK_EQ(groups_set_dac(&set, 0, i, &d), MCC_NO_ERR);
+    }
+    CHECK_EQ(group_create_voltage(&set, 0, (int32_t[]){ 2, 0, 1, -1, -1, -1 }, &motion), 0);
+    const struct machine_axis *axis = set.group[0].mcc.machine.axis;
+    CHECK(axis[0].ppr == 1002 && axis[1].ppr == 1000 && axis[2].ppr == 1001);
+    CHECK(axis[0].used && axis[1].used && axis[2].used && !axis[3].used);
+    CHECK(axis[3].ppr == 1001);
+}
+
 int main(void)
 {
     channels();
+    settings_of_axes();
     values();
     voltage_command_channel();
     counters();

@@ -106,6 +106,10 @@ static void each_limit_by_a_program(void)
     CHECK(time_of(LIMITED_CORNER, 0) > 0.1);
     CHECK(near(time_of(LIMITED_STOP, -1), 0.1));
 
+    /* Braking to another feed, 90 mm before a corner, is no corner's doing: 0.1 s up, 0.09 s down. */
+    preview(&m, "G64 P0.01 F6000\nG1 X20\nX110 F600\nY20\nM2");
+    CHECK(time_of(LIMITED_ACCELERATION, -1) > 0.188 && time_of(LIMITED_CORNER, -1) > 0.01);
+
     preview(&m, "G64 P0.01 F6000\nG2 I0.5\nG2 I0.5\nG2 I0.5\nG2 I0.5\nM2"); /* a = v^2/r */
     const double round = 4.0 * 3.14159 / sqrt(1000.0 * 0.5); /* radius 0.5 mm at 1000 mm/s^2 */
     CHECK(fabs(time_of(LIMITED_ACCELERATION, -1) - round) < 0.02);
