@@ -134,6 +134,7 @@ WRONG = {
     "kind": (chain('type="planar">'), "type = 'planar': fixed, revolute, continuous, prismatic"),
     "axis": (chain('type="continuous"><axis xyz="0 0 0"/>'), "xyz = 0 0 0 is no direction"),
     "number": (chain(TURN + '<origin xyz="0 0"/>'), "<origin>: xyz = '0 0': 3 numbers wanted"),
+    "word": (chain(TURN + '<origin xyz="0 a 0"/>'), "xyz = '0 a 0': 3 numbers wanted"),
     "nan": (chain(TURN + '<origin xyz="0 0 nan"/>'), "xyz = '0 0 nan': 3 numbers wanted"),
     "mass": (chain(TURN).replace('value="2"', 'value="-2"'), "of link l0: value = -2 is negative"),
     "inertia": (

@@ -9,7 +9,7 @@ import fmpy
 import numpy as np
 import pyssp_standard
 import pytest
-from conftest import ROOT
+from conftest import FMUS, ROOT
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd
 from lxml import etree
@@ -186,3 +186,10 @@ def test_the_command_says_what_it_made(
 def test_a_version_of_fmi_that_is_not(demo: motionfmu.Scenario, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="FMI 1: 2 or 3"):
         as_ssp(demo, tmp_path / "x.ssp", 1, {})
+
+
+def test_a_component_of_fmi_3_alone_is_named(demo: motionfmu.Scenario, tmp_path: Path) -> None:
+    own = demo.changed(component={"drives": str(FMUS / "servo_drives.fmi3.fmu")})
+    with pytest.raises(InputError, match=r"drives is FMI 3, which no SSP 1\.0 has: --fmi 3$"):
+        as_ssp(own, tmp_path / "x.ssp", 2, {})
+    assert not (tmp_path / "x.ssp").exists()

@@ -13,6 +13,8 @@ from motionfmu.analysis.measured_response import (
     response_estimate,
 )
 from motionfmu.identify import rigid_motion
+from motionfmu.identify.found_values import value_text
+from motionfmu.identify.identification import Parameter
 from motionfmu.identify.spread import spread
 
 
@@ -109,3 +111,18 @@ def test_hann_windows_that_share_a_half() -> None:
     alike = window[:2048] @ window[2048:] / (window @ window)
     assert response_estimate._ALIKE == pytest.approx(alike, rel=1e-3)
     assert response_estimate._OVERLAP == pytest.approx(1.0 / (1.0 + 2.0 * alike**2), abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("deviation", "told", "text"),
+    [
+        (0.012, True, "1.234 ± 0.012"),
+        (0.012, False, "1.23412"),
+        (np.inf, True, "1.23412"),
+        (np.inf, False, "1.23412"),
+        (3e-12, True, "1.23412 ± 3e-12"),
+        (0.0, True, "1.234123 ± 0"),
+    ],
+)
+def test_a_value_has_the_digits_that_the_record_tells(deviation, told, text):
+    assert value_text(Parameter("a.b", "B", "", 1.0, 1.2341234, deviation, told)) == text

@@ -354,6 +354,9 @@ def test_compensation_is_in_the_pulses_only() -> None:
         card.mcc.set_comp(0, 1000, 300, [0])
     with pytest.raises(InputError, match="forward"):
         card.mcc.set_comp(0, 1000, 0, [0] * 257)
+    for rows in ((), ([],), (5,), ([0], 5), ([0], [])):
+        with pytest.raises(InputError, match="one or two lists of pulses wanted"):
+            card.mcc.set_comp(0, 1000, 0, *rows)
 
 
 def test_dry_run_puts_out_no_pulse() -> None:

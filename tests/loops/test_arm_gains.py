@@ -15,7 +15,7 @@ from motionfmu.analysis.linear.stability import margins
 from motionfmu.analysis.linear.tuning_parts import linearised
 from motionfmu.base.errors import InputError
 from motionfmu.run import machine
-from motionfmu.study.arm_gains import ArmTuned, tune_arm, verdict
+from motionfmu.study.arm_gains import ArmTuned, arm_search, tune_arm, verdict
 from motionfmu.study.arm_gains.arm_poses import climbed, ranges, spread
 from motionfmu.study.arm_gains.arm_search import ArmSearch, PeakLimits
 from motionfmu.study.arm_gains.joint_loops import JointLoops
@@ -179,3 +179,23 @@ def test_what_is_refused() -> None:
         tune_arm(arm, {"cost": "itae", "limits": {"margins": {"phase": 30.0}}})
     with pytest.raises(InputError, match="no arm: robot_arm"):
         tune_arm(motionfmu.load("circle"))
+
+
+def test_the_stiffest_loop_is_found_between_the_first_samples() -> None:
+    """The integral time that a velocity loop bears as a parabola whose lowest point is known."""
+    best = 1.2345
+
+    class Known(arm_search._OneJoint):
+        def __init__(self) -> None:
+            self.k, self.gains = 0, np.ones((3, 1))
+            self.low, self.high = np.zeros(3), np.full(3, 5.0)
+
+        def _time(self, position: float, velocity: float) -> float:
+            return velocity + (velocity - best) ** 2
+
+    joint = Known()
+    joint.stiffest()
+    found = np.log(joint.gains[:, 0])
+    step = 5.0 / (arm_search.FINE - 1)
+    assert abs(found[1] - best) <= step / (arm_search.FINE - 1) and found[0] == 0.0
+    assert found[2] == pytest.approx(found[1] + (found[1] - best) ** 2)

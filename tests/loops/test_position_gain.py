@@ -131,3 +131,11 @@ def test_another_fmu_has_gains_of_its_own(
         assert len(made) == 2
     finally:
         position_gain.law.carried.cache_clear()
+
+
+@pytest.mark.parametrize(
+    ("kp", "words"),
+    [(9.996, "10.0"), (99.94, "99.9"), (99.95, "100"), (100, "100"), (250.4, "250")],
+)
+def test_three_digits_and_never_a_bare_point(kp: float, words: str) -> None:
+    assert gains.in_words(kp) == f"{words} 1/s"

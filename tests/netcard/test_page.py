@@ -27,6 +27,7 @@ from starlette.websockets import WebSocketDisconnect
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
 
+from motionfmu.base import page_server
 from motionfmu.base.errors import InputError
 from motionfmu.base.page_guard import HEADERS
 from motionfmu.cards.card_job import decode
@@ -437,3 +438,25 @@ def test_the_command_serves_the_page_and_ends_with_it(tmp_path: Path) -> None:
     )
     server.send_signal(signal.SIGINT)
     assert server.wait(20) == 130
+
+
+def test_of_too_many_connections_the_oldest_that_asks_for_nothing_goes(
+    fleet: Fleet, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(page_server, "CONNECTIONS", 3)
+    monkeypatch.setattr(page_server, "ASKING", 1e6)
+
+    async def which() -> list[bool]:
+        async with PageServer(application(fleet, TOKEN), 0) as port:
+            lines = []
+            for _ in range(5):
+                lines.append(await asyncio.open_connection("127.0.0.1", port))
+                await asyncio.sleep(0.05)
+            ends = [asyncio.create_task(reader.read()) for reader, _ in lines]
+            await asyncio.wait(ends[:2], timeout=60)
+            gone = [end.done() for end in ends]
+            for _, writer in lines:
+                writer.close()
+            return gone
+
+    assert asyncio.run(which()) == [True, True, False, False, False]

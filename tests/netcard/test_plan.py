@@ -1,5 +1,6 @@
 """Drawings become jobs: tolerance, limits, the bound of the time, pulses, the file's bytes."""
 
+import dataclasses
 import json
 import math
 import sys
@@ -15,7 +16,7 @@ from motionfmu.base.errors import InputError
 from motionfmu.cards import CardConfig, card_job, load
 from motionfmu.cards.config import read as config_of
 from motionfmu.cards.plan import DRAWS, Plan, origin, plan
-from motionfmu.cards.plan_figures import figures, paths
+from motionfmu.cards.plan_figures import deviations, figures, paths
 from motionfmu.cli import app
 from motionfmu.drawings import DrawingOptions, plt
 from motionfmu.drawings.contours import clean, corners, way_between
@@ -332,3 +333,14 @@ def test_the_job_of_the_scenario_is_of_its_drawing() -> None:
     np.testing.assert_allclose(line.points, vertices, atol=1e-9)
     fresh = plan(drawing, settings)
     assert len(fresh.steps) == pytest.approx(len(kept.commands), rel=0.05)
+
+
+def test_each_path_is_compared_with_its_own_contour(config: CardConfig) -> None:
+    """Drawn in another order they are far off; a pen that does not part them has one path."""
+    found = plan(plt.parse(written(squares()[:2])), config)
+    near = deviations(found, (0.0, 0.0))
+    assert max(near) < 0.1
+    swapped = dataclasses.replace(found, contours=found.contours[::-1])
+    assert min(deviations(swapped, (0.0, 0.0))) > 5.0
+    never_up = dataclasses.replace(found, steps=np.full_like(found.steps, DRAWS))
+    assert len(paths(never_up)) == 1 and deviations(never_up, (0.0, 0.0))[1] < 0.1

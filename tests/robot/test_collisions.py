@@ -253,3 +253,17 @@ def test_a_way_through_a_body_is_refused_though_both_ends_are_free() -> None:
     robot.move_joints([-40, -40, 20, 0, 80, 0])
     robot.move_joints([40, -40, 20, 0, 80, 0])
     assert robot.run_until_stop().error == 0
+
+
+def test_a_guarded_robot_is_where_it_was_after_a_look_ahead() -> None:
+    """A move that is free begins only then, and takes the time that it takes without a guard."""
+    aside = Cell((CellBody("aside", np.full(3, 5.0), center=np.array([0.0, 0.0, -5000.0])),))
+    found = []
+    for cell in (None, aside):
+        robot = VirtualRobot(cell=cell)
+        robot.run(0.01)
+        robot.move_joints([10.0, 0.0, 0.0, 0.0, 90.0, 0.0])
+        begun, under_way = robot.read(), robot.run(0.2)
+        assert begun.time == 0.01 and 0.0 < under_way.joint_command[0] < 10.0
+        found.append(under_way.pulses)
+    assert np.array_equal(*found)

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from motionfmu import load
 from motionfmu.cli import app
+from motionfmu.run.engines import fmu_messages
 from motionfmu.scenarios import fmus
 from motionfmu.scenarios.grids import grid
 
@@ -104,3 +105,13 @@ def test_an_error_that_is_over_is_no_warning() -> None:
     assert [w.split(" after ")[0] for w in warned] == [
         f"mcc: run-time error {code}" for code in ("0xF301", "0xF102", "0xF801")
     ]
+
+
+def test_a_run_keeps_twenty_different_warnings_of_components() -> None:
+    errors: list[str] = []
+    warnings: list[str] = []
+    for k in [*range(15), *range(40)]:
+        fmu_messages.keep(fmu_messages.WARNING, f"card: number {k}", errors, warnings)
+        fmu_messages.keep(fmu_messages.WARNING, f"number {k} of nobody", errors, warnings)
+        fmu_messages.keep(0, f"card: news {k}", errors, warnings)
+    assert warnings == [f"card: number {k}" for k in range(20)] and errors == []

@@ -67,7 +67,7 @@ def _told(gain: LoopGain) -> str:
 
 def in_words(kp: float) -> str:
     """A position gain [1/s] with three digits and its unit."""
-    return f"{kp:.0f} 1/s" if kp >= 100.0 else f"{kp:#.3g} 1/s"
+    return f"{kp:.0f} 1/s" if kp >= 99.95 else f"{kp:#.3g} 1/s"
 
 
 def gain_of(
