@@ -1,17 +1,20 @@
 """The moving picture as a section of the page."""
 
 import base64
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.analysis.collisions import CellBody
+from motionfmu.analysis.contour.order import quantiles
 from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.report.html_page import Page
 from motionfmu.report.numbers import figure
 from motionfmu.report.style import AXES, RAPID
 from motionfmu.report.view.scene import Scene
+
+if TYPE_CHECKING:
+    from motionfmu.analysis.collisions import CellBody
 
 PICTURE = (
     "view_math.js",
@@ -55,7 +58,7 @@ def add_view(
     deviates = any(np.abs(line.gap).max(initial=0.0) > 0.0 for line in scene.lines)
     factor = _magnify(scene) if deviates else 1.0
     rapid = np.zeros(len(scene.speed), bool) if scene.rapid is None else scene.rapid
-    fastest = float(np.percentile(scene.speed[~rapid], 99.5)) or 1.0
+    fastest = quantiles(scene.speed[~rapid], (0.995,))[0] or 1.0
     note = f"{told} Colour is the speed of the tool."
     if deviates:
         count = len(scene.lines)
@@ -94,8 +97,8 @@ def view_data(scene: Scene, fastest: float) -> dict[str, Any]:
             "speed": quantised(np.minimum(scene.speed, fastest)),
             "rapid": _ranges(scene.rapid),
         },
-        "floor": scene.cell.floor,
-        "cell": [_body(body) for body in scene.cell.bodies],
+        "floor": scene.cell.floor if scene.cell else None,
+        "cell": [_body(body) for body in scene.cell.bodies] if scene.cell else [],
         "rapid": RAPID,
         "fastest": fastest,
         "lines": [
@@ -119,7 +122,7 @@ def _ranges(there: NDArray[np.bool_] | None) -> list[list[int]]:
     return [[int(a), int(b) - 1] for a, b in cuts.reshape(-1, 2)]
 
 
-def _body(body: CellBody) -> dict[str, Any]:
+def _body(body: "CellBody") -> dict[str, Any]:
     """A body of the cell as the script takes it."""
     if body.bar is not None:
         return {"bar": body.bar.tolist(), "radius": body.radius}
@@ -154,7 +157,7 @@ def _magnify(scene: Scene) -> float:
 def _errors(scene: Scene) -> tuple[float, float]:
     """The 95th percentile of all deviations, and the largest [mm]."""
     gaps = np.concatenate([np.linalg.norm(line.gap, axis=1) for line in scene.lines])
-    return float(np.percentile(gaps, 95)), float(gaps.max())
+    return quantiles(gaps, (0.95,))[0], float(gaps.max())
 
 
 def _scale(scene: Scene, rapid: NDArray[np.bool_], fastest: float) -> str:
@@ -164,7 +167,7 @@ def _scale(scene: Scene, rapid: NDArray[np.bool_], fastest: float) -> str:
         f" 0 to {figure(fastest)} mm/s"
     )
     if rapid.any():
-        fastest = float(np.percentile(scene.speed[rapid], 99.0))
+        fastest = quantiles(scene.speed[rapid], (0.99,))[0]
         text += f'; <span class="rapid"></span> rapids, up to {figure(fastest)} mm/s'
     return text
 

@@ -1,20 +1,23 @@
 """The moving picture of a run: its frames, its path and its deviations [mm]."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.analysis.collisions import Cell
 from motionfmu.analysis.iso9283.simplify import simplified
-from motionfmu.run.decimate import Read, at, ends, reader
+from motionfmu.run.decimate import Read, at, distinct, ends, reader
 from motionfmu.run.run_record import RunRecord
 from motionfmu.run.tool_gap import in_mm
 from motionfmu.scenarios import limited_signals
 from motionfmu.scenarios.arm_lengths import Arm, arm_of
 from motionfmu.scenarios.tool_signals import tools
 from motionfmu.scenarios.view_signals import joint_angles, of_arm, shown_tool, standing
+
+if TYPE_CHECKING:
+    from motionfmu.analysis.collisions import Cell
 
 Array = NDArray[np.float64]
 FRAMES = 2000  # of the machine, evenly over the run
@@ -47,7 +50,7 @@ class Scene:
     lines: tuple[DeviationLine, ...] = ()
     base: Array | None = None  # (n, 3) where an arm stands that is moved as a whole [mm]
     rapid: NDArray[np.bool_] | None = None  # (m,) where the tool does no work
-    cell: Cell = field(default_factory=Cell)  # what stands around the arm
+    cell: "Cell | None" = None  # what stands around the arm
 
 
 def scene_of(
@@ -70,7 +73,7 @@ def scene_of(
     moved = high - low > STANDS
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
         return None
-    frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
+    frames = distinct([np.linspace(0, count - 1, FRAMES).round().astype(np.int64)])
     kept = drawn_samples(count, tool, float(np.linalg.norm(high - low)))
     before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
     way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
@@ -169,4 +172,4 @@ def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
     even = np.linspace(0, count - 1, POINTS // 2).round().astype(np.int64)
     if len(bends) > POINTS // 2:
         bends = bends[np.linspace(0, len(bends) - 1, POINTS // 2).round().astype(np.int64)]
-    return np.unique(np.concatenate([bends, even]))
+    return distinct([bends, even])
