@@ -70,8 +70,8 @@ struct fmu_part {
     /* Warn if communication steps [ns] and the FMU's own grid do not divide each other. */
     void (*watch)(void *part, int64_t step);
 
-    /* Report the first element of an input, by its offset in struct vars, that is out of range;
-     * returns -1. */
+    /* Report the first element of an input, by its offset in struct vars, that is out of range.
+     * Returns -1, or 0 if none is. */
     int (*refuse)(void *part, size_t offset);
 
     /* Time since the start [ns]. */

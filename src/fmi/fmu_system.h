@@ -27,6 +27,13 @@
 #define SYSTEM_COLD_END
 #endif
 
+/* A function that is not to become part of its caller, which is large already. */
+#if defined(__GNUC__)
+#define SYSTEM_APART __attribute__((noinline))
+#else
+#define SYSTEM_APART
+#endif
+
 struct vars;
 
 struct system_part {

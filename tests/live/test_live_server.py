@@ -415,7 +415,9 @@ def test_a_machine_that_is_killed_is_told(tmp_path: Path) -> None:
     page = served.page()
     page.ask("channels", names=["mcc.line"])
     page.ask("record", file=str(tmp_path / "trace.npz"))
-    page.frame()
+    until = time.monotonic() + PATIENCE
+    while time.monotonic() < until and not any(f.stat().st_size for f in tmp_path.iterdir()):
+        page.frame()
     os.kill(served.machine, signal.SIGKILL)
     ended = page.next(lambda m: isinstance(m, dict) and "ended" in m)["ended"]
     assert ended == "the machine's process was ended by SIGKILL"

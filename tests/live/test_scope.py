@@ -1,5 +1,6 @@
 """Triggers and records of the scope, against a search sample by sample."""
 
+import subprocess
 import time
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import motionfmu
+from motionfmu.base.children import child
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveMachine
 from motionfmu.live.file_record import FileRecord, RecordHead
@@ -203,3 +205,14 @@ def test_a_record_is_whole_in_csv_and_numpy(tmp_path: Path) -> None:
         for column, name in enumerate(CHANNELS):
             assert arrays[name].tobytes() == there[2000:4000, column].tobytes()
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.csv", "b.npz"]
+
+
+@pytest.mark.parametrize("sent", [b"", b'{"file": "x'], ids=["nothing", "half a head"])
+def test_a_record_whose_machine_was_killed_before_it_began_leaves_nothing(
+    sent: bytes, tmp_path: Path
+) -> None:
+    part = tmp_path / ".x.npz.part1"
+    part.touch()
+    command, options = child(f"from {FileRecord.__module__} import main; main()")
+    done = subprocess.run([*command, str(part)], input=sent, capture_output=True, **options)
+    assert (done.returncode, done.stderr) == (0, b"") and list(tmp_path.iterdir()) == []

@@ -12,6 +12,8 @@ from conftest import ROOT
 import motionfmu
 from motionfmu.analysis import linear
 from motionfmu.analysis.linear import parts, wiring
+from motionfmu.fused import text
+from motionfmu.run.run_plan import Options
 from motionfmu.scenarios import system
 
 sys.path.insert(0, str(ROOT / "tests/bench"))
@@ -36,6 +38,22 @@ def test_each_table_has_the_bits_of_the_demo(tables: Path) -> None:
         component, _, variable = name.partition(".")
         assert np.array_equal(signal, alone[f"{component.rpartition('_')[0]}.{variable}"]), name
     assert len(found.signals) % COUNT == 0 and len(found.signals) > 10 * COUNT
+
+
+def test_the_last_of_many_wires_brings_nothing_that_its_input_may_not_have(tables: Path) -> None:
+    """A system with so many is carried by several functions."""
+    plan = motionfmu.load(tables)
+    more = {"more.command": "card_1.irq_seq"}
+    bad = plan.changed(
+        component=plan.document.tables["component"] | {"more": "network_card"},
+        connect=plan.document.tables["connect"] | more,
+        leave=[*plan.document.tables["leave"], "more.*"],
+    )
+    targets = [w.target.name for w in bad.resolved(Options()).wires]
+    assert len(targets) > text._COPIES and targets[-1] == "more.command"
+    for engine in ("fused", "native"):
+        with pytest.raises(motionfmu.InputError, match=r"more: .*command = 0 is below its minimum"):
+            bad.run(stop=0.01, engine=engine)
 
 
 def test_each_table_has_the_gains_of_the_demo(tables: Path) -> None:

@@ -7,11 +7,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from motionfmu.fmu.ctables import member
 from motionfmu.fused.fmu_parts import FmuPart
 from motionfmu.fused.system_variables import Roles
-from motionfmu.scenarios.system import End, System
+from motionfmu.scenarios.system import End, System, Wire
 
 # Letter of struct recorder_column, and bytes.
 _KINDS = {"Float64": ("d", 8), "Int32": ("i", 4), "Boolean": ("b", 1)}
 _I32 = (-(2**31), 2**31 - 1)
+# Lines of a C function: a compiler's time grows with the square of what is copied in one.
+_COPIES = 64
 
 
 def _in_part(end: End) -> str:
@@ -84,17 +86,28 @@ def _gives(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterabl
         yield _function(head, lines, ["v"] + ([] if mine else ["part"]))
 
 
-def _carry(system: System) -> str:
-    """C text that copies every wire's output to its input, then checks the limits of inputs."""
-    lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in system.wires]
+def _carried(head: str, wires: Sequence[Wire]) -> str:
+    lines = [f"SYSTEM_COPY({_in_part(w.target)}, {_in_part(w.source)});" for w in wires]
     # An output may feed several inputs: what is asked of it is asked once for all with its limits.
     asked: dict[tuple[str, str], str] = {}
-    for w in system.wires:
+    for w in wires:
         if check := _limits(w.target):
             asked.setdefault((w.source.name, check.replace(_in_part(w.target), "")), check)
     checks = asked.values()
     ends = ["struct system_check check = { .good = true };", *checks, "return system_good(&check);"]
-    return _function("bool system_carry(struct model *m)", [*lines, *ends], ["m"])
+    return _function(head, [*lines, *ends], ["m"])
+
+
+def _carry(system: System) -> Iterable[str]:
+    """C text that copies every wire's output to its input, then checks the limits of inputs."""
+    parts = [system.wires[k : k + _COPIES] for k in range(0, len(system.wires), _COPIES)]
+    if len(parts) < 2:
+        yield _carried("bool system_carry(struct model *m)", system.wires)
+        return
+    for k, wires in enumerate(parts):
+        yield _carried(f"SYSTEM_APART bool system_carry_{k}(struct model *m)", wires)
+    all_good = " & ".join(f"system_carry_{k}(m)" for k in range(len(parts)))
+    yield _function("bool system_carry(struct model *m)", [f"return {all_good};"], [])
 
 
 def _until(system: System) -> str:
@@ -126,18 +139,30 @@ def _together(system: System, parts: Mapping[str, FmuPart]) -> str:
     return f"\n#ifdef SYSTEM_QUICKLY\n{text}#endif\n"
 
 
+def _copies(name: str, arguments: str, lines: Sequence[str]) -> Iterable[str]:
+    """C text of a function whose lines stand for themselves, in several if they are many."""
+    calls = lines
+    if len(lines) > _COPIES:
+        parts = range(0, len(lines), _COPIES)
+        for k in parts:
+            head = f"SYSTEM_APART void {name}_{k}({arguments})"
+            yield _function(head, lines[k : k + _COPIES], ["m", "v"])
+        calls = [f"{name}_{k}(m, v);" for k in parts]
+    yield _function(f"void {name}({arguments})", calls, ["m", "v"])
+
+
 def _shows(system: System, parts: Mapping[str, FmuPart], used: Roles) -> Iterable[str]:
     taken = [f"SYSTEM_COPY({_in_part(e)}, {_here(e)});" for e in used.taken]
     for component in dict.fromkeys(e.component for e in used.taken if e.port.tunable):
         part = parts[system.components[component]].identifier
         taken.append(f"motionfmu_part_{part}.tuned(&m->of_{component});")
-    yield _function("void system_take(struct model *m, const struct vars *v)", taken, ["m", "v"])
+    yield from _copies("system_take", "struct model *m, const struct vars *v", taken)
     back = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.taken]
-    yield _function("void system_return(const struct model *m, struct vars *v)", back, ["m", "v"])
+    yield from _copies("system_return", "const struct model *m, struct vars *v", back)
     shown = [f"SYSTEM_COPY({_here(e)}, {_in_part(e)});" for e in used.shown]
     if system.until is not None:
         shown += ["v->until_.step = m->until;", "v->until_.which = m->which;"]
-    yield _function("void system_show(const struct model *m, struct vars *v)", shown, ["m", "v"])
+    yield from _copies("system_show", "const struct model *m, struct vars *v", shown)
 
 
 def _tables(system: System, parts: Mapping[str, FmuPart], recorded: Sequence[End]) -> Iterable[str]:
@@ -205,7 +230,7 @@ def model(
         "SYSTEM_COLD_END\n\n",
         *_tables(system, parts, recorded),
         _keep(recorded),
-        _carry(system),
+        *_carry(system),
         _until(system),
         _step(system, parts),
         _together(system, parts),

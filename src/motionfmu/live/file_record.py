@@ -50,7 +50,7 @@ class FileRecord:
         about = json.dumps({"file": str(file.absolute()), "part": str(part), **asdict(head)})
         # To start the process takes some ms, for which the machine does not wait.
         self._passed, self._whole = threading.Event(), threading.Event()
-        given = (f"{about}\n".encode(),)
+        given = (f"{about}\n".encode(), part)
         threading.Thread(target=self._send, args=given, daemon=True).start()
 
     @property
@@ -95,9 +95,9 @@ class FileRecord:
         """Wait until the file is there."""
         self._whole.wait()
 
-    def _send(self, about: bytes) -> None:
+    def _send(self, about: bytes, part: Path) -> None:
         command, options = child(f"from {__name__} import main; main()")
-        process = subprocess.Popen(command, stdin=subprocess.PIPE, **options)
+        process = subprocess.Popen([*command, str(part)], stdin=subprocess.PIPE, **options)
         pipe = process.stdin
         assert pipe is not None
         with contextlib.suppress(OSError):  # the process was killed
@@ -127,9 +127,13 @@ def claimed(file: Path) -> Path:
 
 
 def main() -> None:
-    """Write a record: its head and blocks come on stdin."""
+    """Write a record, gathered in the file named: its head and blocks come on stdin."""
     stream = sys.stdin.buffer
-    about = json.loads(stream.readline())
+    line = stream.readline()
+    if not line.endswith(b"\n"):  # the machine's process was killed before it had begun
+        Path(sys.argv[1]).unlink(missing_ok=True)
+        return
+    about = json.loads(line)
     part, file = Path(about["part"]), Path(about["file"])
     head = RecordHead(about["channels"], about["units"], about["step_ns"])
     try:
