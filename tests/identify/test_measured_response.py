@@ -27,6 +27,7 @@ from motionfmu.analysis.measured_response import (
 from motionfmu.analysis.measured_response.period_of_signal import period_of, whole_periods
 from motionfmu.analysis.measured_response.plant_response import axis_of, model_response
 from motionfmu.identify import AxisRecord, ColumnUse
+from motionfmu.report.loop_pages.response_page import _bode
 
 TRUE = MassModel(5e-4, 3e-4, 200.0, 0.01, 2e-3, 5e-4, 2e-4)
 OFF = [False] * 5
@@ -321,6 +322,16 @@ def test_of_one_mass_the_load_has_what_the_motor_leaves():
     found = found_response(scenario(**stiff, table_mass=60.0), measured_, pair)
     assert not found.fit.two
     assert found.settings == pytest.approx({"machine.table_mass[1]": 120.0}, rel=0.01)
+    magnitude, phase = _bode(found).subplots
+    for row, measured_row in (
+        (magnitude, 20 * np.log10(abs(values))),
+        (phase, np.angle(values, 1)),
+    ):
+        marks = {m.name: m.y for m in row.marks if hasattr(m, "y")}
+        assert set(marks) == {"model, values before", "model, values found", "measured"}
+        turns = (marks["measured"] - measured_row) / (360.0 if row is phase else 1.0)
+        assert turns == pytest.approx(np.round(turns), abs=1e-9)
+        assert np.abs(marks["measured"] - marks["model, values found"]).max() < 0.5
     heavy = found_response(scenario(**stiff | {"motor_inertia": 1e-2}), measured_, pair)
     assert heavy.settings == {}
     assert all("only the sum" in p.why or "one mass" in p.why for p in heavy.parameters[:4])
