@@ -97,6 +97,10 @@ int main(int argc, char **argv)
         for (int i = 0; i < AXES; i++) {
             n += scanf("%lf", &end[i]);
         }
+        if (n < AXES) {
+            printf("numbers are missing\n");
+            return 1;
+        }
         c.cap = 2.0 * c.feed;
         if (strcmp(word, "start") == 0) {
             commands--;
