@@ -106,7 +106,7 @@ static void each_limit_by_a_program(void)
     CHECK(time_of(LIMITED_CORNER, 0) > 0.1);
     CHECK(near(time_of(LIMITED_STOP, -1), 0.1));
 
-    /* Braking to another feed, 90 mm before a corner, is no corner's doing: 0.1 s up, 0.09 s down. */
+    /* Braking to another feed, 90 mm before a corner, is no corner's doing: 0.1 s and 0.09 s. */
     preview(&m, "G64 P0.01 F6000\nG1 X20\nX110 F600\nY20\nM2");
     CHECK(time_of(LIMITED_ACCELERATION, -1) > 0.188 && time_of(LIMITED_CORNER, -1) > 0.01);
 
