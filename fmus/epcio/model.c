@@ -15,8 +15,8 @@ struct model {
     int64_t instant;              /* [clock] next instant of that grid */
     bool powered;                 /* the first instant has passed */
     struct mailbox taken;         /* sequence numbers taken last from the host */
-    struct link_host levels;      /* taken last from the host */
-    bool levels_hold;             /* and nothing has changed them in the card since */
+    struct link_host levels;      /* levels taken last from the host */
+    bool levels_hold;             /* the card still has these levels */
     int32_t reg_seq;              /* sequence number taken last from the mailbox of registers */
     enum epcio_status reg_status; /* status of that transaction */
     int32_t warned_length;        /* DDA length that has to wait and was warned of */
@@ -70,7 +70,9 @@ static void take_registers(struct fmu *f)
 /* Take the host's levels, unless they are those that hold in the card. */
 static int take_levels(struct fmu *f)
 {
-    enum { SIZE = offsetof(struct link_host, cmd_seq) }; /* of all that stands before the frames */
+    enum {
+        SIZE = offsetof(struct link_host, cmd_seq)
+    }; /* [byte] of the levels: the frames stand behind them */
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
     struct link_host link;

@@ -12,7 +12,7 @@ struct model {
     struct drive_output next[CHANNELS]; /* outputs of the latest instant, shown at the next one */
     int64_t period;                     /* [ns] sampling grid */
     int64_t instant;                    /* [ns] next instant of that grid */
-    bool prompt;                        /* some channel is */
+    bool prompt;                        /* a channel shows its outputs without a period's delay */
 };
 
 #include "fmi_model.h"
@@ -54,6 +54,15 @@ static struct drive_config config(const struct vars *v, int i)
         .brake_run_time = v->brake_run_time[i],
         .brake_speed = v->brake_speed[i],
     };
+}
+
+static void take_settings(struct model *m, const struct vars *v)
+{
+    m->prompt = false;
+    for (int i = 0; i < CHANNELS; i++) {
+        m->config[i] = config(v, i);
+        m->prompt |= v->prompt[i];
+    }
 }
 
 /* Show the outputs of the latest sample: of all channels, or of those that are prompt. */
@@ -129,10 +138,8 @@ static int sample(struct fmu *f)
 static int model_step(struct fmu *f, int64_t t0, int64_t t1)
 {
     struct model *m = &f->s.m;
-    for (int i = 0; i < CHANNELS && f->tuned; i++) {
-        m->config[i] = config(&f->s.v, i);
-        m->prompt |= f->s.v.prompt[i];
-    }
+    if (f->tuned)
+        take_settings(m, &f->s.v);
     f->tuned = false;
     for (; m->instant < t1; m->instant += m->period) {
         if (m->instant > t0)

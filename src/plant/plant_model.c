@@ -108,8 +108,8 @@ static PLANT_INLINE void plant_steps_of(int lanes, plant_function *rhs, double *
 /* Integrate a block by so many steps of h [s]. */
 typedef void plant_stepper(struct plant_block *b, double h, int64_t steps);
 
-/* PLANT_FLAT: rates are inlined, so that states stay in registers from one to the next. A plant of
- * one lane has too many of them. */
+/* PLANT_FLAT (plant.h): the function that gives the rates is inlined, so that states stay in
+ * registers between its calls. A plant of one lane has too many states for that. */
 #define STEPS(n, rhs) PLANT_CASE(n, plant_steps_of(n, rhs, b->x, b->u, b->c, h, steps))
 PLANT_FLAT static void plant_steps_plain(struct plant_block *b, double h, int64_t steps)
 {
@@ -251,7 +251,8 @@ static void plant_read(struct fmu *f)
     }
 }
 
-/* Whether all values are finite: of others no sum is. A sum that overflows is no proof. */
+/* Whether all values are finite. Then so is their sum, unless it overflows: only where it is not
+ * finite each value is looked at. */
 static PLANT_INLINE bool plant_finite_of(int lanes, const double *a, int rows)
 {
     double sum[PLANT_WIDEST] = { 0.0 }, all = 0.0;

@@ -1,6 +1,5 @@
 #include "dda.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* The hardware adds the command to an accumulator at each tick; at `ticks` it overflows: that is a

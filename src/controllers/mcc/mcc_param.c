@@ -131,15 +131,15 @@ int MCC_update_param(struct mcc *m)
     if (code) {
         return code;
     }
-    signals_turn(&m->signals, &m->machine); /* they are the card's until the axes have changed */
     for (int i = 0; i < AXES; i++) {
         keep_place(m, i, &w.axis[i]);
         set_homing(&m->homing.axis[i], &m->epcio_axis_param[i],
                    w.axis[i].inverted != m->machine.axis[i].inverted, &w.axis[i]);
     }
+    signals_turn(&m->signals, &m->machine);
+    signals_turn(&m->signals, &w);
     m->machine = w;
     m->curve_plan.limits = machine_speed_limits(&w);
-    signals_turn(&m->signals, &w);
     return MCC_NO_ERR;
 }
 

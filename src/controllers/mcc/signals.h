@@ -31,7 +31,7 @@ static inline int32_t signals_opposite(int32_t count)
     return (int32_t)(0u - (uint32_t)count);
 }
 
-/* Make the card's counts those of the library, or back: of inverted axes they change their sign. */
+/* Turn the card's counts into the library's, or back: those of inverted axes change their sign. */
 static inline void signals_turn(struct signals *s, const struct machine *m)
 {
     for (int i = 0; i < AXES; i++) {

@@ -72,7 +72,7 @@ struct epcio_lines {
     bool unplugged[EPCIO_ENCODERS]; /* the encoder's plug is out */
     double volts[ADC_CHANNELS];     /* [V] of the ADC, held until the next instant */
     struct local_io_lines local;
-    bool remote_kept; /* those below are not given: they have not changed */
+    bool remote_kept;                          /* `remote` is not given: it has not changed */
     struct remote_io_lines remote[EPCIO_SETS]; /* held until the next instant */
 };
 

@@ -47,7 +47,7 @@ class FileRecord:
         part = claimed(file)
         self._next, self._begin, self._end = begin, begin, end
         self._blocks: SimpleQueue[bytes | None] = SimpleQueue()
-        about = json.dumps({"file": str(file.absolute()), "part": str(part), **asdict(head)})
+        about = json.dumps({"file": str(file.absolute()), **asdict(head)})
         # To start the process takes some ms, for which the machine does not wait.
         self._passed, self._whole = threading.Event(), threading.Event()
         given = (f"{about}\n".encode(), part)
@@ -127,14 +127,14 @@ def claimed(file: Path) -> Path:
 
 
 def main() -> None:
-    """Write a record, gathered in the file named: its head and blocks come on stdin."""
-    stream = sys.stdin.buffer
+    """Write a record. Its head and blocks come on stdin, the argument is the file to gather in."""
+    part, stream = Path(sys.argv[1]), sys.stdin.buffer
     line = stream.readline()
-    if not line.endswith(b"\n"):  # the machine's process was killed before it had begun
-        Path(sys.argv[1]).unlink(missing_ok=True)
+    if not line.endswith(b"\n"):  # the machine's process was killed before it sent the head
+        part.unlink(missing_ok=True)
         return
     about = json.loads(line)
-    part, file = Path(about["part"]), Path(about["file"])
+    file = Path(about["file"])
     head = RecordHead(about["channels"], about["units"], about["step_ns"])
     try:
         with part.open("wb") as raw:

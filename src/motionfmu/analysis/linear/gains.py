@@ -67,6 +67,7 @@ def _told(gain: LoopGain) -> str:
 
 def in_words(kp: float) -> str:
     """A position gain [1/s] with three digits and its unit."""
+    # Three digits of what rounds to 100 would end in a bare point.
     return f"{kp:.0f} 1/s" if kp >= 99.95 else f"{kp:#.3g} 1/s"
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.dry_run import DryRun
-from motionfmu.report.view.scene import FRAMES, Scene, drawn_samples
+from motionfmu.report.view.scene import Scene, drawn_samples, frames_of
 from motionfmu.run.decimate import at, reader
 from motionfmu.scenarios.arm_lengths import LENGTHS, Arm, axes_in_mm
 
@@ -18,7 +18,7 @@ def dry_scene(run: DryRun) -> Scene | None:
     if count < 2:
         return None
     place = s["place"].astype(float)
-    frames = np.unique(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
+    frames = frames_of(count)
     extent = float(np.linalg.norm(np.ptp(place, axis=0)))
     kept = drawn_samples(count, reader(place), extent)
     rapid = s["feed"][kept] <= 0.0

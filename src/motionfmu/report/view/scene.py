@@ -53,6 +53,11 @@ class Scene:
     cell: "Cell | None" = None  # what stands around the arm
 
 
+def frames_of(count: int) -> NDArray[np.int64]:
+    """The samples that are frames of the machine."""
+    return distinct([np.linspace(0, count - 1, FRAMES).round().astype(np.int64)])
+
+
 def scene_of(
     run: RunRecord,
     lines: Sequence[DeviationLine] = (),
@@ -73,7 +78,7 @@ def scene_of(
     moved = high - low > STANDS
     if not np.isfinite(high - low).all() or moved.sum() < (1 if arm else 2):
         return None
-    frames = distinct([np.linspace(0, count - 1, FRAMES).round().astype(np.int64)])
+    frames = frames_of(count)
     kept = drawn_samples(count, tool, float(np.linalg.norm(high - low)))
     before, after = (kept - 1).clip(0), (kept + 1).clip(None, count - 1)
     way = np.linalg.norm(at(tool, after) - at(tool, before), axis=1)
