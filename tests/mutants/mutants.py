@@ -21,6 +21,8 @@ import sys
 import time
 import tomllib
 from collections import Counter, defaultdict
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -34,6 +36,7 @@ PLACE = ROOT / "build/mutants"
 TREE, BUILT = PLACE / "tree", PLACE / "built"
 # For the tests of a change, which take a few seconds: their processor's time, and a sleeper's.
 PATIENCE, SLEEP = 120, 900  # [s]
+NEAREST = 3  # Python tests that are asked in one go
 # An installed checkout is found before any path, and it is the user's.
 PYTEST = (
     "import sys; sys.meta_path[:] = [m for m in sys.meta_path if 'ditable' not in repr(m)]; "
@@ -136,6 +139,7 @@ class Run:
     fate: dict[Change, str] = field(default_factory=dict)
 
     def holds(self, test: str) -> bool:
+        """Whether a test holds without any change, found when it is first asked for."""
         if test not in self.good:
             self.good[test] = (
                 python_tests([test])
@@ -145,18 +149,31 @@ class Run:
         return self.good[test]
 
     def judge(self, change: Change) -> str:
-        """Make a change, run its tests, take it back."""
-        python = change.file.suffix == ".py"
-        near = of_python(TREE, change.file, change.line) if python else of_c(TREE, change.file)
-        tests = [t for t in near if self.holds(t)]
+        return self._python(change) if change.file.suffix == ".py" else self._c(change)
+
+    def _python(self, change: Change) -> str:
+        """The nearest tests in one go, then those farther away one after the other."""
+        near = of_python(TREE, change.file, change.line)
+        groups = [near[:NEAREST], *([test] for test in near[NEAREST:])]
+        asked = False
+        for group in groups:
+            while tests := [t for t in group if self.good.get(t, True)]:
+                with changed(change):
+                    held = python_tests(tests)
+                if held:
+                    asked = True
+                    break
+                # What fails without the change as well says nothing.
+                if not [t for t in tests if not self.holds(t)]:
+                    return "caught"
+        return "held" if asked else "no test is near"
+
+    def _c(self, change: Change) -> str:
+        tests = [t for t in of_c(TREE, change.file) if self.holds(t)]
         if not tests:
             return "no test is near"
-        whole = change.file.read_text()
-        objects = {} if python else self._objects(change.file)
-        try:
-            change.file.write_text(change.text(whole))
-            if python:
-                return "held" if python_tests(tests) else "caught"
+        objects = self._objects(change.file)
+        with changed(change):
             for k, test in enumerate(tests):
                 if not make([f"test_{test}"]):
                     return "does not compile"
@@ -164,15 +181,24 @@ class Run:
                     return "compiles to the same"
                 if not ran([f"./test_{test}"], BUILT):
                     return "caught"
-            return "held"
-        finally:
-            change.file.write_text(whole)
+        return "held"
 
     @staticmethod
     def _objects(file: Path) -> dict[Path, str]:
         """What a core's file was compiled to."""
         found = BUILT.glob(f"CMakeFiles/{file.parent.name}.dir/{file.relative_to(TREE)}.o")
         return {f: hashlib.sha256(f.read_bytes()).hexdigest() for f in found}
+
+
+@contextmanager
+def changed(change: Change) -> Iterator[None]:
+    """A change is made, and is taken back in the end."""
+    whole = change.file.read_text()
+    try:
+        change.file.write_text(change.text(whole))
+        yield
+    finally:
+        change.file.write_text(whole)
 
 
 def accepted() -> set[tuple[str, str, str]]:

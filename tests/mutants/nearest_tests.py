@@ -120,4 +120,4 @@ def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:
         if hits:  # a function alone has a name that others have, too
             hits += 4 * sum(bool(name.search(text)) for name in functions)
             found.append((-hits, str(test.relative_to(tree))))
-    return [name for _, name in sorted(found)][:3]
+    return [name for _, name in sorted(found)][:MOST]

@@ -1,7 +1,7 @@
 """A test bench for the FMUs of one loop, where signals can be added to the values of wires."""
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from motionfmu.analysis.freq.bench_loop import BenchLoop, Element, Ends
 from motionfmu.analysis.linear import AxisModel
 from motionfmu.analysis.linear.axis_values import element
 from motionfmu.analysis.linear.law import Law, carried
@@ -207,8 +208,7 @@ class Bench:
                 slave.start()
             yield slaves
 
-    # CCN 17: the steps of the master stand in its order: read, record, get, put, step.
-    def run(self, added: Array, stop: Callable[[Array], bool] | None = None) -> tuple[Array, Array]:
+    def run(self, added: Array, stop: Ends | None = None) -> tuple[Array, Array]:
         """Run the FMUs with signals added at the inputs.
 
         Parameters
@@ -216,7 +216,8 @@ class Bench:
         added : ndarray, shape (steps, n_inputs)
             A row for each communication step. A whole-number input gets the nearest one.
         stop : callable, optional
-            Given the outputs at a communication point; True ends the run there.
+            Given the outputs so far, a row for each communication point; the number of rows with
+            which the run ends, or None if it goes on.
 
         Returns
         -------
@@ -230,116 +231,48 @@ class Bench:
         InputError
             An FMU refused something; its message.
         """
+        lead = self.lead
+        # to where the signal begins without a jump, which would raise an alarm
+        begun = [0.5 - 0.5 * math.cos(math.pi * k / lead) for k in range(lead)]
+        rows = np.concatenate([np.outer(begun, added[0]), added]) if lead else added
+        late: Ends | None = None
+        if stop is not None:
+
+            def late(shown: Array) -> int | None:
+                found = stop(shown[lead:]) if len(shown) > lead else None
+                return None if found is None else lead + found
+
         with self._slaves() as slaves:
-            taps = [_Tap(slaves, self, k) for k in range(len(self.entries))]
-            tapped = {t.port for t in taps}
-            wires = [
-                _BenchWire(slaves, w, self._offset(w))
-                for w in self.system.wires
-                if _target(w) not in tapped
-            ]
-            exits = [_OutputReader(slaves, self, p) for p in self.exits]
-            shown = np.zeros((len(added), len(exits)))
-            used = np.zeros_like(added)
-            step = self.step_ns * 1e-9
-            for k in range(-self.lead, len(added)):
-                # to where the signal begins without a jump, which would raise an alarm
-                begun = 0.5 - 0.5 * math.cos(math.pi * (k + self.lead) / max(self.lead, 1))
-                row = added[k] if k >= 0 else begun * added[0]
-                if k >= 0:
-                    shown[k] = [r.read() for r in exits]
-                    if stop is not None and stop(shown[k]):
-                        return shown[: k + 1], used[: k + 1]
-                for w in wires:
-                    w.get()
-                for t in taps:
-                    t.get()
-                for w in wires:
-                    w.put()
-                told = [t.put(x) for t, x in zip(taps, row, strict=True)]
-                used[max(k, 0)] = told
-                for slave in slaves.values():
-                    slave.step((k + self.lead) * self.step_ns * 1e-9, step)
-            return shown, used
+            loop = BenchLoop(slaves, self.step_ns)
+            for w in self.system.wires:
+                if _target(w) not in self.entries:
+                    loop.wire(w, self._offset(w))
+            for port in self.exits:
+                loop.output(self._element(port))
+            for port in self.entries:
+                self._tap(loop, port)
+            shown, used = loop.run(rows, late)
+        return shown[lead:], used[lead:]
+
+    def _element(self, port: Port) -> Element:
+        component, name = port
+        ports = self.axis.scenario.resolver.ports[component]
+        return Element(component, *element(ports, name, self.axis.axis))
+
+    def _tap(self, loop: BenchLoop, port: Port) -> None:
+        name, own = ".".join(port), self._element(port)
+        given = next((values for end, values in self.given if end.name == name), None)
+        start = given or self.own(*port, _start(own.port, own.place))
+        wire = next((w for w in self.system.wires if _target(w) == port), None)
+        source = None
+        if wire is not None:
+            source = self._element((wire.source.component, wire.source.port.name))
+        gain, delay = self.setup.gains.get(name, 1.0), self.setup.delays.get(name, 0)
+        loop.tap(own, start, source, gain, delay)
 
 
 def _target(wire: Wire) -> Port:
     return wire.target.component, wire.target.port.name
-
-
-class _BenchWire:
-    """A wire that carries its value, or the value plus a constant."""
-
-    def __init__(self, slaves: dict[str, Slave], wire: Wire, offset: list[float]) -> None:
-        source, target = slaves[wire.source.component], slaves[wire.target.component]
-        a, b = wire.source.port, wire.target.port
-        buffer = source.buffer(a.type, a.count)
-        self.get = source.access("Get", a.type, a.reference, buffer)
-        put = target.access("Set", b.type, b.reference, buffer)
-
-        def shifted() -> None:
-            buffer[:] = [v + x for v, x in zip(buffer, offset, strict=True)]
-            put()
-
-        self.put = shifted if offset else put
-
-
-class _OutputReader:
-    """One element of an output."""
-
-    def __init__(self, slaves: dict[str, Slave], bench: Bench, port: Port) -> None:
-        component, name = port
-        ports = bench.axis.scenario.resolver.ports[component]
-        declared, self.place = element(ports, name, bench.axis.axis)
-        self.buffer = slaves[component].buffer(declared.type, declared.count)
-        self.get = slaves[component].access("Get", declared.type, declared.reference, self.buffer)
-
-    def read(self) -> float:
-        """The present value."""
-        self.get()
-        return float(self.buffer[self.place])
-
-
-class _Tap:
-    """An input with a signal added to its wire's value, which may be delayed and multiplied."""
-
-    def __init__(self, slaves: dict[str, Slave], bench: Bench, number: int) -> None:
-        self.port = bench.entries[number]
-        name = ".".join(self.port)
-        ports = bench.axis.scenario.resolver.ports[self.port[0]]
-        declared, self.place = element(ports, self.port[1], bench.axis.axis)
-        slave = slaves[self.port[0]]
-        self.buffer = slave.buffer(declared.type, declared.count)
-        given = {end.name: values for end, values in bench.given}
-        start = given.get(name) or bench.own(*self.port, _start(declared, self.place))
-        self.buffer[:] = list(start)
-        self.base = float(self.buffer[self.place])
-        self.whole = declared.type == "Int32"
-        self._put = slave.access("Set", declared.type, declared.reference, self.buffer)
-        wire = next((w for w in bench.system.wires if _target(w) == self.port), None)
-        self.source = (
-            None
-            if wire is None
-            else _OutputReader(slaves, bench, (wire.source.component, wire.source.port.name))
-        )
-        self.gain = bench.setup.gains.get(name, 1.0)
-        self.late = [0.0] * bench.setup.delays.get(name, 0)
-
-    def get(self) -> None:
-        """Read the source."""
-        if self.source is not None:
-            self.late.append(self.gain * self.source.read())
-            self.buffer[:] = self.source.buffer[:]  # other axes as their wire brings them
-
-    def put(self, added: float) -> float:
-        """Write the sum; returns the signal that was added, after rounding."""
-        brought = self.base if self.source is None else self.late.pop(0)
-        value = brought + added
-        if self.whole:
-            value = round(value)
-        self.buffer[self.place] = value
-        self._put()
-        return float(value - brought)
 
 
 def _start(port: fmus.Port, place: int) -> float:

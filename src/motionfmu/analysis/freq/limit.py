@@ -93,14 +93,11 @@ def ringing(setup: Setup, trial: RingingTest, omega: float) -> tuple[float, floa
     added[lead:, 0] += trial.kick * np.minimum(
         np.arange(1, len(added) - lead + 1) / max(rise, 1), 1.0
     )
-    count = iter(range(len(added)))
     far = _RUNAWAY * abs(trial.kick) + abs(way[-1] - way[-2]) / step
 
-    begun: list[float] = []
-
-    def away(shown: Array) -> bool:
-        begun.append(float(shown[0]))
-        return abs(begun[-1] - begun[0] + way[next(count)]) > far
+    def away(shown: Array) -> int | None:
+        beyond = np.abs(shown[:, 0] - shown[0, 0] + way[: len(shown)]) > far
+        return int(np.argmax(beyond)) + 1 if beyond.any() else None
 
     shown, _ = bench.run(added, away)
     factor = setup.gains.get(name, 1.0)

@@ -78,6 +78,10 @@ class Library:
         """A function of the standard, by its name without the version."""
         return getattr(self._dll, f"fmi{self.fmi}{name}")
 
+    def address(self, name: str) -> int | None:
+        """Where a function of the standard is in memory."""
+        return ctypes.cast(self.function(name), c_void_p).value
+
     def own(self, name: str) -> Any:
         """A function of the library that is none of the standard's."""
         return getattr(self._dll, name)

@@ -86,9 +86,9 @@ class Slave:
         try:
             yield
         except FmuRefusal as refused:
-            raise self._failure(str(refused)) from None
+            raise self.refusal(str(refused)) from None
 
-    def _failure(self, call: str) -> InputError:
+    def refusal(self, call: str) -> InputError:
         """The error for a call that failed: the message of the first component that gave one."""
         return fmu_messages.failure(self.name, call, self.errors)
 
@@ -99,7 +99,7 @@ class Slave:
             try:
                 call(*arguments)
             except FmuRefusal as refused:
-                raise self._failure(str(refused)) from None
+                raise self.refusal(str(refused)) from None
 
         return run
 
@@ -116,6 +116,10 @@ class Slave:
         count = 1 if further else len(buffer)
         several = [ValuePlace(kind, r, count) for r in (reference, *further)]
         return self._telling(self._library.access(verb, several, buffer))
+
+    def address(self, name: str) -> tuple[Any, Any]:
+        """A function of the standard, without its version, and the instance, for a loop in C."""
+        return self._library.address(name), self._library.instance.value
 
     def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
         """Set a variable of any kind, by its first reference, once."""

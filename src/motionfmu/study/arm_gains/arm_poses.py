@@ -5,7 +5,6 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 Array = NDArray[np.float64]
 # A joint that turns for ever has no pose that it has not within this [deg].
@@ -28,6 +27,8 @@ def ranges(low: Array, high: Array) -> Array:
 
 def spread(ends: Array, count: int) -> Array:
     """Poses (n, 6) [deg]: a Halton sequence, and the ends and middles of the joints that fold."""
+    from scipy.stats import qmc  # a second to import, and `tune` of axes wants none
+
     drawn = qmc.Halton(d=len(ends[0]), scramble=False).random(count + 1)[1:]
     middle = ends.mean(axis=0)
     rows = []
