@@ -34,8 +34,9 @@ from rich.progress import Progress
 ROOT = Path(__file__).resolve().parents[2]
 PLACE = ROOT / "build/mutants"
 TREE, BUILT = PLACE / "tree", PLACE / "built"
-# For the tests of a change, which take a few seconds: their processor's time, and a sleeper's.
-PATIENCE, SLEEP = 120, 900  # [s]
+# For the tests of a change, which take seconds, or two minutes: their processor's time, and a
+# sleeper's.
+PATIENCE, SLEEP = 300, 1800  # [s]
 NEAREST = 3  # Python tests that are asked in one go
 # An installed checkout is found before any path, and it is the user's.
 PYTEST = (

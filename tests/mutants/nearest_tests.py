@@ -108,7 +108,7 @@ def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:
         if "src" in f.relative_to(tree).parts and f != file and _names(text, module)
     ]
     typed = [m.rpartition(".")[2].split("_") for m in (module, *users) if ".cli." in m]
-    commands = ['["' + '", "'.join(words) + '"' for words in typed]
+    commands = [re.compile(r"[(\[]\s*" + r",\s*".join(f'"{w}"' for w in words)) for words in typed]
     found = []
     for test, text in texts.items():
         if not test.name.startswith("test_") or "long" in test.stem:
@@ -116,7 +116,7 @@ def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:
         hits = 8 * _names(text, module) + 2 * sum(_names(text, user) > 0 for user in users)
         hits += 4 * (stem in test.stem) + (file.parent.name in test.stem)
         hits += min(4, len(re.findall(rf"\b{re.escape(folder)}\b", text)))
-        hits += 6 * sum(typed in text for typed in commands)
+        hits += 6 * sum(bool(typed.search(text)) for typed in commands)
         if hits:  # a function alone has a name that others have, too
             hits += 4 * sum(bool(name.search(text)) for name in functions)
             found.append((-hits, str(test.relative_to(tree))))

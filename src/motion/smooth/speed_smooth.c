@@ -14,9 +14,13 @@ enum { HALVES = 4, STEPS = 4096 };
 /* A way needs no plan if one jerk drives it that is at least this part of what its start allows. */
 static const double HOPS = 0.9;
 
-/* From nearly rest without an acceleration the jerk stops the motion within a stride, which lets it
- * gain a thousandfold of x (speed_box): over such a share of it no more than half of x is lost. */
+/* From nearly rest the jerk stops the motion within a stride, which lets it gain a thousandfold of
+ * x (speed_box): over such a share of it no more than half of x is lost. So many shares are tried. */
 static const double NEAR_REST = 1.0 / 64.0;
+enum { SHARES = 5 };
+
+/* A landing is slow that takes less than this part of the jerk that is allowed. */
+static const double SLOW = 0.25;
 
 /* Ways and states count as the same if they differ by such a share. */
 static const double SAME = 1e-9;
@@ -147,6 +151,28 @@ static double halve(const struct ride *r, const struct speed_road *to,
     return kept;
 }
 
+/* Whether a motion that brakes as it does would take much longer to rest than its jerk needs. */
+static bool idles(const struct speed_box *g, struct speed_state from, bool lands, double stride)
+{
+    if (fabs(from.b) * stride <= SAME * from.x) {
+        return true;
+    }
+    const struct speed_step s = speed_step_land(from);
+    return lands && s.c < SLOW * speed_box_jerk(g, s.speed, s.acc);
+}
+
+/* Whether a step of a length brakes with a fair part of the jerk, and can be driven. */
+static bool turns_down(const struct ride *r, const struct speed_road *to, struct speed_spot spot,
+                       double stride)
+{
+    const struct speed_box *g = speed_road_box(to, spot.box);
+    const double v = sqrt(spot.state.x), jerk = speed_box_jerk(g, v, 0.5 * spot.state.b);
+    double c;
+
+    return speed_box_turn(g, spot.state, stride, -1.0, &c) && -0.5 * c * v >= SLOW * jerk
+           && good(r, to, spot, c, stride, true);
+}
+
 /* The slowest step within the limits from which the motion can go on by the plan or rest. */
 static void brake(struct ride *r)
 {
@@ -157,11 +183,16 @@ static void brake(struct ride *r)
     double stride = speed_box_stride(g, spot.state, speed_plan_rest(held(r), &hard, &spot));
     double s, steer, c;
 
-    bool turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
-    if (turns && c == 0.0 && fabs(spot.state.b) * stride <= SAME * spot.state.x) {
-        stride *= NEAR_REST;
-        turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
+    if (idles(g, spot.state, lands, stride)) {
+        double part = stride;
+        for (int n = 0; n < SHARES; n++, part *= NEAR_REST) {
+            if (turns_down(r, &hard, spot, part)) {
+                stride = part;
+                break;
+            }
+        }
     }
+    const bool turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
     if (turns && good(r, &hard, spot, c, stride, true)) {
         const struct speed_state to = speed_step_to(spot.state, c, stride);
         if (to.b >= 0.0 || !lands || speed_road_lands(&hard, spot.at + stride, spot.box, to)) {
