@@ -62,7 +62,7 @@ static double brought(struct bench_tap *t)
 static bool tap_put(struct bench_loop *b, struct bench_tap *t, double added, double *used)
 {
     const double value = brought(t);
-    const double sum = t->kind == 'i' ? nearbyint(value + added) : value + added;
+    const double sum = t->kind == 'i' ? rint(value + added) : value + added;
 
     set_element(t->put.values, t->kind, t->place, sum);
     *used = sum - value;

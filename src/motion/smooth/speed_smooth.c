@@ -15,7 +15,7 @@ enum { HALVES = 4, STEPS = 4096 };
 static const double HOPS = 0.9;
 
 /* From nearly rest the jerk stops the motion within a stride, which lets it gain a thousandfold of
- * x (speed_box): over such a share of it no more than half of x is lost. So many shares are tried. */
+ * x (speed_box): over such a share of it no more than half of x is lost. So many are tried. */
 static const double NEAR_REST = 1.0 / 64.0;
 enum { SHARES = 5 };
 

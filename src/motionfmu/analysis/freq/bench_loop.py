@@ -21,7 +21,7 @@ _KINDS = {"Float64": ord("d"), "Int32": ord("i"), "Boolean": ord("?")}
 _PIECE = 500  # steps before it is looked at whether the run ends
 
 
-class _Access(ctypes.Structure):
+class _AccessStruct(ctypes.Structure):
     """The struct bench_access of src/python/binding_bench.h, as those below."""
 
     _fields_ = (
@@ -33,18 +33,18 @@ class _Access(ctypes.Structure):
     )
 
 
-class _Wire(ctypes.Structure):
-    _fields_ = (("get", _Access), ("put", _Access), ("offset", c_void_p))
+class _WireStruct(ctypes.Structure):
+    _fields_ = (("get", _AccessStruct), ("put", _AccessStruct), ("offset", c_void_p))
 
 
-class _Output(ctypes.Structure):
-    _fields_ = (("get", _Access), ("kind", c_int32), ("place", c_int32))
+class _OutputStruct(ctypes.Structure):
+    _fields_ = (("get", _AccessStruct), ("kind", c_int32), ("place", c_int32))
 
 
-class _Tap(ctypes.Structure):
+class _TapStruct(ctypes.Structure):
     _fields_ = (
-        ("put", _Access),
-        ("source", ctypes.POINTER(_Output)),
+        ("put", _AccessStruct),
+        ("source", ctypes.POINTER(_OutputStruct)),
         ("base", c_double),
         ("gain", c_double),
         ("late", c_void_p),
@@ -56,11 +56,11 @@ class _Tap(ctypes.Structure):
     )
 
 
-class _Slave(ctypes.Structure):
+class _SlaveStruct(ctypes.Structure):
     _fields_ = (("step", c_void_p), ("instance", c_void_p))
 
 
-class _Loop(ctypes.Structure):
+class _LoopStruct(ctypes.Structure):
     _fields_ = (
         ("wire", c_void_p),
         ("output", c_void_p),
@@ -89,33 +89,28 @@ class Element:
 class BenchLoop:
     """Wires, outputs and taps of initialized FMUs, which run once.
 
-    Parameters
-    ----------
-    slaves : dict
-        By component, in the order in which they step.
-    step_ns : int
-        The communication step.
+    They step in the order in which `slaves` has them, with a communication step of `step_ns`.
     """
 
     def __init__(self, slaves: Mapping[str, Slave], step_ns: int) -> None:
         self._slaves, self._step_ns = slaves, step_ns
         self._kept: list[Any] = []  # memory that C reads and writes
-        self._wires: list[_Wire] = []
-        self._outputs: list[_Output] = []
-        self._taps: list[_Tap] = []
+        self._wires: list[_WireStruct] = []
+        self._outputs: list[_OutputStruct] = []
+        self._taps: list[_TapStruct] = []
 
-    def _access(self, verb: str, component: str, port: Port, buffer: Any) -> _Access:
+    def _access(self, verb: str, component: str, port: Port, buffer: Any) -> _AccessStruct:
         call, instance = self._slaves[component].address(f"{verb}{port.type}")
-        return _Access(call, instance, ctypes.addressof(buffer), len(buffer), port.reference)
+        return _AccessStruct(call, instance, ctypes.addressof(buffer), len(buffer), port.reference)
 
     def _buffer(self, component: str, port: Port) -> Any:
         self._kept.append(self._slaves[component].buffer(port.type, port.count))
         return self._kept[-1]
 
-    def _reader(self, of: Element) -> _Output:
+    def _reader(self, of: Element) -> _OutputStruct:
         buffer = self._buffer(of.component, of.port)
         access = self._access("Get", of.component, of.port, buffer)
-        return _Output(access, _KINDS[of.port.type], of.place)
+        return _OutputStruct(access, _KINDS[of.port.type], of.place)
 
     def wire(self, wire: Wire, offset: Sequence[float]) -> None:
         """Carry the value of a wire in each step, or the value plus a constant."""
@@ -125,7 +120,7 @@ class BenchLoop:
         put = self._access("Set", target.component, target.port, buffer)
         self._kept.append((c_double * len(offset))(*offset))
         added = ctypes.addressof(self._kept[-1]) if offset else None
-        self._wires.append(_Wire(get, put, added))
+        self._wires.append(_WireStruct(get, put, added))
 
     def output(self, element: Element) -> None:
         """Record one element of an output."""
@@ -152,7 +147,9 @@ class BenchLoop:
         kind, base = _KINDS[element.port.type], float(buffer[element.place])
         from_ = None if source is None else ctypes.pointer(self._reader(source))
         size = ctypes.sizeof(buffer)
-        self._taps.append(_Tap(put, from_, base, gain, late, delay, 0, kind, element.place, size))
+        self._taps.append(
+            _TapStruct(put, from_, base, gain, late, delay, 0, kind, element.place, size)
+        )
 
     def run(self, added: Array, ends: Ends | None = None) -> tuple[Array, Array]:
         """Run with a row of `added` for each step, a column for each tap.
@@ -160,11 +157,11 @@ class BenchLoop:
         Returns a row of the outputs before each step, and one of what was really added in it; an
         InputError with the message of an FMU that refuses.
         """
-        steps = [_Slave(*s.address("DoStep")) for s in self._slaves.values()]
+        steps = [_SlaveStruct(*s.address("DoStep")) for s in self._slaves.values()]
         parts: list[list[Any]] = [self._wires, self._outputs, self._taps, steps]
-        kinds: tuple[Any, ...] = (_Wire, _Output, _Tap, _Slave)
+        kinds: tuple[Any, ...] = (_WireStruct, _OutputStruct, _TapStruct, _SlaveStruct)
         arrays = [(k * max(len(p), 1))(*p) for k, p in zip(kinds, parts, strict=True)]
-        loop = _Loop(*map(ctypes.addressof, arrays), *map(len, parts), self._step_ns)
+        loop = _LoopStruct(*map(ctypes.addressof, arrays), *map(len, parts), self._step_ns)
         added = np.ascontiguousarray(added, dtype=float)
         shown, used = np.zeros((len(added), loop.outputs)), np.zeros(added.shape)
         step = library().binding_bench
@@ -180,10 +177,10 @@ class BenchLoop:
                 raise self._refusal(loop)
         return shown, used
 
-    def _refusal(self, loop: _Loop) -> Exception:
+    def _refusal(self, loop: _LoopStruct) -> Exception:
         by = next(s for s in self._slaves.values() if s.address("DoStep")[1] == loop.by)
         if loop.refused is None:
             return by.refusal("doStep")
-        refused = _Access.from_address(loop.refused).call
+        refused = _AccessStruct.from_address(loop.refused).call
         names = (f"{verb}{kind}" for verb in ("Get", "Set") for kind in _KINDS)
         return by.refusal(next(n for n in names if by.address(n)[0] == refused))
