@@ -11,7 +11,8 @@ from few_cases import few
 
 import motionfmu
 from motionfmu.analysis.cycle_time import driven, planned, what_if
-from motionfmu.base.motion_rows import ROW
+from motionfmu.analysis.cycle_time.program_plan import CommandedMotion
+from motionfmu.base.motion_rows import NUMBER_OF, ROW
 from motionfmu.cards import load
 from motionfmu.run import Options, Session
 from motionfmu.run.axis_figures import axis_figures
@@ -223,3 +224,11 @@ def test_what_limits_a_job_of_a_network_card(tmp_path):
     assert told["acceleration", "X"] == pytest.approx(2 * (feed / a - a / j), rel=0.1)
     assert told["dwell", ""] > 0.0 and ("speed", "X") not in told
     assert sum(told.values()) == pytest.approx(plan.time, abs=1e-9)
+
+
+def test_a_limit_that_is_none_of_the_six_axes_is_outside_the_arm():
+    rows = np.zeros(6, dtype=ROW)
+    rows["cause"], rows["axis"] = NUMBER_OF["speed"], [0, 1, 1, 6, 7, 7]
+    motion = CommandedMotion(0.5, rows, ("J1", "J2", "J3", "J4", "J5", "J6"))
+    times = {share.axis: share.time for share in motion.shares()}
+    assert times == {"": 0.5, "J1": 1.0, "J6": 0.5, "external": 1.0}
