@@ -232,8 +232,11 @@ def test_the_demo_is_tuned_to_its_limit(tuned: Tuned) -> None:
         assert said in text
     first = tuned.settings["mcc.p_gain"][0]
     assert f"= {first} (Kp {first / 200 * 47.683716:#.3g} 1/s)" in text
-    first, second = tuned.found.starts
-    assert first == pytest.approx(second, rel=1e-4)
+    found = tuned.found
+    assert found.starts[0] == pytest.approx(found.starts[1], rel=1e-4)
+    # The global search alone, of some twenty points, is near but no better.
+    assert found.values.worst <= found.check < 1.5 * found.values.worst
+    assert found.evaluations[1] >= 20
 
 
 def test_what_a_scenario_records_changes_no_gain(tuned: Tuned) -> None:

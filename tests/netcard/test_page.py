@@ -22,6 +22,10 @@ from console import within
 from fleet import Fleet, circle, status
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse
+from starlette.routing import Route
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 from websockets.asyncio.client import connect
@@ -460,3 +464,23 @@ def test_of_too_many_connections_the_oldest_that_asks_for_nothing_goes(
             return gone
 
     assert asyncio.run(which()) == [True, True, False, False, False]
+
+
+def test_a_page_that_ends_answers_first() -> None:
+    async def main() -> bytes:
+        begun, done = asyncio.Event(), asyncio.Event()
+
+        async def slow(_: Request) -> PlainTextResponse:
+            begun.set()
+            await asyncio.sleep(0.2)
+            done.set()
+            return PlainTextResponse("whole")
+
+        async with PageServer(Starlette(routes=[Route("/", slow)]), 0) as port:
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+            await begun.wait()
+        assert done.is_set()
+        return await reader.read()
+
+    assert asyncio.run(main()).endswith(b"whole")
