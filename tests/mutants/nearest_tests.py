@@ -5,7 +5,7 @@ import re
 from functools import cache
 from pathlib import Path
 
-MOST = 12  # tests of a change: whoever is farther away sees it by chance
+MOST = 12  # Python tests of a change: whoever is farther away sees it by chance
 
 
 @cache
@@ -34,7 +34,10 @@ def _reached(tree: Path, file: Path) -> frozenset[Path]:
 
 
 def of_c(tree: Path, file: Path) -> list[str]:
-    """C tests of a core's file: those of its folder, then narrow ones that include its headers."""
+    """C tests of a core's file: those of its folder, then all that include its headers.
+
+    The narrowest come first.
+    """
     core = file.parent.name
     own = sorted(f.stem for f in tree.glob(f"tests/core/{core}/*.c"))
     others = []
@@ -45,7 +48,7 @@ def of_c(tree: Path, file: Path) -> list[str]:
     # In a large folder those first whose name begins or ends as the file's.
     words = set(file.stem.split("_")) - {core}
     own.sort(key=lambda name: -len(words & set(name.split("_"))))
-    return [*own, *(name for _, name in sorted(others))][: MOST if len(own) < MOST else len(own)]
+    return [*own, *(name for _, name in sorted(others))]
 
 
 @cache
