@@ -8,8 +8,8 @@ from contour_runs import Machine, Program, run_along
 
 from motionfmu.analysis.contour import analyse, pulse_path, scaled_values
 from motionfmu.analysis.contour.instants import Instants
-from motionfmu.analysis.contour.order import distinct, median, quantiles
 from motionfmu.analysis.contour.pulse_path import PulsePaths
+from motionfmu.base.order import distinct, median, quantiles
 
 PATH = Program(0, 0).line(20, 0).arc((20, 10), 6.0).line(0, 5).path()
 RUN = run_along(PATH, 100.0, Machine(step=5e-4))

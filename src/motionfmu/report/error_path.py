@@ -10,12 +10,12 @@ from motionfmu.analysis.contour import ContourResult
 from motionfmu.analysis.contour.arcs import Array
 from motionfmu.analysis.contour.circles import plane_axes
 from motionfmu.analysis.contour.geometry import norms
-from motionfmu.analysis.contour.order import distinct
 from motionfmu.analysis.contour.path import Path, outline
 from motionfmu.analysis.contour.scaled_values import blocks, picked, places
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.analysis.iso9283.simplify import simplified
 from motionfmu.base.columns import forget, room
+from motionfmu.base.order import distinct
 from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.run.decimate import peaks_of
 

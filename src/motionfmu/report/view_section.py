@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from motionfmu.analysis.contour.order import quantiles
+from motionfmu.base.order import quantiles
 from motionfmu.report.error_scale import magnification, scale_end, within
 from motionfmu.report.html_page import Page
 from motionfmu.report.numbers import figure

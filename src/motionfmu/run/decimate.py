@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.base.columns import ROWS, forget
+from motionfmu.base.order import distinct
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -64,12 +65,6 @@ def ends(count: int, read: Read) -> tuple[Array, Array]:
     return low, high
 
 
-def distinct(parts: list[Index]) -> Index:
-    """Each sample once, in order; np.unique would do it, but imports masked arrays."""
-    every = np.sort(np.concatenate(parts))
-    return every[np.diff(every, prepend=-1) > 0]
-
-
 def keep_steps(values: Array, buckets: int) -> Index:
     """Samples at which a staircase changes, or its peaks."""
     return steps_of(len(values), reader(values), buckets)
@@ -91,7 +86,7 @@ def steps_of(count: int, read: Read, buckets: int) -> Index:
         found += len(parts[-1])
         if found > 2 * buckets:
             return peaks_of(count, read, buckets)
-    return distinct(parts)
+    return distinct(np.concatenate(parts))
 
 
 def peaks_of(count: int, read: Read, buckets: int) -> Index:
@@ -111,4 +106,4 @@ def peaks_of(count: int, read: Read, buckets: int) -> Index:
             values = column[rows - ends[0]]
             for best in (values.argmin(axis=1), values.argmax(axis=1)):
                 kept.append(rows[np.arange(len(rows)), best])
-    return distinct(kept)
+    return distinct(np.concatenate(kept))

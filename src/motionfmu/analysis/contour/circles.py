@@ -11,11 +11,11 @@ from motionfmu.analysis.contour.geometry import Arc, Segment
 from motionfmu.analysis.contour.instants import Instants
 from motionfmu.analysis.contour.iso230 import both_ways, reading
 from motionfmu.analysis.contour.kinds import BothWays, CircleFigures
-from motionfmu.analysis.contour.order import median
 from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.scaled_values import ScaledValues, places
 from motionfmu.analysis.contour.segments import ARC, Index
 from motionfmu.analysis.contour.track import Track
+from motionfmu.base.order import median
 
 # Arcs belong to one circle if centre, radius and normal agree to this [mm; 1]: the rounding of
 # a part program with four decimals.

@@ -14,11 +14,11 @@ from motionfmu.analysis.contour.contour_result import ContourInput, ContourResul
 from motionfmu.analysis.contour.corners import find_corners
 from motionfmu.analysis.contour.instants import Instants
 from motionfmu.analysis.contour.kinds import Statistics
-from motionfmu.analysis.contour.order import quantiles
 from motionfmu.analysis.contour.path import Path
 from motionfmu.analysis.contour.pulse_path import PulsePaths
 from motionfmu.analysis.contour.scaled_values import blocks, places
 from motionfmu.analysis.contour.track import Track, follow
+from motionfmu.base.order import quantiles
 
 # The tool is within exp(-5) = 0.7 % of a corner's following distance after five servo lags.
 LAGS = 5.0

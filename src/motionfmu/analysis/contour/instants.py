@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from motionfmu.analysis.contour.arcs import Array
-from motionfmu.analysis.contour.order import median
 from motionfmu.analysis.contour.scaled_values import blocks
 from motionfmu.analysis.contour.segments import Index
 from motionfmu.base.columns import room
+from motionfmu.base.order import median
 
 # Samples are evenly spaced if each lies within this part of a step of its place; k times a step,
 # rounded, is far nearer even after days.

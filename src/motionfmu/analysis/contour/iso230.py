@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.arcs import EPS, Array
 from motionfmu.analysis.contour.kinds import BothWays, CircleFigures
-from motionfmu.analysis.contour.order import distinct, quantiles
 from motionfmu.analysis.contour.segments import Index
+from motionfmu.base.order import distinct, quantiles
 
 # Gauss and Newton's method and its minimax form square the error in each round if points lie near a
 # circle; six rounds lead from 1 % to rounding. Odd shapes may take more.

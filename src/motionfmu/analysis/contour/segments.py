@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from motionfmu.analysis.contour.arcs import Arcs, Array, Foot
 from motionfmu.analysis.contour.geometry import Arc, Cubic, Label, LineSegment, Segment, norms
-from motionfmu.analysis.contour.order import distinct
 from motionfmu.base.memo import Memo
+from motionfmu.base.order import distinct
 
 Index = NDArray[Any]  # of integers
 KINDS = ("ptp", "line", "arc", "helix", "curve")

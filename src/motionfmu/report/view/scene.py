@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motionfmu.analysis.iso9283.simplify import simplified
-from motionfmu.run.decimate import Read, at, distinct, ends, reader
+from motionfmu.base.order import distinct
+from motionfmu.run.decimate import Read, at, ends, reader
 from motionfmu.run.run_record import RunRecord
 from motionfmu.run.tool_gap import in_mm
 from motionfmu.scenarios import limited_signals
@@ -55,7 +56,7 @@ class Scene:
 
 def frames_of(count: int) -> NDArray[np.int64]:
     """The samples that are frames of the machine."""
-    return distinct([np.linspace(0, count - 1, FRAMES).round().astype(np.int64)])
+    return distinct(np.linspace(0, count - 1, FRAMES).round().astype(np.int64))
 
 
 def scene_of(
@@ -177,4 +178,4 @@ def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
     even = np.linspace(0, count - 1, POINTS // 2).round().astype(np.int64)
     if len(bends) > POINTS // 2:
         bends = bends[np.linspace(0, len(bends) - 1, POINTS // 2).round().astype(np.int64)]
-    return distinct([bends, even])
+    return distinct(np.concatenate([bends, even]))

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from motionfmu.analysis.contour.arcs import Array
+Array = NDArray[np.float64]
 
 
 def quantiles(values: Array, shares: Sequence[float], ours: bool = False) -> list[float]:
