@@ -1,47 +1,5 @@
 /* A state that no limit of the axes allows, as a saved one may hold: the ride goes on and ends. */
-#include <string.h>
-
-#include "check.h"
-#include "speed_profile.h"
-
-static const double LENGTH = 100.0; /* [mm] */
-
-static struct speed_profile profile;
-
-/* Under way along a line in X, 50 mm/s, 1000 mm/s^2, 20000 mm/s^3. */
-static void begin(void)
-{
-    const double start[AXES] = { 0.0 }, end[AXES] = { LENGTH };
-    struct speed_limits l = { .speed = { 0.0 } };
-    struct segment p;
-    struct path path;
-
-    for (int k = 0; k < AXES; k++) {
-        l.acc[k] = 1000.0;
-        l.jerk[k] = 20000.0;
-    }
-    memset(&p, 0, sizeof p);
-    p.kind = SEGMENT_LINE;
-    p.feed = p.cap = 50.0;
-    p.ramp = (struct ramp_limits){ 1000.0, 1000.0, 20000.0, 20000.0 };
-    path_line(&path, start, end);
-    p.length = path.length;
-    path_at(&path, 0.0, p.start, p.slope);
-    memset(&profile, 0, sizeof profile);
-    speed_profile_start(&profile, &l);
-    CHECK(speed_profile_join(&profile, &p));
-    speed_profile_advance(&profile, 1.0, 0.2);
-    CHECK(profile.at.here > 5.0 && profile.at.here < 10.0);
-}
-
-/* A speed and an acceleration in the place of those of the ride. [mm/s], [mm/s^2] */
-static void put(double v, double a)
-{
-    profile.at.step.kind = SPEED_NO_STEP;
-    profile.at.state = (struct speed_state){ v * v, 2.0 * a };
-    profile.at.rate = v;
-    profile.at.gain = a;
-}
+#include "speed_line.h"
 
 /* No bend of the acceleration keeps the limits, so that it stays as it is for a step: over a way s
  * the square of the speed changes by 2 a s, and there is no jerk. */

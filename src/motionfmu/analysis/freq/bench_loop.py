@@ -146,7 +146,7 @@ class BenchLoop:
         late = ctypes.addressof(self._kept[-1])
         kind, base = _KINDS[element.port.type], float(buffer[element.place])
         from_ = None if source is None else ctypes.pointer(self._reader(source))
-        size = ctypes.sizeof(buffer)
+        size = ctypes.sizeof(buffer)  # a wire joins what has one type and one size
         self._taps.append(
             _TapStruct(put, from_, base, gain, late, delay, 0, kind, element.place, size)
         )
