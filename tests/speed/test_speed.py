@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import smooth_bound
 from few_cases import few
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from speed_rides import (
     LIBRARY,
@@ -295,17 +295,50 @@ def test_override_of_a_corner() -> None:
     assert twice < ride(told, limits(1000.0)).time
 
 
+def least_to_rest(v: float, braking: float, acc: float, jerk: float) -> float:
+    """Time of a ramp to the deepest braking, a while with it and a ramp back, on a straight way."""
+    deep = np.sqrt(jerk * v + 0.5 * braking**2)
+    if deep <= acc:
+        return float((2.0 * deep - braking) / jerk)
+    return (2.0 * acc - braking) / jerk + v / acc + (0.5 * braking**2 / acc - acc) / jerk
+
+
+@settings(max_examples=150, derandomize=True)
+@given(SEEDS)
+@example(225)  # in a bend, braking a little, where it could land by less than 1e-3 of the jerk
+@example(228)  # nearly at rest, still becoming faster
+def test_a_hold_never_idles(seed: int) -> None:
+    """Wherever it comes, whatever the override before: little longer than a straight way needs.
+
+    The way may take up to twice what an axis may.
+    """
+    acc, jerk, dt = 1000.0, 50_000.0, 1e-3
+    dice = np.random.default_rng(seed)
+    told = random_chain(dice, 10, 5.0).told()
+    first, then = float(10.0 ** dice.uniform(-4, 0.2)), int(dice.integers(1, 400))
+    second, for_ = float(10.0 ** dice.uniform(-4, 0.2)), int(dice.integers(1, 60))
+    overrides = [first] * then + [second] * for_
+    steps = ride(told, limits(acc, jerk=jerk), Orders(dt, overrides, 1000, len(overrides))).steps
+    v, a = float(steps[-1]["rate"]), float(steps[-1]["gain"])
+    assume(len(steps) == len(overrides) and v > 0.0)
+    least = least_to_rest(v, max(0.0, -a), 2.0 * acc, 2.0 * jerk)
+    one, time = np.zeros(1, SAMPLE), 0.0
+    while one["rate"][0] > 0.0 or time == 0.0:
+        LIBRARY.speed_batch_go(len(told), 0.0, least / 20, one)
+        time += least / 20
+        assert time < 8.0 * least
+
+
 @pytest.mark.parametrize("override", [2.0, 1.0, 0.1, 0.01, 3e-3, 1e-3, 5e-4])
 def test_a_hold_of_a_slow_ride_brings_it_to_rest(override: float) -> None:
-    """However slow it goes: the quickest way to rest is two ramps of the jerk, or with steady ones
-    between; from nearly rest the strides take up to five times as long."""
+    """However slow it goes, nearly as quickly as the jerk lets it."""
     chain, acc, jerk = Chain(feed=50.0), 1000.0, 20000.0
     chain.line(place(), place(200.0))
     orders = Orders(1e-4, [override] * 3000 + [0.0], 1000, 9000)
     steps = ride(chain.told(), limits(acc, 0.0, jerk), orders).steps
     v = steps["rate"][2999]
     assert v == pytest.approx(50.0 * override, rel=0.05)
-    best = 2.0 * np.sqrt(v / jerk) if v < acc**2 / jerk else v / acc + acc / jerk
+    best = least_to_rest(v, 0.0, acc, jerk)
     rests = np.flatnonzero(steps["rate"][3000:] == 0.0)
-    assert len(rests) and 0.98 * best - 1e-4 < (rests[0] + 1) * 1e-4 < 5.0 * best
+    assert len(rests) and 0.98 * best - 1e-4 < (rests[0] + 1) * 1e-4 < 2.0 * best + 1e-4
     within(steps, limits(acc, 0.0, jerk), 1e-4)

@@ -151,7 +151,8 @@ static double halve(const struct ride *r, const struct speed_road *to,
     return kept;
 }
 
-/* Whether a motion that brakes as it does would take much longer to rest than its jerk needs. */
+/* Whether a motion goes on at its speed, or brakes so little that it would take much longer to rest
+ * than its jerk needs. */
 static bool idles(const struct speed_box *g, struct speed_state from, bool lands, double stride)
 {
     if (fabs(from.b) * stride <= SAME * from.x) {
@@ -173,8 +174,9 @@ static bool turns_down(const struct ride *r, const struct speed_road *to, struct
            && good(r, to, spot, c, stride, true);
 }
 
-/* The slowest step within the limits from which the motion can go on by the plan or rest. */
-static void brake(struct ride *r)
+/* The slowest step within the limits from which the motion can go on by the plan or rest; with
+ * `slower`, no faster at its end. */
+static void brake(struct ride *r, bool slower)
 {
     const struct speed_road hard = road(r, -1.0);
     const struct speed_spot spot = speed_plan_spot(held(r), &hard, r->at.here, r->at.state);
@@ -183,7 +185,8 @@ static void brake(struct ride *r)
     double stride = speed_box_stride(g, spot.state, speed_plan_rest(held(r), &hard, &spot));
     double s, steer, c;
 
-    if (idles(g, spot.state, lands, stride)) {
+    const bool idle = idles(g, spot.state, lands, stride) || (slower && spot.state.b > 0.0);
+    if (idle) {
         double part = stride;
         for (int n = 0; n < SHARES; n++, part *= NEAR_REST) {
             if (turns_down(r, &hard, spot, part)) {
@@ -195,7 +198,8 @@ static void brake(struct ride *r)
     const bool turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
     if (turns && good(r, &hard, spot, c, stride, true)) {
         const struct speed_state to = speed_step_to(spot.state, c, stride);
-        if (to.b >= 0.0 || !lands || speed_road_lands(&hard, spot.at + stride, spot.box, to)) {
+        if (to.b >= 0.0 || !lands || idle
+            || speed_road_lands(&hard, spot.at + stride, spot.box, to)) {
             go(r, &hard, spot, c, stride);
             return;
         }
@@ -235,7 +239,7 @@ static void hurry(struct ride *r, double override)
         return;
     }
     if (!steers) {
-        brake(r);
+        brake(r, false);
         return;
     }
     const struct speed_node *node = spot.node < SPEED_NODES ? &plan->node[spot.node] : NULL;
@@ -247,7 +251,7 @@ static void hurry(struct ride *r, double override)
     }
     s = el_min(s, stride);
     if (!good(r, &soft, spot, steer, s, false)) {
-        brake(r);
+        brake(r, false);
         return;
     }
     go(r, &soft, spot, turns && c > steer ? halve(r, &soft, &spot, steer, c, s, false) : steer, s);
@@ -260,7 +264,7 @@ static void choose(struct ride *r, double override)
     } else if (override > 0.0 && !r->p->pending) {
         hurry(r, override);
     } else {
-        brake(r);
+        brake(r, true);
     }
 }
 
@@ -418,7 +422,7 @@ double speed_smooth_stop_way(const struct speed_profile *p)
     }
     for (int n = 0; n < STEPS && r.at.state.x > 0.0; n++) {
         cross(&r);
-        brake(&r);
+        brake(&r, true);
         arrive(&r.at);
     }
     return r.at.here;
