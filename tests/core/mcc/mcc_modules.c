@@ -41,6 +41,8 @@ static void time_of_a_write(void)
     CHECK_EQ(pc.pcl.latency, 10000 + 1000 + 4 * 300);
     CHECK_EQ(pc.modules.task[PC_PCL].use.missed, 0);
     CHECK_EQ(pc.pcl.starved + c.underflows, 0);
+    /* Nothing keeps the service itself waiting: it begins the latency after its interrupt. */
+    CHECK_EQ(pc.modules.task[PC_PCL].use.latency, 10000);
     /* An IPO that must not be interrupted keeps the write waiting. */
     config.priority[PC_PCL] = 5;
     card_start(&c, &m, &config, true);
