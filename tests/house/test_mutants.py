@@ -2,6 +2,7 @@
 
 import ast
 import random
+import subprocess
 import sys
 from pathlib import Path
 
@@ -119,6 +120,7 @@ def test_tests_that_make_test_leaves_out_are_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(mutants, "TREE", tmp_path)
+    monkeypatch.setattr(mutants, "PYTHON", Path(sys.executable))
     (tmp_path / "pytest.ini").write_text(
         "[pytest]\naddopts = -m 'not long and not more'\nmarkers =\n    more\n    long\n"
     )
@@ -128,3 +130,18 @@ def test_tests_that_make_test_leaves_out_are_asked(
     for outcome in (True, False):
         (tmp_path / "test_some.py").write_text(f"{text}{outcome}\n")
         assert mutants.python_tests(["test_some.py"]) == outcome
+
+
+def test_processes_that_tests_start_have_the_package_of_the_copy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    python = tmp_path / "venv/bin/python"
+    monkeypatch.setattr(mutants, "TREE", tmp_path)
+    monkeypatch.setattr(mutants, "PYTHON", python)
+    (tmp_path / "src/motionfmu").mkdir(parents=True)
+    (tmp_path / "src/motionfmu/__init__.py").write_text("")
+    mutants.interpreter()
+    line = "import motionfmu, numpy, sys, subprocess as s; print(motionfmu.__file__, flush=True);"
+    line += " len(sys.argv) > 1 or s.run([sys.executable, '-c', sys.orig_argv[2], 'again'])"
+    told = subprocess.run([python, "-c", line], capture_output=True, text=True, cwd=tmp_path)
+    assert told.stdout.split() == 2 * [str(tmp_path / "src/motionfmu/__init__.py")], told.stderr

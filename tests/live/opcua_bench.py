@@ -31,7 +31,7 @@ WHOLE = TOOL + "Monitoring/MachineTool:MachineTool/"
 ACTIVE = TOOL + "Production/MachineTool:ActiveProgram/"
 STATE = ACTIVE + "MachineTool:State/CurrentState"
 TIME = "own:part/own:Simulation/own:Time"
-PATIENCE = 60.0  # [s] on the wall, for what comes at once on a machine that is not busy
+PATIENCE = 300.0  # [s] on the wall, for what comes at once on a machine that is not busy
 
 
 class Client:

@@ -19,7 +19,7 @@ from motionfmu.live.serving import GrblPort, MachineLink, MachineStart
 from motionfmu.live.serving.grbl_session import GrblSession
 from motionfmu.live.serving.hand import Holder
 
-PATIENCE = 60.0  # [s] on the wall for an answer
+PATIENCE = 300.0  # [s] on the wall for an answer
 LOCKED = b"[MSG:'$H'|'$X' to unlock]\r\n"
 
 

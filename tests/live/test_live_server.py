@@ -25,7 +25,7 @@ import motionfmu
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveClient
 
-PATIENCE = 60.0  # [s] that nothing here takes, however slow the machine is
+PATIENCE = 300.0  # [s] that nothing here takes, however slow the machine is
 
 
 class Served:

@@ -20,6 +20,7 @@ import subprocess
 import sys
 import time
 import tomllib
+import venv
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -33,17 +34,11 @@ from rich.progress import Progress
 
 ROOT = Path(__file__).resolve().parents[2]
 PLACE = ROOT / "build/mutants"
-TREE, BUILT = PLACE / "tree", PLACE / "built"
+TREE, BUILT, PYTHON = PLACE / "tree", PLACE / "built", PLACE / "venv/bin/python"
 # For the tests of a change, which take seconds, or two minutes: their processor's time, and a
 # sleeper's.
 PATIENCE, SLEEP = 300, 1800  # [s]
 NEAREST = 3  # Python tests that are asked in one go
-# An installed checkout is found before any path, and it is the user's.
-PYTEST = (
-    "import sys; sys.meta_path[:] = [m for m in sys.meta_path if 'ditable' not in repr(m)]; "
-    "sys.path[:0] = ['src', 'tests', 'tests/helpers']; "
-    "import pytest; sys.exit(pytest.main(sys.argv[1:]))"
-)
 # No C test compiles these: a plant is made of its template, others are loaded built, by Python.
 ELSEWHERE = ("src/plant", "src/python", "src/controllers/robot_station")
 
@@ -64,6 +59,18 @@ def copy() -> None:
             to.write_bytes(data)
     if not (TREE / "build").exists():  # what Python tests run is what is built
         (TREE / "build").symlink_to(ROOT / "build")
+
+
+def interpreter() -> None:
+    """Make a Python that has this one's packages, but for motionfmu, which it has from the copy.
+
+    So have the processes that tests start: an installed checkout is found before any path.
+    """
+    if not PYTHON.exists():
+        venv.create(PYTHON.parents[1], symlinks=True)
+    (site,) = PYTHON.parents[1].glob("lib/python*/site-packages")
+    packages = [TREE / "src", *(p for p in sys.path if "site-packages" in p)]
+    (site / "packages.pth").write_text("".join(f"{p}\n" for p in packages))
 
 
 def draw(count: int, seed: int, only: str, ending: str) -> list[Change]:
@@ -129,7 +136,7 @@ def make(targets: list[str]) -> bool:
 def python_tests(files: list[str]) -> bool:
     # Those too that `make test` leaves to `make test-more`.
     options = ["-x", "-q", "-m", "not long", "-p", "no:cacheprovider", "-p", "no:randomly"]
-    return ran([sys.executable, "-c", PYTEST, *options, *files], TREE)
+    return ran([str(PYTHON), "-m", "pytest", *options, *files], TREE)
 
 
 @dataclass
@@ -223,6 +230,7 @@ def main() -> None:
     options = asked.parse_args()
     end = time.monotonic() + 60 * options.minutes
     copy()
+    interpreter()
     options_of_build = {
         "Python_EXECUTABLE": sys.executable,
         "MOTIONFMU_FMUS": "OFF",

@@ -10,6 +10,7 @@ from few_cases import few
 import motionfmu
 from motionfmu.base.columns import Columns
 from motionfmu.base.errors import InputError
+from motionfmu.run.engines import fused_engine
 from motionfmu.run.result import Result
 from motionfmu.run.session import Session
 from motionfmu.scenarios.values import start_values
@@ -57,6 +58,12 @@ def same(one: object, other: object) -> bool:
     (*a, x), (*b, y) = one, other  # type: ignore[misc]
     names = [n for n in x if not n.endswith(".path_file")]
     return a == b and x.keys() == y.keys() and all(x[n] == y[n] for n in names)
+
+
+@pytest.fixture(autouse=True)
+def all_lanes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many as the programs are made for."""
+    monkeypatch.setattr(fused_engine, "LANES", 8)
 
 
 @pytest.fixture(scope="module")

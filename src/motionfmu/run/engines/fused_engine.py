@@ -31,8 +31,9 @@ from motionfmu.scenarios.system import Stimulus, System
 NAME = "system"
 # A call makes so many steps at most; Ctrl-C ends the run between two calls.
 STEPS_MAX = 20_000
-# So many runs go side by side at most (FMU_PART_RUNS); [byte] their signals take no more.
-LANES, LANES_HELD = 8, 1 << 28
+# So many runs go side by side, of FMU_PART_RUNS that may: more wait for memory longer than they
+# gain. [byte] Their signals take no more.
+LANES, LANES_HELD = 4, 1 << 28
 KINDS = {"Float64": np.float64, "Int32": np.int32, "Boolean": np.bool_}
 STEP, FOLDER, EVERY = "system.step", "recorder.folder", "recorder.every"
 SETTLE, SIGNAL, WHICH = "until.settle", "until.step", "until.which"
