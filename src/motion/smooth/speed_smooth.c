@@ -174,6 +174,20 @@ static bool turns_down(const struct ride *r, const struct speed_road *to, struct
            && good(r, to, spot, c, stride, true);
 }
 
+/* The first share of a stride over which that is so, or the stride. */
+static double fair_stride(const struct ride *r, const struct speed_road *to, struct speed_spot spot,
+                          double stride)
+{
+    double part = stride;
+
+    for (int n = 0; n < SHARES; n++, part *= NEAR_REST) {
+        if (turns_down(r, to, spot, part)) {
+            return part;
+        }
+    }
+    return stride;
+}
+
 /* The slowest step within the limits from which the motion can go on by the plan or rest; with
  * `slower`, no faster at its end. */
 static void brake(struct ride *r, bool slower)
@@ -186,15 +200,7 @@ static void brake(struct ride *r, bool slower)
     double s, steer, c;
 
     const bool idle = idles(g, spot.state, lands, stride) || (slower && spot.state.b > 0.0);
-    if (idle) {
-        double part = stride;
-        for (int n = 0; n < SHARES; n++, part *= NEAR_REST) {
-            if (turns_down(r, &hard, spot, part)) {
-                stride = part;
-                break;
-            }
-        }
-    }
+    stride = idle ? fair_stride(r, &hard, spot, stride) : stride;
     const bool turns = speed_box_turn(g, spot.state, stride, -1.0, &c);
     if (turns && good(r, &hard, spot, c, stride, true)) {
         const struct speed_state to = speed_step_to(spot.state, c, stride);
