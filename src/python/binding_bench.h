@@ -55,7 +55,7 @@ struct bench_loop {
     int32_t wires, outputs, taps, slaves;
     int64_t step_ns;
     int64_t rows; /* begun steps, of which all outputs were read */
-    /* What was refused: the function and the instance; of a step the function is NULL. */
+    /* The call that an FMU refused, NULL if it was its step, and the instance of that FMU. */
     const struct bench_access *refused;
     const void *by;
 };

@@ -15,8 +15,10 @@ enum { HALVES = 4, STEPS = 4096 };
 static const double HOPS = 0.9;
 
 /* From nearly rest the jerk stops the motion within a stride, which lets it gain a thousandfold of
- * x (speed_box): over such a share of it no more than half of x is lost. So many are tried. */
+ * x (speed_box): over such a share of it no more than half of x is lost. */
 static const double NEAR_REST = 1.0 / 64.0;
+
+/* So many shares of a stride are tried, each such a share of the one before. */
 enum { SHARES = 5 };
 
 /* A landing is slow that takes less than this part of the jerk that is allowed. */
@@ -174,7 +176,7 @@ static bool turns_down(const struct ride *r, const struct speed_road *to, struct
            && good(r, to, spot, c, stride, true);
 }
 
-/* The first share of a stride over which that is so, or the stride. */
+/* The longest share of a stride over which a step brakes so, or the stride if there is none. */
 static double fair_stride(const struct ride *r, const struct speed_road *to, struct speed_spot spot,
                           double stride)
 {

@@ -61,6 +61,7 @@ def library() -> ctypes.CDLL:
     c.fault_text.restype = ctypes.c_char_p
     c.netcard_receive.restype = c.netcard_send.restype = ctypes.c_size_t
     c.netcard_wants_connection.restype = c.binding_netcard_start.restype = ctypes.c_bool
+    c.binding_bench.restype = ctypes.c_bool
     c.binding_netcard_card.restype = ctypes.c_void_p
     c.binding_robot_trace.restype = ctypes.c_int64
     for name in ("acc_step", "dec_step", "dda", "over_spd", "ptp_ospd"):

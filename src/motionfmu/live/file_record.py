@@ -127,7 +127,7 @@ def claimed(file: Path) -> Path:
 
 
 def main() -> None:
-    """Write a record. Its head and blocks come on stdin, the argument is the file to gather in."""
+    """Write a record: head and blocks come on stdin, the argument names the file they gather in."""
     part, stream = Path(sys.argv[1]), sys.stdin.buffer
     line = stream.readline()
     if not line.endswith(b"\n"):  # the machine's process was killed before it sent the head

@@ -2,7 +2,7 @@
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
-from ctypes import c_bool, c_double, c_int32, c_int64, c_size_t, c_uint32, c_void_p
+from ctypes import c_double, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 # Given the outputs so far, a row each: with how many of them the run ends; None if it goes on.
 Ends = Callable[[Array], int | None]
 _KINDS = {"Float64": ord("d"), "Int32": ord("i"), "Boolean": ord("?")}
-_PIECE = 500  # steps before it is looked at whether the run ends
+_PIECE = 500  # steps between two looks at whether the run ends
 
 
 class _AccessStruct(ctypes.Structure):
@@ -165,7 +165,6 @@ class BenchLoop:
         added = np.ascontiguousarray(added, dtype=float)
         shown, used = np.zeros((len(added), loop.outputs)), np.zeros(added.shape)
         step = library().binding_bench
-        step.restype = c_bool
         while loop.rows < len(added):
             to = c_int64(min(loop.rows + _PIECE, len(added)))
             rows = (x.ctypes.data_as(c_void_p) for x in (added, shown, used))

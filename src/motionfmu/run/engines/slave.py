@@ -118,7 +118,7 @@ class Slave:
         return self._telling(self._library.access(verb, several, buffer))
 
     def address(self, name: str) -> tuple[Any, Any]:
-        """A function of the standard, without its version, and the instance, for a loop in C."""
+        """Addresses of an FMI function, named without its version, and of the instance."""
         return self._library.address(name), self._library.instance.value
 
     def assign(self, kind: str, reference: int, values: Iterable[Any]) -> None:
