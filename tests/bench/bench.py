@@ -31,7 +31,6 @@ import peers
 import plans
 import profiles
 import scope_cost
-import scurve_moves
 import segments
 import sessions
 import states
@@ -219,10 +218,7 @@ def main(kept: figures.Kept) -> None:
     pulses = Timed(PULSE_AXES)
     cards = [Card(a, h, e) for a in (1, 3, 6) for h in (0, 10_000, 500_000) for e in (False, True)]
     interpreter = Interpreter()
-    curves = [
-        plans.Plans("rest to rest", scurve_moves.rest_to_rest),
-        plans.Plans("in motion to rest", scurve_moves.to_rest),
-    ]
+    curves = [plans.Plans(kind) for kind in plans.KINDS]
     arm = kinematics.Kinematics()
     net = network.Network()
     robot, fourteen = Timed(ROBOT, stop=20.0), Timed(FOURTEEN)
@@ -278,6 +274,7 @@ def main(kept: figures.Kept) -> None:
         *profiled({"demo": by_hand, "six axes": by_hand_six}),
         counting.Loop("robot", counting.of_run(ROBOT, best), (20_000, 30_000)),
         counting.Loop("network card", counting.of_run(PLATE, best)),
+        *(loop for c in curves for loop in c.loops()),
     ]
     counts = counting.count(loops, studies.loops(study.cores))
 
@@ -296,9 +293,9 @@ def main(kept: figures.Kept) -> None:
     print(f"\n{'one line of a part program':34}{'ns':>10}{'x strtod':>20}")
     ratio = interpreter.line / interpreter.strtod
     print(f"{'read, checked, planned':34}{interpreter.line * 1e9:10.0f}{ratio:20.2f}")
-    plans.table(curves)
-    segments.table(curves[0].ruckig)
-    net.table(curves[0].ruckig)
+    plans.table(curves, counts)
+    segments.table()
+    net.table()
     arm.table()
     study.table()
     fast = [c.cost for c in cards if c.axes == 6 and c.hertz > 1e5]
@@ -317,7 +314,12 @@ def main(kept: figures.Kept) -> None:
         Figure("the same, every edge asked for", 1 / fast[1], least=20.0),
         Figure("the same as FMUs, whole loop", pulses.simulated / pulses.loop, least=20.0),
         Figure("interpreter, million lines/s", 1e-6 / interpreter.line, least=0.5),
-        *(Figure(f"ruckig / scurve, {c.name}", c.ratio, least=1.0) for c in curves),
+        *(
+            Figure(
+                f"ruckig / scurve, {c.name}, instructions", c.ratio(counts), least=1, counted=True
+            )
+            for c in curves
+        ),
     ]
     for s in segments.ALL:
         least = 1.0 if s is segments.LONG.walk else 0.1 if s.jerk else 0.2

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import commands
 
-RUN = Path(__file__).parent / "one_run.py"
+RUN, PLANS = (Path(__file__).parent / name for name in ("one_run.py", "plans.py"))
+_MARKED = {RUN, PLANS}  # programs that say what of them is to be counted
 MARKS = Path(__file__).resolve().parents[2] / "build/tests/bench/count_here.so"
 _PERF = ("perf", "stat", "-x,", "-e", "instructions:u", "-o")
 _VALGRIND = ("valgrind", "--trace-children=yes", "--tool=cachegrind", "--cache-sim=no")
@@ -67,17 +68,17 @@ def instructions(line: Sequence[str | Path]) -> float:
 
 
 def share(told: str) -> float:
-    """The share of a run that one_run.py has counted."""
+    """The share of its work that a program has counted."""
     found = re.search(r"^counted share ([\d.]+)$", told, re.MULTILINE)
     if not found:
-        raise ValueError("one_run.py tells no share")
+        raise ValueError("the program tells no share")
     return float(found[1])
 
 
 def _inside(line: Sequence[str | Path], shares: set[float]) -> float:
-    """Instructions of the loop of one_run.py alone: what is around it differs by millions.
+    """Instructions of a program's loop alone: what is around it differs by millions.
 
-    The share of the run that was seen is added to `shares`.
+    The share of the loop that was seen is added to `shares`.
     """
     if method() != "valgrind":
         return instructions(line)
@@ -106,7 +107,8 @@ class Loop:
         _run(lines[0])  # what is made once is there
         shares: set[float] = set()
         short, long = (
-            _inside(line, shares) if RUN in self.line else instructions(line) for line in lines
+            _inside(line, shares) if _MARKED & set(self.line) else instructions(line)
+            for line in lines
         )
         if len(shares) > 1:
             raise ValueError(f"{self.name}: {self.steps} steps report progress unequally often")

@@ -59,10 +59,10 @@ class Network:
         self.rounds.add("card", (time.process_time() - begin) / SECONDS)
         assert card.state.name == "RUNNING" and card.pulses[0]
 
-    def table(self, ruckig: float) -> None:
-        """Cost of a segment beside that of a rest-to-rest move by ruckig [s]; of a card."""
-        print(f"\n{'one line of a drawing':28}{'ns':>10}{'ruckig/it':>11}{'million/s':>11}")
+    def table(self) -> None:
+        """Cost of a segment, and of a card."""
+        print(f"\n{'one line of a drawing':28}{'ns':>10}{'million/s':>11}")
         for name, key in (("parsed", "parse"), ("planned", "plan")):
             cost = self.rounds[key]
-            print(f"{name:28}{cost * 1e9:10.0f}{ruckig / cost:11.2f}{1e-6 / cost:11.2f}")
+            print(f"{name:28}{cost * 1e9:10.0f}{1e-6 / cost:11.2f}")
         print(f"{'network card, ns a ms':28}{self.rounds['card'] * 1e6:10.0f}")

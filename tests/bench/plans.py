@@ -1,83 +1,105 @@
-"""What one S-curve costs, by scurve and by ruckig, in turns on the same random moves."""
+"""What one S-curve costs, by scurve and by ruckig, on the same random moves: counted and timed.
 
+`plans.py KIND PLANNER COUNT` plans so many moves; that process is what is counted.
+"""
+
+import sys
 import time
 from collections.abc import Callable
 
+import counting
+import marks
 import numpy as np
 import ruckig
 import scurve_moves as moves
 from medians import Medians
 
-COUNT = 10_000
-BLOCK = 500  # moves that each plans before the next one's turn
+DRAWN = 2_000  # moves, which a process plans again and again
+COUNTS = (DRAWN, 31 * DRAWN)
+KINDS = {"rest to rest": moves.rest_to_rest, "in motion to rest": moves.to_rest}
+
+
+def _scurve(drawn: np.ndarray) -> Callable[[], None]:
+    return lambda: (moves.scurve_totals(drawn), None)[1]
+
+
+def _ruckig(drawn: np.ndarray, enabled: bool = True) -> Callable[[], None]:
+    """Moves calculated by ruckig, called from Python; its only axis can be switched off."""
+    inputs = [moves.ruckig_input(move) for move in drawn.tolist()]
+    for told in inputs:
+        told.enabled = [enabled]
+    run, plan = ruckig.Ruckig(1).calculate, ruckig.Trajectory(1)
+
+    def all_of_them() -> None:
+        for told in inputs:
+            run(told, plan)
+
+    return all_of_them
+
+
+PLANNERS: dict[str, Callable[[np.ndarray], Callable[[], None]]] = {
+    "scurve": _scurve,
+    "ruckig": _ruckig,
+    "call": lambda drawn: _ruckig(drawn, enabled=False),
+}
+
+
+def _drawn(kind: str) -> np.ndarray:
+    drawn = KINDS[kind](2 * DRAWN, np.random.default_rng(1))
+    return drawn[np.isfinite(moves.ruckig_totals(drawn))][:DRAWN]
 
 
 class Plans:
-    """Processor time of one plan [s], mean of a block of random moves.
+    """Cost of one plan by each of `PLANNERS`: processor time [s], and instructions.
 
-    Python's call of ruckig is measured, too, by calling it with its only axis switched off, and
-    subtracted, block by block. ruckig's check of its input goes with it, that of scurve counts.
+    What Python's call of ruckig costs is "call", which is subtracted from it. ruckig's check of its
+    input goes with it, that of scurve counts.
     """
 
-    def __init__(self, name: str, draw: Callable[[int, np.random.Generator], np.ndarray]) -> None:
-        self.name, self._blocks = name, Medians()
-        drawn = draw(COUNT, np.random.default_rng(1))
-        drawn = drawn[np.isfinite(moves.ruckig_totals(drawn))]
-        self._moves = [drawn[k : k + BLOCK] for k in range(0, len(drawn) - BLOCK + 1, BLOCK)]
-        self._inputs = [_inputs(block) for block in self._moves]
-        self._calls = [_inputs(block) for block in self._moves]
-        for told in (told for block in self._calls for told in block):
-            told.enabled = [False]
+    def __init__(self, name: str) -> None:
+        self.name, self._times = name, Medians()
+        drawn = _drawn(name)
+        self._planned = {planner: of(drawn) for planner, of in PLANNERS.items()}
 
     def __call__(self) -> None:
-        for drawn, inputs, calls in zip(self._moves, self._inputs, self._calls, strict=True):
+        for planner, plan in self._planned.items():
             start = time.process_time()
-            moves.scurve_totals(drawn)
-            scurve = (time.process_time() - start) / BLOCK
-            loop, call = _calculate(inputs), _calculate(calls)
-            for what, found in (
-                ("scurve", scurve),
-                ("call", call),
-                ("ruckig", loop - call),
-                ("ratio", (loop - call) / scurve),
-            ):
-                self._blocks.add(what, found)
+            plan()
+            self._times.add(planner, (time.process_time() - start) / DRAWN)
 
-    @property
-    def scurve(self) -> float:
-        return self._blocks["scurve"]
+    def loops(self) -> list[counting.Loop]:
+        """What is to be counted."""
+        line = [sys.executable, counting.PLANS, self.name]
+        return [counting.Loop(f"{self.name}, {p}", [*line, p, "{}"], COUNTS) for p in PLANNERS]
 
-    @property
-    def ruckig(self) -> float:
-        """Without its call."""
-        return self._blocks["ruckig"]
+    def ratio(self, counts: dict[str, counting.Loop]) -> float:
+        """Instructions of ruckig over those of scurve."""
+        scurve, found, call = (counts[f"{self.name}, {p}"].count for p in PLANNERS)
+        return (found - call) / scurve
 
-    @property
-    def ratio(self) -> float:
-        """ruckig over scurve, of the same moves one behind the other."""
-        return self._blocks["ratio"]
-
-    @property
-    def call(self) -> float:
-        return self._blocks["call"]
+    def row(self, counts: dict[str, counting.Loop]) -> str:
+        """Instructions and times."""
+        scurve, found, call = (counts[f"{self.name}, {p}"].count for p in PLANNERS)
+        timed = [self._times[p] * 1e9 for p in PLANNERS]
+        counted = f"{scurve:10.0f}{found - call:10.0f}{call:10.0f}{self.ratio(counts):10.2f}"
+        return f"{self.name:28}{counted}{timed[0]:12.0f}{timed[1] - timed[2]:10.0f}"
 
 
-def _inputs(drawn: np.ndarray) -> list[ruckig.InputParameter]:
-    return [moves.ruckig_input(move) for move in drawn.tolist()]
-
-
-def _calculate(inputs: list[ruckig.InputParameter]) -> float:
-    """Processor time of one calculation by ruckig, called from Python [s]."""
-    run, plan = ruckig.Ruckig(1).calculate, ruckig.Trajectory(1)
-    start = time.process_time()
-    for told in inputs:
-        run(told, plan)
-    return (time.process_time() - start) / len(inputs)
-
-
-def table(plans: list[Plans]) -> None:
+def table(plans: list[Plans], counts: dict[str, counting.Loop]) -> None:
     """Cost of a plan beside ruckig's."""
-    print(f"\n{'one S-curve, ns':28}{'scurve':>10}{'ruckig':>10}{'its call':>10}{'x scurve':>10}")
+    counted = f"{'scurve':>10}{'ruckig':>10}{'its call':>10}{'x scurve':>10}"
+    print(f"\n{'one S-curve, instructions':28}{counted}{'scurve, ns':>12}{'ruckig':>10}")
     for p in plans:
-        figures = "".join(f"{t * 1e9:10.0f}" for t in (p.scurve, p.ruckig, p.call))
-        print(f"{p.name:28}{figures}{p.ratio:10.2f}")
+        print(p.row(counts))
+
+
+def _main(kind: str, planner: str, count: int) -> None:
+    plan = PLANNERS[planner](_drawn(kind))
+    marks.begin()
+    for _ in range(count // DRAWN):
+        plan()
+    marks.end()
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1], sys.argv[2], int(sys.argv[3]))

@@ -76,17 +76,14 @@ ALL = (
 LONG = Lengths(ALL[5])
 
 
-def table(ruckig: float) -> None:
-    """Cost of a segment beside that of a rest-to-rest move by ruckig [s]."""
+def table() -> None:
+    """Cost of a segment."""
     heads = "".join(f"{f:>10}" for f in FILLINGS)
-    heads += f"{'points':>9}{'ruckig/it':>11}{'million/s':>11}"
+    heads += f"{'points':>9}{'million/s':>11}"
     print(f"\n{'one segment, ns; commands in ring':34}{heads}")
     for s in ALL:
         figures = "".join(f"{s.cost[f] * 1e9:10.0f}" for f in FILLINGS)
-        print(
-            f"  {s.name:32}{figures}{s.points:9.2f}{ruckig / s.cost[FILLINGS[-1]]:11.2f}"
-            f"{1e-6 / s.cost[FILLINGS[-1]]:11.2f}"
-        )
+        print(f"  {s.name:32}{figures}{s.points:9.2f}{1e-6 / s.cost[FILLINGS[-1]]:11.2f}")
     heads = "".join(f"{n:>10}" for n in LENGTHS)
     print(f"\n{'one segment, ns; segments in all':34}{heads}")
     print(f"  {LONG.walk.name:32}{''.join(f'{LONG.cost[n] * 1e9:10.0f}' for n in LENGTHS)}")
