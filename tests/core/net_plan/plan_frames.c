@@ -265,9 +265,39 @@ static void test_rests_beyond_a_plan(void)
     }
 }
 
+/* Where a line turns back on itself no curve has room: the motion rests exactly there, and goes on. */
+static void test_line_that_turns_back(void)
+{
+    static const double to[] = { 5.0, 25.0, 10.0, 20.0, 30.0 };
+    const struct net_plan_config c = config_of(NET_PLAN_OUTPUT);
+    const double t = 1e-9 * c.period_ns, jerk = JERK * (1.0 - RESERVE);
+
+    for (int i = 0; i < 5; i++) {
+        vertex[i] = (struct net_plan_vertex){ { to[i], 5.0 },
+                                              80.0,
+                                              i == 0 ? NET_PLAN_MOVE : NET_PLAN_DRAW };
+    }
+    const int32_t n = run(&c, 5, false, frame[0]);
+    CHECK_EQ(plan.stops, 2);
+    CHECK_NEAR(place(frame[0], n, n, 0), 30.0, 1e-9);
+    int turns = 0;
+    for (int32_t k = 3; k < n; k++) {
+        const double p[4] = { place(frame[0], n, k, 0), place(frame[0], n, k - 1, 0),
+                              place(frame[0], n, k - 2, 0), place(frame[0], n, k - 3, 0) };
+        CHECK(fabs(p[0] - 3 * p[1] + 3 * p[2] - p[3]) <= jerk * t * t * t * (1.0 + 1e-6));
+        CHECK(frame[0][k].step != NET_PLAN_DRAWS || frame[0][k].place[1] == 5.0);
+        if (turns < 2 && (p[0] - p[1]) * (to[turns + 1] - to[turns]) < 0.0) {
+            turns++; /* within what a frame's rounding of the instant leaves out */
+            CHECK_NEAR(p[1], to[turns], jerk * t * t * t);
+        }
+    }
+    CHECK_EQ(turns, 2);
+}
+
 int main(void)
 {
     test_output_pen();
+    test_line_that_turns_back();
     test_dwell();
     test_rests_beyond_a_plan();
     test_pen_axis();
