@@ -1,6 +1,7 @@
 """A system as one program: what every FMU must do, and what the components do one by one."""
 
 import os
+import re
 import subprocess
 import zipfile
 from collections.abc import Iterator
@@ -292,21 +293,45 @@ def test_a_gain_counts_from_the_first_step_that_begins_behind_its_setting() -> N
     assert torques[1] == torques[2] != torques[0]
 
 
+def small(name: str, tables: dict[str, Any], folder: Path, **values: Any) -> Instance:
+    """An instance of a small system, as an FMU of this name in a folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("MOTIONFMU_FMUS")
+        made = fused.program(*system_of(SMALL | tables))
+    packed(made, folder / f"{name}.fmi3.fmu")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MOTIONFMU_FMUS", str(folder))
+        return Instance(name, 3).initialize({"system.step": STEP} | values)
+
+
 def test_what_a_wire_brings_is_within_limits_or_ends_the_run(tmp_path: Path) -> None:
     wired = {
         "component": {"one": "epcio", "two": "network_card"},
         "connect": {"two.command": "one.irq_seq"},
         "record": {"signals": ["one.stock"]},
     }
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv("MOTIONFMU_FMUS")
-        made = fused.program(*system_of(SMALL | wired))
-    packed(made, tmp_path / "small.fmi3.fmu")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("MOTIONFMU_FMUS", str(tmp_path))
-        instance = Instance("small", 3).initialize({"system.step": STEP})
+    instance = small("wired_scalar", wired, tmp_path)
     assert instance.step(STEP) == ERROR
     assert instance.said == "one: two: command = 0 is below its minimum 32"
+    instance.free()
+
+
+def test_each_element_that_a_wire_brings_is_within_limits(tmp_path: Path) -> None:
+    """Of six motors the fourth turns, back by more than the turn that the other end takes."""
+    wired = {
+        "component": {"one": "ball_screw_axes", "two": "soft_controller"},
+        "connect": {"two.jog": "one.motor_phase"},
+        "record": {"signals": ["one.motor_phase"]},
+    }
+    pushed = {"one.active": [True] * 6, "one.torque_command": [0.0, 0.0, 0.0, -5.0, 0.0, 0.0]}
+    instance = small("wired_array", wired, tmp_path, **pushed)
+    steps = 0
+    while (told := instance.step(STEP)) == OK and steps < 100:
+        steps += 1
+    phase = instance.get("one.motor_phase")
+    assert told == ERROR and steps > 10 and phase[3] < -1.0
+    about = re.fullmatch(r"one: two: jog element 4 = (\S+) is below its minimum -1", instance.said)
+    assert about and float(about[1]) == pytest.approx(phase[3], rel=1e-12)
     instance.free()
 
 
