@@ -6,6 +6,7 @@ import re
 import numpy as np
 import pytest
 from console import within
+from page_outline import shows_what_is_kept
 
 import motionfmu
 from motionfmu import InputError
@@ -237,7 +238,7 @@ def test_from_a_machine_to_its_masses_by_commands(tmp_path):
     numbers = json.loads((tmp_path / "found/result.json").read_text())
     assert numbers["antiresonance"] == pytest.approx(129.9, rel=0.01)
     assert numbers["loops"][0]["at"] == "drives.phase"
-    assert (tmp_path / "found/report.html").is_file()
+    shows_what_is_kept("measured_response", (tmp_path / "found/report.html").read_text())
     with pytest.raises(InputError, match="two masses by --frf, which have no region"):
         read_region(tmp_path / "found")  # as `tune --identified found` does
     found = tmp_path / "found/found.toml"

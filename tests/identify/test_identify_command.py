@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from page_outline import shows_what_is_kept
 from typer.testing import CliRunner
 
 import motionfmu
@@ -61,7 +62,7 @@ def test_a_machines_name_is_enough(trace: Path, tmp_path: Path) -> None:
     done = run(trace, "--law", "offset", "--out", tmp_path / "out")
     assert done.exit_code == 0, done.output
     assert "machine.table_mass" in done.output
-    assert (tmp_path / "out/report.html").is_file()
+    shows_what_is_kept("identified", (tmp_path / "out/report.html").read_text())
     text = (tmp_path / "out/found.toml").read_text()
     mass = next(line for line in text.splitlines() if line.startswith('"machine.table_mass[1]"'))
     assert float(mass.partition("=")[2]) == pytest.approx(100.0, rel=0.02)

@@ -40,6 +40,8 @@ _EXTREME_C = re.compile(
 )
 # The length that numpy finds by itself, for which any number below 0 stands.
 _ANY_LENGTH_PYTHON = re.compile(r"\.reshape\([^=]*-$")
+# Lines that say what is there, or for a checker alone.
+_NO_TEST = ("import ", "from ", "_Static_assert", "assert ", "@", "if TYPE_CHECKING:")
 _DECLARED_C = re.compile(r"^\s+(?:\w+ )+\**\w+(?:\[.*\])?(?: = .*)?;$")
 
 
@@ -137,6 +139,6 @@ def changes(file: Path, text: str) -> Iterator[Change]:
     bare_lines = (_code if python else _bare)(text)
     for k, (bare, line) in enumerate(zip(bare_lines, text.split("\n"), strict=True)):
         code = bare.strip("\0 ")
-        if code and not code.startswith(("import ", "from ", "_Static_assert", "assert ", "@")):
+        if code and not code.startswith(_NO_TEST):
             for became in dict.fromkeys(_of_line(bare, line, python, k + 1 in whole)):
                 yield Change(file, k + 1, line, became)

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 MOST = 12  # Python tests of a change: whoever is farther away sees it by chance
+FEW = 8  # modules that use one: of more, those that use these are everywhere
 
 
 @cache
@@ -53,9 +54,17 @@ def of_c(tree: Path, file: Path) -> list[str]:
 
 @cache
 def _texts(tree: Path) -> dict[Path, str]:
-    """All modules and their tests."""
-    found = [*tree.glob("src/motionfmu/**/*.py"), *tree.glob("tests/**/test_*.py")]
-    return {f: f.read_text() for f in found if "importers" not in f.parts}
+    """All modules and their tests, these with what they import from files beside them."""
+    found = {f: f.read_text() for f in tree.glob("src/motionfmu/**/*.py")}
+    helpers = {f.stem: f for f in tree.glob("tests/helpers/*.py")}
+    for test in tree.glob("tests/**/test_*.py"):
+        text = test.read_text()
+        if "importers" not in test.parts:
+            beside = helpers | {f.stem: f for f in test.parent.glob("*.py")}
+            named = re.findall(r"^(?:from|import) (\w+)", text, re.MULTILINE)
+            own = [beside[n] for n in named if n in beside and not n.startswith("test_")]
+            found[test] = "\n".join([text, *(f.read_text() for f in own)])
+    return found
 
 
 def _names(text: str, module: str) -> int:
@@ -96,21 +105,26 @@ def _functions(text: str, line: int) -> set[str]:
     return {name for name in found if not name.startswith("_")}
 
 
+@cache
+def _users(tree: Path, module: str) -> list[str]:
+    """The modules that name a module."""
+    texts = {_module(tree, f): t for f, t in _texts(tree).items() if tree / "src" in f.parents}
+    return [user for user, text in texts.items() if user != module and _names(text, module)]
+
+
 def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:
     """Python tests of a line of a module, the nearest first.
 
     Near are those that name the module, the function around the line, or a module which imports
-    it, and those that type its words as a command.
+    it, and those that type its words, or those of what uses it, as a command.
     """
     module, folder = _module(tree, file), _module(tree, file.parent / "__init__.py")
     texts, stem = _texts(tree), file.stem
     functions = [re.compile(rf"\b{name}\b") for name in _functions(texts[file], line)]
-    users = [
-        _module(tree, f)
-        for f, text in texts.items()
-        if "src" in f.relative_to(tree).parts and f != file and _names(text, module)
-    ]
-    typed = [m.rpartition(".")[2].split("_") for m in (module, *users) if ".cli." in m]
+    users = _users(tree, module)
+    # A command's own module often hands on to one that has the work, and that to one more.
+    further = {u for user in users for u in _users(tree, user)} if len(users) <= FEW else set()
+    typed = [m.rpartition(".")[2].split("_") for m in {module, *users, *further} if ".cli." in m]
     commands = [re.compile(r"[(\[]\s*" + r",\s*".join(f'"{w}"' for w in words)) for words in typed]
     found = []
     for test, text in texts.items():

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from console import within
+from page_outline import shows_what_is_kept
 
 import motionfmu
 from motionfmu.analysis.explain import BallbarRecord, ballbar_test, signature
@@ -110,7 +111,7 @@ def test_the_command_compares_record_and_run(square: Result, tmp_path: Path) -> 
     assert made["contour"]["error"]["line"] == made["run"]["error"]["line"]
     assert "following" not in made["contour"] and len(made["contour"]["corners"]) == 7
     page = (tmp_path / "results/square.contour/report.html").read_text()
-    assert "Error of the record" in page
+    shows_what_is_kept("record", page)
     wrong = within("contour", scenario, "--record", "trace.csv", folder=tmp_path)
     assert wrong.returncode == 2 and "no column X, which the program moves" in wrong.stderr
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from page_curves import page_data
+from page_outline import shows_what_is_kept
 
 import motionfmu
 from motionfmu.analysis.collisions import Cell, CellBody
@@ -35,7 +36,9 @@ def test_the_arm_holds_the_tool_at_each_frame(run: DryRun) -> None:
 
 
 def test_the_picture_has_the_cell_and_begins_where_it_is_touched(run: DryRun) -> None:
-    data = page_data(page_text(run))["views"][0]
+    page = page_text(run)
+    shows_what_is_kept("dry_run", page)
+    data = page_data(page)["views"][0]
     assert data["floor"] == -20.0
     assert data["cell"][0] == {"bar": [[900, 300, 0], [900, 300, 900]], "radius": 60}
     assert data["cell"][1]["half"] == [50, 40, 30] and data["cell"][1]["centre"] == [0, -900, 30]

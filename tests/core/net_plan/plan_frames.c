@@ -265,7 +265,7 @@ static void test_rests_beyond_a_plan(void)
     }
 }
 
-/* Where a line turns back on itself no curve has room: the motion rests exactly there, and goes on. */
+/* Where a line turns back on itself no curve has room: the motion rests there and goes on. */
 static void test_line_that_turns_back(void)
 {
     static const double to[] = { 5.0, 25.0, 10.0, 20.0, 30.0 };

@@ -172,8 +172,6 @@ def drawn_samples(count: int, tool: Read, extent: float) -> NDArray[np.int64]:
     """Samples that draw the path: where it bends, and some at even times for the colour."""
     coarse = max(1, count // (20 * POINTS))
     some = np.arange(0, count, coarse)
-    if some[-1] != count - 1:
-        some = np.append(some, count - 1)
     bends = some[simplified(at(tool, some), COARSE * extent)]
     even = np.linspace(0, count - 1, POINTS // 2).round().astype(np.int64)
     if len(bends) > POINTS // 2:
