@@ -116,6 +116,22 @@ def test_tests_of_a_private_function_are_those_of_its_callers() -> None:
     assert "tests/runs/test_side_by_side.py" in of_python(ROOT, file, line + 1)
 
 
+def test_tests_name_what_their_helpers_name() -> None:
+    near = of_python(ROOT, ROOT / "src/motionfmu/report/studies/sweep_page.py")
+    assert "tests/pages/test_outlines.py" in near
+
+
+def test_tests_of_a_command_reach_what_its_module_hands_on_to() -> None:
+    """`contour` is typed; its module has another one, which writes the page."""
+    near = of_python(ROOT, ROOT / "src/motionfmu/report/cause_pages/record_page.py")
+    assert "tests/records/test_record_contour.py" in near
+
+
+def test_what_is_for_a_checker_alone_is_not_changed() -> None:
+    text = "if TYPE_CHECKING:\n    import json\n\nx = 1\n"
+    assert {c.line for c in changes(Path("x.py"), text)} == {4}
+
+
 def test_tests_that_make_test_leaves_out_are_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
