@@ -36,6 +36,18 @@ def message(folder: Path, *arguments: str, lines: int = 1) -> str:
     return run.stderr.removeprefix("motionfmu: ").rstrip("\n")
 
 
+@pytest.mark.parametrize("name", ["part.ngc", "part.NC", "plate.plt", "pick.JBI", "part"])
+def test_a_program_in_place_of_a_scenario(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("G21\nG1 X5 F100\nM30\n")
+    text = message(tmp_path / name)
+    assert text.startswith(f"{tmp_path / name}:")
+    assert ("on a machine: --machine NAME" in text) == ("." in name)
+
+
+def test_a_program_that_is_not_there_is_no_scenario(tmp_path: Path) -> None:
+    assert message(Path("part.ngc")) == "part.ngc: no such scenario"
+
+
 @pytest.mark.parametrize(
     ("line", "program", "what"),
     [

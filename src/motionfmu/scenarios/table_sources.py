@@ -11,6 +11,10 @@ from motionfmu.base.toml_lines import Lines, is_file, shown, tables_of, text_of
 from motionfmu.scenarios import package_files
 
 Tables = dict[str, Any]
+NO_SCENARIO = (
+    "no scenario, which is a .toml file or its folder; a program runs on a machine: --machine NAME"
+    " (motionfmu machines lists them)"
+)
 DEPTH_MAX = 8  # files that extend one another
 # Lists to which a file adds; any other list takes the place of the one it extends.
 JOINED = (("", "leave"), ("record", "signals"))
@@ -111,7 +115,7 @@ def scenario_file(path: str | Path) -> Path:
         beside = file.parent.iterdir() if file.parent.is_dir() else ()
         near = [p.name for p in beside if is_file(p / "scenario.toml")]
         hint = suggestion(file.name, near)
-        if not hint and package_files.is_name(path):
+        if not hint and package_files.is_name(path) and not file.suffix:  # no name of a file
             hint = package_files.unknown(str(path), package_files.scenarios)
         raise InputError(f"{file}: no such scenario{hint}")
     return file.resolve()
@@ -195,8 +199,13 @@ def _extended(first: Source, file_of: Callable[[str, Path], Path]) -> list[Sourc
 
 
 def _read(file: Path) -> Source:
-    text = text_of(file)
-    tables = tables_of(text, file)
+    try:
+        text = text_of(file)
+        tables = tables_of(text, file)
+    except InputError:
+        if file.suffix.lower() in ("", ".toml") or not is_file(file):
+            raise
+        raise InputError(f"{file}: {NO_SCENARIO}") from None
     first = text.split("\n", 1)[0]
     about = first.lstrip("# ") if first.startswith("#") else ""
     return Source(str(file), file.parent, in_rows(tables), Lines(text), about)
