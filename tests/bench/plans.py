@@ -19,11 +19,14 @@ COUNTS = (DRAWN, 31 * DRAWN)
 KINDS = {"rest to rest": moves.rest_to_rest, "in motion to rest": moves.to_rest}
 
 
-def _scurve(drawn: np.ndarray) -> Callable[[], None]:
-    return lambda: (moves.scurve_totals(drawn), None)[1]
+Planner = Callable[[], object]  # plans all moves that were drawn
 
 
-def _ruckig(drawn: np.ndarray, enabled: bool = True) -> Callable[[], None]:
+def _scurve(drawn: np.ndarray) -> Planner:
+    return lambda: moves.scurve_totals(drawn)
+
+
+def _ruckig(drawn: np.ndarray, enabled: bool = True) -> Planner:
     """Moves calculated by ruckig, called from Python; its only axis can be switched off."""
     inputs = [moves.ruckig_input(move) for move in drawn.tolist()]
     for told in inputs:
@@ -37,10 +40,10 @@ def _ruckig(drawn: np.ndarray, enabled: bool = True) -> Callable[[], None]:
     return all_of_them
 
 
-PLANNERS: dict[str, Callable[[np.ndarray], Callable[[], None]]] = {
+PLANNERS: dict[str, Callable[[np.ndarray], Planner]] = {
     "scurve": _scurve,
     "ruckig": _ruckig,
-    "call": lambda drawn: _ruckig(drawn, enabled=False),
+    "call": lambda drawn: _ruckig(drawn, enabled=False),  # what Python's call of ruckig costs
 }
 
 
@@ -52,8 +55,8 @@ def _drawn(kind: str) -> np.ndarray:
 class Plans:
     """Cost of one plan by each of `PLANNERS`: processor time [s], and instructions.
 
-    What Python's call of ruckig costs is "call", which is subtracted from it. ruckig's check of its
-    input goes with it, that of scurve counts.
+    "call" is subtracted from "ruckig". ruckig's check of its input goes with it, that of scurve
+    counts.
     """
 
     def __init__(self, name: str) -> None:

@@ -24,6 +24,22 @@ if TYPE_CHECKING:
     from motionfmu.study.tune import Tuned
     from motionfmu.sweep import Outcome
 
+KINDS = (
+    "contour",
+    "robot",
+    "iso9283",
+    "signals",
+    "compare",
+    "margins",
+    "tune",
+    "causes",
+    "path",
+    "sweep",
+    "gcode",
+    "machine",
+    "plan",
+)
+BARE = ("documentation", "notebook")  # without plots of a script
 CIRCLE = ROOT / "scenarios/circle"
 LONG = 40  # letters of a name
 

@@ -3,28 +3,11 @@
 from pathlib import Path
 
 import pytest
-from made import made
+from made import BARE, KINDS, made
 from page_outline import outline, shows_what_is_kept
 
 # What they share is made once, by one worker.
 pytestmark = pytest.mark.xdist_group("pages")
-
-BARE = ("documentation", "notebook")  # pages without data
-KINDS = (
-    "contour",
-    "robot",
-    "iso9283",
-    "signals",
-    "compare",
-    "margins",
-    "tune",
-    "causes",
-    "path",
-    "sweep",
-    "gcode",
-    "machine",
-    "plan",
-)
 
 
 @pytest.fixture(scope="module")

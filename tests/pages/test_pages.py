@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from browser import PHONE, tab
-from made import made
+from made import BARE, KINDS, made
 from page_words import WORDS
 
 import motionfmu
@@ -17,21 +17,6 @@ from motionfmu.report.html_page import LARGEST
 pytestmark = pytest.mark.xdist_group("pages")
 
 DESK = {"width": 1400, "height": 900}
-KINDS = (
-    "contour",
-    "robot",
-    "iso9283",
-    "signals",
-    "compare",
-    "margins",
-    "tune",
-    "causes",
-    "path",
-    "sweep",
-    "gcode",
-    "machine",
-    "plan",
-)
 # Sections on what limits a program, of the pages that have them.
 TIME = ("Where the time goes", "Slowest lines")
 LIMITED = {
@@ -39,7 +24,6 @@ LIMITED = {
     "machine": ("Axes and their limits", *TIME),
     "gcode": (*TIME, "What if"),
 }
-OTHERS = ("documentation", "notebook")  # without plots of a script
 FRAME = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
 # What is wrong with how a page looks, in words.
 LOOK = """async () => {
@@ -167,7 +151,7 @@ def drawn(page: Any) -> None:
     page.evaluate(FRAME)
 
 
-@pytest.mark.parametrize("kind", (*KINDS, *OTHERS))
+@pytest.mark.parametrize("kind", (*KINDS, *BARE))
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["390", "1400"])
 def test_no_text_lies_over_text(browser: Any, pages: Any, kind: str, size: Any) -> None:
     with tab(browser, pages[0][kind].as_uri(), size) as page:
