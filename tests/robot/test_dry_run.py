@@ -176,7 +176,7 @@ def test_the_command_writes_a_page(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 @pytest.mark.parametrize(
     ("words", "told"),
     (
-        (("circle",), "circle: it has no robot's controller with a program"),
+        (("circle",), "circle: its machine has no robot's controller with a program; robot6 of"),
         ((str(PICK), "--input", "40=on"), "--input 40=on: N=on@SECONDS or N=off@SECONDS wanted"),
         ((str(PICK), "--input", "1=high"), "--input 1=high"),
         ((str(PICK), "--set", "soft.a1=99"), "soft.a1"),

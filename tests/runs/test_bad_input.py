@@ -44,6 +44,19 @@ def test_a_program_in_place_of_a_scenario(tmp_path: Path, name: str) -> None:
     assert ("on a machine: --machine NAME" in text) == ("." in name)
 
 
+def test_files_for_other_commands(tmp_path: Path) -> None:
+    for name, words in (
+        ("pick.JBI", ("gcode", ": a robot's job: motionfmu job ")),
+        ("plate.dxf", ("import", ": an SSP (.ssp) or an arm (.urdf, .xml, .xacro, .toml) wanted")),
+    ):
+        (tmp_path / name).write_text("NOP\nEND\n")
+        done = within(words[0], tmp_path / name, folder=tmp_path)
+        assert done.returncode == 2 and done.stdout == ""
+        assert done.stderr.startswith(f"motionfmu: {tmp_path / name}{words[1]}")
+        assert [f.name for f in tmp_path.iterdir()] == [name]
+        (tmp_path / name).unlink()
+
+
 def test_a_program_that_is_not_there_is_no_scenario(tmp_path: Path) -> None:
     assert message(Path("part.ngc")) == "part.ngc: no such scenario"
 

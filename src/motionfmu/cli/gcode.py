@@ -9,6 +9,7 @@ import typer
 from motionfmu.base.axis_names import LINEAR, ROTARY
 from motionfmu.base.errors import InputError
 from motionfmu.base.extras import install, missing
+from motionfmu.base.program_endings import ROBOT_JOBS
 from motionfmu.cli.common import (
     FAILED,
     Folder,
@@ -188,6 +189,8 @@ def _translated(file: Path, machine: str | None, drawing: dict[str, Any]) -> "Ma
     if drawing:
         told = f"it is for drawings ({', '.join(ENDINGS)})"
         raise InputError(f"--{next(iter(drawing))}: {file}: {told}")
+    if file.suffix.lower() in ROBOT_JOBS:
+        raise InputError(f"{file}: a robot's job: motionfmu job {file} --machine ROBOT")
     return MachineProgram(file)
 
 

@@ -1,14 +1,17 @@
 """The command that makes a scenario of somebody's SSP, and a machine of somebody's arm."""
 
+import zipfile
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from motionfmu.base.errors import InputError
+from motionfmu.base.toml_lines import is_file
 from motionfmu.cli.common import app
 from motionfmu.cli.run import warnings
 
+SSP = ".ssp"
 ARMS = (".urdf", ".xml", ".xacro", ".toml")
 
 
@@ -60,6 +63,8 @@ def import_(  # noqa: PLR0913  (each is an option of the command)
         raise InputError("--tip is for a URDF")
     if hold is not None:
         raise InputError("--hold is for an arm")
+    if path.suffix.lower() != SSP and is_file(path) and not zipfile.is_zipfile(path):
+        raise InputError(f"{path}: an SSP ({SSP}) or an arm ({', '.join(ARMS)}) wanted")
     from motionfmu.ssp.ssp_import import take
 
     taken = take(path, target or Path(path.stem), stop, step)

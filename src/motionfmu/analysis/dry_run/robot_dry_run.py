@@ -371,7 +371,8 @@ def _values(scenario: Scenario, set: Mapping[str, Any]) -> tuple[str, Callable[[
             return np.array(values) if ports[key].shape else values[0]
 
         return name, value
-    raise InputError(f"{scenario.name}: it has no robot's controller with a program")
+    told = "its machine has no robot's controller with a program; robot6 of motionfmu machines has"
+    raise InputError(f"{scenario.name}: {told}")
 
 
 def _settings(value: Callable[[str], Any]) -> dict[str, Any]:
