@@ -48,9 +48,18 @@ def test_a_name_that_is_none_gets_what_is_near_it(tmp_path: Path, line: str) -> 
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_name_unlike_any_gets_all_that_there_are(tmp_path: Path) -> None:
-    line = told("run", "zzzz", folder=tmp_path)
-    assert line == f"zzzz: no such scenario (there are: {', '.join(NAMES)})"
+def test_a_name_unlike_any_gets_the_command_that_lists_them(tmp_path: Path) -> None:
+    assert told("run", "zzzz", folder=tmp_path) == (
+        "zzzz: no such scenario (motionfmu list shows them)"
+    )
+
+
+@pytest.mark.parametrize("command", ["run", "check", "export"])
+def test_a_machine_is_no_scenario(tmp_path: Path, command: str) -> None:
+    line = told(command, "mill3", folder=tmp_path)
+    assert line.startswith("mill3: no such scenario")
+    assert line.endswith(": it is a machine, on which a program runs: run PROGRAM --machine mill3")
+    assert told(command, "mil3", folder=tmp_path).endswith("; did you mean 'mill3'?")
 
 
 def test_examples_are_listed_and_copied(tmp_path: Path) -> None:

@@ -71,6 +71,14 @@ def unknown(given: str, known: Callable[[], dict[str, Path]]) -> str:
     return suggestion(given, names) or f" (there are: {', '.join(names) or 'none'})"
 
 
+def no_scenario(given: str | Path) -> str:
+    """The end of a message about a name that no scenario has; one of a machine is told so."""
+    name = str(given)
+    if name in machines():
+        return f": it is a machine, on which a program runs: run PROGRAM --machine {name}"
+    return suggestion(name, [*scenarios(), *machines()]) or " (motionfmu list shows them)"
+
+
 def needed(name: str) -> list[Path]:
     """Folder of an example, and folders of other examples whose files it names."""
     known = examples()

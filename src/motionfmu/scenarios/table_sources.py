@@ -116,7 +116,7 @@ def scenario_file(path: str | Path) -> Path:
         near = [p.name for p in beside if is_file(p / "scenario.toml")]
         hint = suggestion(file.name, near)
         if not hint and package_files.is_name(path) and not file.suffix:  # no name of a file
-            hint = package_files.unknown(str(path), package_files.scenarios)
+            hint = package_files.no_scenario(path)
         raise InputError(f"{file}: no such scenario{hint}")
     return file.resolve()
 
