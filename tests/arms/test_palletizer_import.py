@@ -109,6 +109,7 @@ def test_the_machine_says_what_the_file_says(file: Path, arm_folder: Path) -> No
     assert [j.low for j in own.driven] == pytest.approx([j.low for j in arm.driven], abs=1e-7)
 
 
+@pytest.mark.more
 def test_its_job_runs_level(arm_folder: Path) -> None:
     """All four joints by a joint move and lines; the tool keeps level whatever its gears do."""
     points = (arm_folder / "example.points").read_text(encoding="utf-8")
