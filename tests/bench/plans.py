@@ -75,17 +75,23 @@ class Plans:
         line = [sys.executable, counting.PLANS, self.name]
         return [counting.Loop(f"{self.name}, {p}", [*line, p, "{}"], COUNTS) for p in PLANNERS]
 
+    def counted(self, counts: dict[str, counting.Loop]) -> tuple[float, float, float]:
+        """Instructions of a plan by scurve, by ruckig without its call, and of that call."""
+        scurve, found, call = (counts[f"{self.name}, {p}"].count for p in PLANNERS)
+        return scurve, found - call, call
+
     def ratio(self, counts: dict[str, counting.Loop]) -> float:
         """Instructions of ruckig over those of scurve."""
-        scurve, found, call = (counts[f"{self.name}, {p}"].count for p in PLANNERS)
-        return (found - call) / scurve
+        scurve, found, _ = self.counted(counts)
+        return found / scurve
 
     def row(self, counts: dict[str, counting.Loop]) -> str:
         """Instructions and times."""
-        scurve, found, call = (counts[f"{self.name}, {p}"].count for p in PLANNERS)
-        timed = [self._times[p] * 1e9 for p in PLANNERS]
-        counted = f"{scurve:10.0f}{found - call:10.0f}{call:10.0f}{self.ratio(counts):10.2f}"
-        return f"{self.name:28}{counted}{timed[0]:12.0f}{timed[1] - timed[2]:10.0f}"
+        counted = "".join(f"{n:10.0f}" for n in self.counted(counts))
+        scurve, found, call = (self._times[p] * 1e9 for p in PLANNERS)
+        return (
+            f"{self.name:28}{counted}{self.ratio(counts):10.2f}{scurve:12.0f}{found - call:10.0f}"
+        )
 
 
 def table(plans: list[Plans], counts: dict[str, counting.Loop]) -> None:

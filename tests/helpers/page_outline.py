@@ -15,6 +15,7 @@ from page_curves import page_data
 
 KEPT = ROOT / "tests/pages/outlines"
 _NUMBER = re.compile(r"[-+\N{MINUS SIGN}]?\d(?:[\d,. ]*\d)?(?:e[-+]?\d+)?")
+_FOLDER = re.compile(r"(?<!\S)/\S*/(?=\S)")  # of a file that a page names by its path
 _HIDDEN = {"script", "style", "svg", "title", "option", "template"}
 _CELLS = {"td", "th"}
 _BLOCKS = {"h1", "h2", "h3", "p", "tr", "li", "dt", "dd", "div", "section", "summary", "button"}
@@ -22,8 +23,8 @@ _ROWS = 6  # of a table that are told; more are as the last of them
 
 
 def masked(text: str) -> str:
-    """A text with # in place of each number, and single spaces."""
-    return _NUMBER.sub("#", " ".join(text.split()))
+    """A text with # in place of each number, single spaces, and names of files without folders."""
+    return _NUMBER.sub("#", _FOLDER.sub("", " ".join(text.split())))
 
 
 class _Shown(HTMLParser):
@@ -57,11 +58,11 @@ class _Shown(HTMLParser):
             self._words.append(data)
 
     def _end(self) -> None:
-        words = [" ".join(w.split()) for w in self._words]
-        told = " ".join(w for w in words if w)
+        told = " ".join(" ".join(self._words).split())
         self._words = []
         if told.strip("# |") and not (told.startswith("|") and self._rows > _ROWS):
-            self.found.append(told if told.startswith("#") else masked(told))
+            marks, _, words = told.partition(" ") if told.startswith("#") else ("", "", told)
+            self.found.append(f"{marks} {masked(words)}".strip())
 
 
 def _titles(layout: dict[str, Any]) -> Iterator[str]:

@@ -106,10 +106,16 @@ def _functions(text: str, line: int) -> set[str]:
 
 
 @cache
+def _modules(tree: Path) -> dict[str, str]:
+    """The texts of the modules by their names."""
+    return {_module(tree, f): t for f, t in _texts(tree).items() if tree / "src" in f.parents}
+
+
+@cache
 def _users(tree: Path, module: str) -> list[str]:
     """The modules that name a module."""
-    texts = {_module(tree, f): t for f, t in _texts(tree).items() if tree / "src" in f.parents}
-    return [user for user, text in texts.items() if user != module and _names(text, module)]
+    named = _modules(tree).items()
+    return [user for user, text in named if user != module and _names(text, module)]
 
 
 def of_python(tree: Path, file: Path, line: int = 0) -> list[str]:

@@ -18,7 +18,7 @@ static const double HOPS = 0.9;
  * x (speed_box): over such a share of it no more than half of x is lost. */
 static const double NEAR_REST = 1.0 / 64.0;
 
-/* So many shares of a stride are tried, each such a share of the one before. */
+/* Number of shares of a stride that are tried; each is NEAR_REST times the one before. */
 enum { SHARES = 5 };
 
 /* A landing is slow that takes less than this part of the jerk that is allowed. */
@@ -176,7 +176,7 @@ static bool turns_down(const struct ride *r, const struct speed_road *to, struct
            && good(r, to, spot, c, stride, true);
 }
 
-/* The longest share of a stride over which a step brakes so, or the stride if there is none. */
+/* The longest share of a stride over which a step turns down, or the stride if there is none. */
 static double fair_stride(const struct ride *r, const struct speed_road *to, struct speed_spot spot,
                           double stride)
 {

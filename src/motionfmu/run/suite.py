@@ -70,7 +70,7 @@ def found(paths: Sequence[Path]) -> list[Path]:
         if is_file(path) or is_file(path / FILE):
             chosen.append(path)
         elif not path.is_dir():
-            hint = package_files.no_scenario(path) if package_files.is_name(path) else ""
+            hint = package_files.no_scenario(path)
             raise InputError(f"{path}: no such scenario, nor a folder of scenarios{hint}")
         elif inside := sorted(file.parent for file in path.glob(f"*/{FILE}")):
             chosen += inside

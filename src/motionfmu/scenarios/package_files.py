@@ -72,11 +72,14 @@ def unknown(given: str, known: Callable[[], dict[str, Path]]) -> str:
 
 
 def no_scenario(given: str | Path) -> str:
-    """The end of a message about a name that no scenario has; one of a machine is told so."""
+    """The end of a message about what is no scenario: a hint if it is a name, "" of a path."""
+    if not is_name(given):
+        return ""
     name = str(given)
     if name in machines():
         return f": it is a machine, on which a program runs: run PROGRAM --machine {name}"
-    return suggestion(name, [*scenarios(), *machines()]) or " (motionfmu list shows them)"
+    listed = "" if Path(given).suffix else " (motionfmu list shows them)"  # of a file's name none
+    return suggestion(name, [*scenarios(), *machines()]) or listed
 
 
 def needed(name: str) -> list[Path]:

@@ -114,9 +114,7 @@ def scenario_file(path: str | Path) -> Path:
     if not is_file(file):
         beside = file.parent.iterdir() if file.parent.is_dir() else ()
         near = [p.name for p in beside if is_file(p / "scenario.toml")]
-        hint = suggestion(file.name, near)
-        if not hint and package_files.is_name(path) and not file.suffix:  # no name of a file
-            hint = package_files.no_scenario(path)
+        hint = suggestion(file.name, near) or package_files.no_scenario(path)
         raise InputError(f"{file}: no such scenario{hint}")
     return file.resolve()
 
@@ -142,7 +140,14 @@ def machine_file(path: str | Path, folder: Path) -> Path:
 
 def of_file(path: str | Path) -> list[Source]:
     """A file, what it extends and its machine, the strongest first."""
-    return chain(_read(scenario_file(path)))
+    file = scenario_file(path)
+    try:
+        first = _read(file)
+    except InputError:
+        if file.suffix.lower() in ("", ".toml"):
+            raise
+        raise InputError(f"{file}: {NO_SCENARIO}") from None
+    return chain(first)
 
 
 def chain(first: Source) -> list[Source]:
@@ -199,13 +204,8 @@ def _extended(first: Source, file_of: Callable[[str, Path], Path]) -> list[Sourc
 
 
 def _read(file: Path) -> Source:
-    try:
-        text = text_of(file)
-        tables = tables_of(text, file)
-    except InputError:
-        if file.suffix.lower() in ("", ".toml") or not is_file(file):
-            raise
-        raise InputError(f"{file}: {NO_SCENARIO}") from None
+    text = text_of(file)
+    tables = tables_of(text, file)
     first = text.split("\n", 1)[0]
     about = first.lstrip("# ") if first.startswith("#") else ""
     return Source(str(file), file.parent, in_rows(tables), Lines(text), about)
