@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from appearing import appears
 from websockets.asyncio.client import connect as open_later
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
@@ -400,9 +401,7 @@ def test_a_server_that_is_killed_leaves_the_scenario_and_the_record(tmp_path: Pa
     machine = served.machine
     served.process.kill()
     assert gone(machine)
-    until = time.monotonic() + PATIENCE
-    while not (tmp_path / "trace.csv").exists() and time.monotonic() < until:
-        time.sleep(0.02)
+    appears(tmp_path / "trace.csv")
     table = np.loadtxt(tmp_path / "trace.csv", delimiter=",", skiprows=1)
     result = motionfmu.load(tmp_path / "saved").changed(record={"every": 1}).run()
     own = result["machine.table_position"][begin : begin + len(table), 0]
@@ -423,9 +422,7 @@ def test_a_machine_that_is_killed_is_told(tmp_path: Path) -> None:
     assert ended == "the machine's process was ended by SIGKILL"
     status, _, err = served.end(0)
     assert (status, err) == (1, f"motionfmu: {ended}\n")
-    until = time.monotonic() + PATIENCE
-    while not (tmp_path / "trace.npz").exists() and time.monotonic() < until:
-        time.sleep(0.02)
+    appears(tmp_path / "trace.npz")
     with np.load(tmp_path / "trace.npz") as arrays:
         assert set(arrays) == {"time", "mcc.line"}
 

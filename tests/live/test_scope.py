@@ -1,12 +1,12 @@
 """Triggers and records of the scope, against a search sample by sample."""
 
 import subprocess
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from appearing import appears
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -177,6 +177,8 @@ def test_a_record_is_whole_in_csv_and_numpy(tmp_path: Path) -> None:
         scope.fill(3000)
         assert scope.record(tmp_path / "a.csv", 1000, None) == 1000
         assert scope.record(tmp_path / "b.npz", None, 5000) == 3000
+        with pytest.raises(InputError, match=r"b\.npz is being written by another record"):
+            scope.record(tmp_path / "b.npz", None, None)
         machine.keep()
         scope.fill(700)
         machine.back(machine.time)
@@ -189,6 +191,7 @@ def test_a_record_is_whole_in_csv_and_numpy(tmp_path: Path) -> None:
             with pytest.raises(InputError, match=told):
                 scope.record(tmp_path / name, None, None)
     there = recorded(CHANNELS, 1000, 5800)
+    appears(tmp_path / "b.npz")
     with pytest.raises(InputError, match="is there already"):
         FileRecord(tmp_path / "b.npz", RecordHead(CHANNELS, ["", "", ""], 1), 0, None)
     text = (tmp_path / "a.csv").read_text().splitlines()
@@ -197,9 +200,6 @@ def test_a_record_is_whole_in_csv_and_numpy(tmp_path: Path) -> None:
     values = np.array([[float(x) for x in line.split(",")] for line in text[1:]])
     assert values[:, 1:].tobytes() == there.tobytes()
     assert values[:, 0] == pytest.approx(np.arange(1000, 5800) * 1e-4, abs=1e-12)
-    until = time.monotonic() + 20
-    while not (tmp_path / "b.npz").exists() and time.monotonic() < until:
-        time.sleep(0.01)
     with np.load(tmp_path / "b.npz") as arrays:
         assert arrays["time"].tobytes() == (np.arange(3000, 5000) * 100000 / 1e9).tobytes()
         for column, name in enumerate(CHANNELS):
