@@ -12,6 +12,7 @@ enum { USED = 2 };
     X(card, dac, double, AXES) \
     X(drives, torque, double, AXES) \
     X(drives, speed, double, AXES) \
+    X(drives, alarm, int32_t, AXES) \
     X(mcc, path_feed, double, 1) \
     X(card, pulse_count, int32_t, AXES) \
     X(card, stock, int32_t, AXES) \

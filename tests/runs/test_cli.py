@@ -28,7 +28,7 @@ def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
 def test_run_writes_a_whole_result_and_says_where(demo: tuple[Path, str]) -> None:
     folder, text = demo
     assert f"report: {folder}/report.html" in text
-    assert "circle: all 4 checks hold, 9 expected not judged" in text
+    assert "circle: all 5 checks hold, 9 expected not judged" in text
     (radius,) = (line for line in text.splitlines() if "contour.error.max" in line)
     assert re.fullmatch(
         r" expected  contour.error.max +0\.0\d+ +>= 0\.044 and <= 0\.047; as expected", radius

@@ -65,7 +65,7 @@ def test_page_and_numbers_show_expected_got_and_difference(tuned, tmp_path: Path
     page = tuned.save(tmp_path / "r").read_text()
     row = re.search(rf"{re.escape(TUNED)}<div.*?</tr>", page[page.index("Expected as written") :])
     assert row and "≥" not in row[0] and re.search(r"&gt;= 44 .*21\.1\d* µm.*.22\.8\d* µm", row[0])
-    assert "✓ all 4 checks hold" in page and "fail" not in row[0]
+    assert "✓ all 5 checks hold" in page and "fail" not in row[0]
     numbers = json.loads((tmp_path / "r/result.json").read_text())
     rows = [c for c in numbers["checks"] if c["name"] == TUNED]
     assert numbers["ok"] and not numbers["as_written"] and [c["ok"] for c in rows] == [None] * 2

@@ -75,6 +75,15 @@ def test_a_program_that_is_given_up_ends_its_run_at_rest(tmp_path: Path) -> None
         assert 0.0 <= end - result.time[last] < 0.01
 
 
+@pytest.mark.parametrize("name", ["xy_table", "mill3"])
+def test_a_drive_that_trips_is_a_fault(name: str, tmp_path: Path) -> None:
+    program = tmp_path / "way.ngc"
+    program.write_text("G21 G90 G1 F600 X30\nM2\n")
+    result = motionfmu.machine(name).run(program, set={"drives.torque_limit": 0.1}, stop=1.6)
+    (alarm,) = (verdict for verdict in result.checks if verdict.name == "drives.alarm")
+    assert alarm.ok is False and alarm.value == 3  # overload
+
+
 def test_a_drawing_in_svg_runs_on_a_card_and_on_a_mill() -> None:
     badge = MACHINES / "engraver/badge.svg"
     for name, most in (("engraver", 3e-5), ("mill3", 3e-5)):
@@ -210,7 +219,7 @@ def test_the_command_runs_a_program_and_lists_machines(tmp_path: Path) -> None:
     told = call("machines").stdout
     assert all(name in told for name in (*PROGRAMS, *WITHOUT, "mine  "))
     ran = call("run", "square.ngc", "--machine", "xy_table")
-    assert ran.returncode == 0 and "square: all 4 checks hold" in ran.stdout
+    assert ran.returncode == 0 and "square: all 5 checks hold" in ran.stdout
     kept = json.loads((tmp_path / "results/square/result.json").read_text())
     assert kept["ok"]
     # of which nothing is asked has no verdict

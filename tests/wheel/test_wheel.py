@@ -43,7 +43,7 @@ def test_the_demo_runs_from_an_empty_folder(installed: Installed) -> None:
     before = {p: p.stat().st_mtime_ns for p in installed.site.glob("motionfmu/**/*")}
     done = installed.run("motionfmu", "run", "circle")
     assert done.returncode == 0, done.stderr
-    assert "circle: all 13 checks hold\n" in done.stdout and "warning" not in done.stdout
+    assert "circle: all 14 checks hold\n" in done.stdout and "warning" not in done.stdout
     assert [p.name for p in installed.empty.iterdir()] == ["results"]
     folder = installed.empty / "results/circle"
     assert "Plotly" in (folder / "report.html").read_text()
@@ -140,7 +140,7 @@ def test_each_python_installs_and_runs_it(installed: Installed, tmp_path: Path, 
     assert run("python", "--version").startswith(f"Python {version}.")
     assert run("motionfmu", "--version") == f"motionfmu {motionfmu.__version__}\n"
     told = run("motionfmu", "run", "circle")
-    assert "circle: all 13 checks hold\n" in told and "warning" not in told
+    assert "circle: all 14 checks hold\n" in told and "warning" not in told
     here = motionfmu.load("circle").run()
     for name, values in here.signals.items():
         there = np.load(tmp_path / f"results/circle/signals/{name}.npy")

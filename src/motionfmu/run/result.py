@@ -82,7 +82,7 @@ class Result(Mapping[str, NDArray[Any]]):
     --------
     >>> result = motionfmu.load("scenarios/circle").run()  # doctest: +SKIP
     >>> result  # doctest: +SKIP
-    <Result circle: all 13 checks hold, 80000 rows of 20 signals, 8 s>
+    <Result circle: all 14 checks hold, 80000 rows of 21 signals, 8 s>
     >>> result.to_pandas(["mcc.path_feed", "machine.*"]).describe()  # doctest: +SKIP
     >>> result.plot("mcc.path_feed", ("drives.torque[1]", "drives.torque[2]"))  # doctest: +SKIP
     """
