@@ -432,7 +432,8 @@ enum interpreter_result interpreter_read(struct interpreter *in, const struct pr
         }
         if (r->fault != FAULT_NONE) {
             in->taken = in->count = 0;
-            in->waits = in->cycle.running = in->nurbs.running = false;
+            in->waits = in->cycle.running = false;
+            nurbs_skip(in);
             in->rounding.waits = false;
             cutter_drop(in);
             return INTERPRETER_FAULT;

@@ -128,6 +128,18 @@ static enum fault make(struct interpreter *in, const struct program *p, double *
     }
 }
 
+void nurbs_skip(struct interpreter *in)
+{
+    struct nurbs *n = &in->nurbs;
+
+    if (n->running) {
+        n->span = n->upto;
+        n->from = 0.0;
+        n->running = false;
+        n->count = n->ended ? 0 : n->count;
+    }
+}
+
 static void next_span(struct nurbs *n)
 {
     n->from = 0.0;

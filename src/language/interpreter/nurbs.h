@@ -19,6 +19,9 @@ enum fault nurbs_between(struct interpreter *in, const struct block *b, struct f
 /* The text has ended. FAULT_NURBS_END, in the line of the latest point: G5.3 is missing. */
 enum fault nurbs_end(struct interpreter *in, struct fault_report *r);
 
+/* Make none of the spans that wait to be made: a fault has come before them. */
+void nurbs_skip(struct interpreter *in);
+
 /* Make the next command of a curve whose spans are being made. */
 enum fault nurbs_next(struct interpreter *in, const struct program *p, struct fault_report *r);
 

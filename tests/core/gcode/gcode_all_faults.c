@@ -38,6 +38,9 @@ static void no_cascades(void)
     LINES("G1 Z701\nX2 Z702\nZ703\nZ0\nX5\nZ701\n", 1, 6); /* still outside is told once */
     LINES("o1 whil [1]\nG1 X1\no1 endwhile\nX2 Q5\n", 1, 4);
     LINES("o1 repeat [50]\nG1 X1 Q5\no1 endrepeat\nX2 R\n", 2, 4); /* a line once */
+    /* Points whose spans are not made, more than a curve keeps. */
+    LINES("F9 G5.2 X1 Y1\no1 repeat [50]\nX2 Y3 M98 P5\no1 endrepeat\nG5.3\nX7 Q5\nM2\n", 3, 6);
+    LINES("F9 G5.2 X1 Y1\nX2 Y3\nX3 Y1 M98 P5\nX3 Y4\nX4 Y1\nG5.3\nX7 Q5\nM2\n", 3, 7);
     LINES("o5 call\nG1 X1\nM98 P7\nX2\nM99.5\nM30\n", 1, 3, 5);
     LINES("G2 X10 Y0 I6\nG1 X20\nG2 X30 R5\n", 1); /* the arc's end is where its words lead */
 }
