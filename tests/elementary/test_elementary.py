@@ -82,6 +82,7 @@ def bits(folder: Path, *command: str, run: tuple[str, ...] = ()) -> str:
     return subprocess.run([*run, program], check=True, capture_output=True, text=True).stdout
 
 
+@pytest.mark.more
 def test_every_compiler_gives_the_same_bits(tmp_path: Path) -> None:
     wanted = bits(tmp_path, "gcc", "-O2", "-ffp-contract=off")
     assert len(set(wanted.split())) == 32

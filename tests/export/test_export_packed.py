@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from console import within
+from few_cases import few
 from fmpy import read_model_description, simulate_fmu
 
 import motionfmu
@@ -149,7 +150,7 @@ def test_a_good_program_is_packed_without_a_word(line: tuple[str, ...], tmp_path
     assert (tmp_path / "x.fmu").exists() and not (tmp_path / "written.txt").exists()
 
 
-@pytest.mark.parametrize("kind", ["--fmu", "--ssp"])
+@pytest.mark.parametrize("kind", few(["--fmu", "--ssp"], 1))
 def test_a_scenario_whose_program_is_wrong_is_not_exported(kind: str, tmp_path: Path) -> None:
     """Its machine is known: an axis that it has not is a fault, too."""
     for program, wanted in (("wrong.ngc", [2, 3]), ("uvw.ngc", [1]), ("far.ngc", [])):
@@ -182,7 +183,7 @@ def test_what_cannot_be_packed_is_told(line: tuple[str, ...], tmp_path: Path) ->
     assert not list(tmp_path.iterdir())
 
 
-@both
+@pytest.mark.parametrize("fmi", few([2, 3], [3]))
 def test_a_system_takes_its_program_by_uri_and_from_its_resources(fmi: int, tmp_path: Path) -> None:
     """The same bits as a run here; and as with a program by path, set in the importer."""
     program = tmp_path / "eïn.ngc"

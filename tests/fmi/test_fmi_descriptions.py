@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 import fmpy
 import pytest
 from conftest import ROOT
+from few_cases import few
 from fmi_tools import unpacked
 from fmpy.validation import validate_fmu
 from fmu_manipulation_toolbox.cli.fmutool import fmutool
@@ -17,6 +18,7 @@ from motionfmu.scenarios.fmus import fmu_names, fmu_path
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
 both = pytest.mark.parametrize("fmi", (2, 3))
+IN_FMI_2 = few(((name, 2) for name in fmu_names()), 4)
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 MODEL_EXCHANGE = {  # functions that an FMI 2.0 library without model exchange need not have
     f"fmi2{name}"
@@ -28,8 +30,8 @@ MODEL_EXCHANGE = {  # functions that an FMI 2.0 library without model exchange n
 }
 
 
-@both
-@every_fmu
+# In FMI 2 each element of an array has a name, which FMPy parses: ten times as long.
+@pytest.mark.parametrize(("name", "fmi"), [*((name, 3) for name in fmu_names()), *IN_FMI_2])
 def test_fmpy_finds_nothing_wrong(name: str, fmi: int) -> None:
     assert validate_fmu(str(fmu_path(name, fmi))) == []
 

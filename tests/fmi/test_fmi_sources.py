@@ -114,6 +114,7 @@ def test_the_build_is_described_the_same_for_all_machines(name: str, tmp_path: P
         assert all((folder / f.attrib["name"]).is_file() for f in configuration.iter("SourceFile"))
 
 
+@pytest.mark.more
 def test_two_fmus_are_linked_into_one_program(tmp_path: Path) -> None:
     """mcc and epcio have cores in common; both run as their libraries do."""
     objects, told, wanted = [], [], []

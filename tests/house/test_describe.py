@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from conftest import FMUS, ROOT
+from few_cases import few
 from fmpy import read_model_description
 
 from motionfmu.base import units
@@ -129,7 +130,7 @@ def test_only_equal_units_share_a_wire() -> None:
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", few(NAMES, 2))
 def test_the_fmu_says_what_the_description_says(name: str, fmi: int) -> None:
     d = fmu_toml.load(ROOT / "fmus" / name / "fmu.toml")
     md = read_model_description(str(FMUS / f"{name}.fmi{fmi}.fmu"), validate=False)

@@ -67,7 +67,7 @@ def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
     # Not those that compile it again from the sources within, nor what reads the build's library,
     # or its folder in this tree.
     others = "sources or fmutool or carries_little or page_tells"
-    chosen = ["-k", f"{NAME} and not ({others})"]
+    chosen = ["-m", "not long", "-k", f"{NAME} and not ({others})"]
     line = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *chosen]
     kinds = ("errors", "extremes", "runs", "shown", "states", "descriptions")
     files = [ROOT / f"tests/fmi/test_fmi_{kind}.py" for kind in kinds]

@@ -58,6 +58,7 @@ def rigid():
     return plant, identify_arm(plant.scenario, record, ArmOptions(COLUMNS))
 
 
+@pytest.mark.more
 def test_rigid_arm_is_found(rigid):
     _, found = rigid
     wrong = [
@@ -74,6 +75,7 @@ def test_rigid_arm_is_found(rigid):
     assert not found.gears
 
 
+@pytest.mark.more
 def test_friction_that_differs_by_direction_is_chosen(rigid):
     _, found = rigid
     assert ("direction", 0) in found.chosen.laws

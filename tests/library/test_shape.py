@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from few_cases import few
 from shape_paths import Array, Segment, both_ways, jumps, least_time, lines, shaped
 
 TURN = 2.0 * math.pi
@@ -70,7 +71,7 @@ SHAPES = [
 ]
 
 
-@pytest.mark.parametrize(("shape", "tolerance", "least", "most"), SHAPES)
+@pytest.mark.parametrize(("shape", "tolerance", "least", "most"), few(SHAPES, 3))
 def test_a_curve_within_the_tolerance(shape, tolerance, least, most) -> None:  # type: ignore[no-untyped-def]
     points = shape()
     segments, marks = shaped(lines(points, tolerance))

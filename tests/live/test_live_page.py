@@ -11,6 +11,7 @@ import pytest
 from browser import PHONE
 from browser import tab as browser_tab
 from conftest import ROOT
+from few_cases import few
 from live_pages import DESK, MOVED, position, ready, rests, serving, until
 from page_rules import RULES
 from page_words import WORDS
@@ -93,7 +94,7 @@ GAMEPAD = """() => {
 }"""
 
 
-@pytest.mark.parametrize("gone", ["pulled out", "no longer listed", "shoulder", "middle"])
+@pytest.mark.parametrize("gone", few(["pulled out", "no longer listed", "shoulder", "middle"], 1))
 def test_a_gamepad_jogs_while_its_shoulder_is_down_and_its_loss_stops(tab: Any, gone: str) -> None:
     tab.evaluate(GAMEPAD)
     before = position(tab, 2)
@@ -115,6 +116,7 @@ def test_a_gamepad_jogs_while_its_shoulder_is_down_and_its_loss_stops(tab: Any, 
     assert tab.locator(".jog-pad .down").count() == 0
 
 
+@pytest.mark.more
 def test_a_refused_gamepad_asks_once_and_not_at_every_picture(
     browser: Any, tab: Any, address: str
 ) -> None:
@@ -144,6 +146,7 @@ TOOLS = "T1 P1 D6.0 Z50.2\nT3 P2 D10.0 Z-12.5 X1.5\n" + "".join(
 )
 
 
+@pytest.mark.more
 def test_tools_are_shown_changed_and_turned_over(browser: Any, tmp_path: Path) -> None:
     from playwright.sync_api import expect
 
@@ -203,7 +206,7 @@ SHOWN_TOOL = """([name, wanted]) => {
 }"""
 
 
-@pytest.mark.parametrize("kind", ["csv", "npz"])
+@pytest.mark.parametrize("kind", few(["csv", "npz"], 1))
 def test_a_record_has_every_step_until_its_end(tab: Any, tmp_path: Path, kind: str) -> None:
     from playwright.sync_api import expect
 
@@ -361,7 +364,7 @@ def test_a_trigger_catches_the_edge_and_its_record_is_a_file(tab: Any) -> None:
     expect(tab.locator("#scope-channels li")).to_have_count(4)
 
 
-@pytest.mark.parametrize("show", ["field", "fft", "xy"])
+@pytest.mark.parametrize("show", few(["field", "fft", "xy"], 1))
 def test_every_picture_of_the_oscilloscope_has_ink_of_its_channels(tab: Any, show: str) -> None:
     tab.locator("#tab-scope").click()
     tab.locator("#scope-show").select_option(show)
@@ -418,6 +421,7 @@ def test_what_was_done_is_saved_and_its_run_has_the_same_end(browser: Any, tmp_p
     assert any("machine.table_position[1]" in n for n in names) and len(result.checks) >= 3
 
 
+@pytest.mark.more
 def test_one_goes_back_to_a_state_and_on_from_there(browser: Any) -> None:
     from playwright.sync_api import expect
 
@@ -438,6 +442,7 @@ def test_one_goes_back_to_a_state_and_on_from_there(browser: Any) -> None:
         until(tab, '() => document.querySelector("#time").textContent > "00:02"')
 
 
+@pytest.mark.more
 def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
     browser: Any, tab: Any, address: str
 ) -> None:
@@ -465,8 +470,8 @@ def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
         rests(other, 2)
 
 
-@pytest.mark.parametrize("theme", ["light", "dark"])
-@pytest.mark.parametrize("size", [DESK, PHONE], ids=["desk", "phone"])
+@pytest.mark.parametrize("theme", few(["light", "dark"], 1))
+@pytest.mark.parametrize("size", few([DESK, PHONE], 1), ids=["desk", "phone"])
 def test_everyone_can_read_and_reach_every_view(
     browser: Any, address: str, size: dict[str, int], theme: Any
 ) -> None:
@@ -488,7 +493,7 @@ def test_everyone_can_read_and_reach_every_view(
 ROWS = {"robot6": 6, "hydraulic_slide": 1, "engraver": 2}
 
 
-@pytest.mark.parametrize("name", ["robot6", "hydraulic_slide", "engraver"])
+@pytest.mark.parametrize("name", few(["robot6", "hydraulic_slide", "engraver"], 1))
 def test_other_machines_have_their_page(browser: Any, name: str) -> None:
     from playwright.sync_api import expect
 

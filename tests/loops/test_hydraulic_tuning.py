@@ -80,6 +80,7 @@ def test_the_rule_rings_up_where_the_loop_is_fast(study: ModuleType) -> None:
     assert under_way(article, 129.0) < 5.0
 
 
+@pytest.mark.more
 def test_the_tuner_keeps_its_limits(tuned: Tuned) -> None:
     """Stopped by the margins, in whole registers, better on the FMUs too; the file is its own."""
     (least,) = tuned.margins(tuned.z)
@@ -94,6 +95,7 @@ def test_the_tuner_keeps_its_limits(tuned: Tuned) -> None:
     assert isinstance(tuned.settings["controller.band"], int)
 
 
+@pytest.mark.more
 def test_the_band_is_what_the_deadband_leaves(tuned: Tuned) -> None:
     """V0/Kp, 0.3 V at 25 mV a PWM count; less by half a PWM count and the rounded corner."""
     trial = tuned.trial
@@ -108,6 +110,7 @@ def test_the_band_is_what_the_deadband_leaves(tuned: Tuned) -> None:
     assert any("controller.band" in text for text in tuned.stopped_by)
 
 
+@pytest.mark.more
 def test_what_a_scenario_records_changes_no_trial(tuned: Tuned) -> None:
     sparse = motionfmu.load(SCENARIO).changed(record={"every": 3})
     asked, path = tuned.study.problem, tuned.study.path
@@ -137,6 +140,7 @@ def test_a_command_that_is_shown_late_is_put_in_earlier(late: int) -> None:
     assert move.error({1: 2e-6 * put_in}).distance.max() > (1e-4 if late else -1.0)
 
 
+@pytest.mark.more
 def test_a_band_at_the_bound_of_its_search_is_an_error(tuned: Tuned) -> None:
     move = tuned.study.path
     assert isinstance(move, MoveCost)
@@ -148,6 +152,7 @@ def test_a_band_at_the_bound_of_its_search_is_an_error(tuned: Tuned) -> None:
         tried(scenario, move, ("controller.band", (100.0, 200.0), 0.1), tuned.settings)
 
 
+@pytest.mark.more
 def test_the_worst_gain_of_the_literal_integral_counts() -> None:
     options = {**read(SCENARIO / "tune.toml"), "check": 0, "starts": 1}
     literal = {"controller.law": 1, "controller.p_gain": 1811, "controller.i_gain": 250}

@@ -177,6 +177,7 @@ def test_as_declared_it_is_the_arm_by_its_lengths() -> None:
             assert found[name] == pytest.approx(value, abs=1e-10 * size), name
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("axes", ["xyzzxy", "yxxzyx"])
 def test_links_that_turn_about_any_axis_of_the_frame(axes: str, tmp_path: Path) -> None:
     """The class of the arm by its lengths, about other axes: as the arm by its axes."""

@@ -43,7 +43,7 @@ def fmu(name: Name) -> None:
     print(f"{folder}: {', '.join(sorted(p.name for p in folder.iterdir()))}")
     print(f"test: {test}")
     print("contract: src/fmi/fmi_model.h; keys of fmu.toml: CONTRIBUTING.md")
-    print(f"next: make build && .venv/bin/python -m pytest tests/fmi -k {name}")
+    print(f"next: make build && .venv/bin/python -m pytest tests/fmi -m 'not long' -k {name}")
 
 
 @new.command()
