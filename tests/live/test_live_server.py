@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from appearing import appears
+from appearing import PATIENCE, appears
 from websockets.asyncio.client import connect as open_later
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
@@ -25,8 +25,6 @@ from websockets.sync.client import connect as open_socket
 import motionfmu
 from motionfmu.base.errors import InputError
 from motionfmu.live import LiveClient
-
-PATIENCE = 300.0  # [s] that nothing here takes, however slow the machine is
 
 
 class Served:

@@ -128,18 +128,6 @@ static enum fault make(struct interpreter *in, const struct program *p, double *
     }
 }
 
-void nurbs_skip(struct interpreter *in)
-{
-    struct nurbs *n = &in->nurbs;
-
-    if (n->running) {
-        n->span = n->upto;
-        n->from = 0.0;
-        n->running = false;
-        n->count = n->ended ? 0 : n->count;
-    }
-}
-
 static void next_span(struct nurbs *n)
 {
     n->from = 0.0;
@@ -147,6 +135,16 @@ static void next_span(struct nurbs *n)
     n->running = n->span < n->upto;
     if (!n->running && n->ended) {
         n->count = 0;
+    }
+}
+
+void nurbs_skip(struct interpreter *in)
+{
+    struct nurbs *n = &in->nurbs;
+
+    if (n->running) {
+        n->span = n->upto - 1;
+        next_span(n);
     }
 }
 

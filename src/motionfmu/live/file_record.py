@@ -118,12 +118,12 @@ def claimed(file: Path) -> Path:
     if os.path.lexists(file):
         raise InputError(f"{file} is there already")
     part = file.absolute().with_name(f".{file.name}.part{os.getpid()}")
-    if part.exists():
-        raise InputError(f"{file} is being written by another record")
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         part.open("xb").close()
     except OSError as error:
+        if part.exists():
+            raise InputError(f"{file} is being written by another record") from None
         raise InputError(f"cannot write {file}: {error.strerror or error}") from None
     return part
 

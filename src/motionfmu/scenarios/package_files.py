@@ -72,13 +72,14 @@ def unknown(given: str, known: Callable[[], dict[str, Path]]) -> str:
 
 
 def no_scenario(given: str | Path) -> str:
-    """The end of a message about what is no scenario: a hint if it is a name, "" of a path."""
+    """The hint behind the message that a name is that of no scenario; for a path it is empty."""
     if not is_name(given):
         return ""
     name = str(given)
     if name in machines():
         return f": it is a machine, on which a program runs: run PROGRAM --machine {name}"
-    listed = "" if Path(given).suffix else " (motionfmu list shows them)"  # of a file's name none
+    # A name with a suffix is that of a file, which no list shows.
+    listed = "" if Path(given).suffix else " (motionfmu list shows them)"
     return suggestion(name, [*scenarios(), *machines()]) or listed
 
 
