@@ -127,6 +127,20 @@ class Session:
         box = self.page.locator(".value", has_text=label).first
         return box, box.locator("input").nth(element)
 
+    def undo(self, box: Any) -> None:
+        """Take a fault back, and wait until the machine has it."""
+        from playwright.sync_api import expect
+
+        box.get_by_role("button", name="Undo").click()
+        expect(box).not_to_have_class(re.compile("changed"))
+
+    def clear_drives(self) -> None:
+        """Clear the drives' alarms; a reset before they are gone would be in vain."""
+        from playwright.sync_api import expect
+
+        self.click("Clear alarms")
+        expect(self.page.locator("#alarm")).not_to_contain_text("Servo drives")
+
     def arm(self, channel: str, kind: str, level: str = "") -> None:
         """Arm the oscilloscope's trigger."""
         from playwright.sync_api import expect
@@ -192,8 +206,7 @@ class Session:
         plan = motionfmu.load(self.folder / "by_hand")
         with np.load(self.folder / "live.npz") as file:
             live = dict(file)
-        signals = list(dict.fromkeys(re.sub(r"\[\d+\]$", "", c) for c in self.channels))
-        result = plan.changed(record={"every": 1, "signals": signals}).run()
+        result = plan.changed(record={"every": 1, "signals": signals_of(self.channels)}).run()
         assert any(check in v.name for v in result.checks)
         assert result.ok, [v for v in result.checks if not v.ok]
         steps = round(plan.document.tables["stop"] / plan.document.tables["step"]) - 1
@@ -222,6 +235,11 @@ class Session:
             return json.load(answer)["value"]
 
 
+def signals_of(channels: Sequence[str]) -> list[str]:
+    """Signals that the channels are of."""
+    return list(dict.fromkeys(re.sub(r"\[\d+\]$", "", c) for c in channels))
+
+
 @contextmanager
 def session(
     browser: Any, folder: Path, machine: str, channels: Sequence[str], **more: Any
@@ -246,5 +264,5 @@ def session(
             page.screenshot(path=folder / "failed.png")
             for part in ("#state", "#alarm", "#time", "#hand"):
                 print("the page shows", part, page.locator(part).inner_text())
-            print("the machine has", found.ask("values", names=list(channels)))
+            print("the machine has", found.ask("values", names=signals_of(channels)))
             raise

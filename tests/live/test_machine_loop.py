@@ -168,8 +168,9 @@ def test_stop_is_for_everything_that_has_one(bench: Bench) -> None:
     assert bench.machine["mcc.jog[1]"] == 0
 
 
-def slide() -> Bench:
-    return Bench(LiveMachine(motionfmu.run.scenario({"machine": "hydraulic_slide", "stop": 1.0})))
+def slide(**more: Any) -> Bench:
+    plan = motionfmu.run.scenario({"machine": "hydraulic_slide", "stop": 1.0, **more})
+    return Bench(LiveMachine(plan))
 
 
 def test_a_press_lasts_as_long_as_its_panel_says_and_is_not_taken_for_bouncing() -> None:
@@ -182,6 +183,20 @@ def test_a_press_lasts_as_long_as_its_panel_says_and_is_not_taken_for_bouncing()
         bench.turns(0.003)
         assert not machine["controller.pb1"]
         assert machine["controller.state"] == 2  # it searches its home switch
+
+
+@pytest.mark.parametrize(("clears", "code"), [(0, 7), (1, 0)])
+def test_the_listing_may_lose_the_edge_of_the_home_switch(clears: int, code: int) -> None:
+    """As written it clears every flag; the repaired one finds the switch from the same start."""
+    start = {"axis.start_position": -0.0299909, "controller.flag_clear": clears}
+    with slide(set=start).machine as machine:
+        machine.step(1000)
+        machine.set("controller.pb1", True)
+        machine.step(1000)
+        machine.set("controller.pb1", False)
+        machine.step(50_000)
+        assert machine["controller.code"] == code
+        assert machine["controller.homed"] == (code == 0)
 
 
 def test_a_stop_by_a_key_of_several_uses_is_pressed_in_motion_alone() -> None:

@@ -5,7 +5,6 @@ and the way out of it by the page's own words, an encoder unplugged with the osc
 on it, the journal saved with a check.
 """
 
-import re
 from pathlib import Path
 from typing import Any
 
@@ -86,10 +85,9 @@ def test_a_session_at_the_mill(browser: Any, tmp_path: Path) -> None:
         assert (alarm[:500] == 0).all() and (alarm[500:] == 4).all()  # a quarter is before it
         assert np.ptp(record["machine.table_position[1]"]) > 1e-4  # it ran out
         at.fault("unplugged", "Encoder of the drive unplugged")
-        box.get_by_role("button", name="Undo").click()
-        expect(box).not_to_have_class(re.compile("changed"))
+        at.undo(box)
         at.view("operate")
-        at.click("Clear alarms")
+        at.clear_drives()
         at.click("Reset")
         at.no_alarm()
         rests(page, 1)
@@ -170,7 +168,7 @@ def test_a_session_at_the_robot(browser: Any, tmp_path: Path) -> None:
         field.fill("1")
         field.press("Enter")
         at.alarm("The card has stopped", "Once it is gone, reset.")
-        box.get_by_role("button", name="Undo").click()
+        at.undo(box)
         at.view("operate")
         at.click("Reset")
         at.no_alarm()
@@ -187,10 +185,9 @@ def test_a_session_at_the_robot(browser: Any, tmp_path: Path) -> None:
         assert alarm[len(alarm) // 4 - 1] == 0 and alarm[len(alarm) // 4] == 4
         assert record["card.stopped"][-1] == 1
         at.fault("unplugged", "Encoder of the drive unplugged")
-        box.get_by_role("button", name="Undo").click()
-        expect(box).not_to_have_class(re.compile("changed"))
+        at.undo(box)
         at.view("operate")
-        at.click("Clear alarms")
+        at.clear_drives()
         at.alarm("The card has stopped")
         at.click("Reset")
         at.no_alarm()
@@ -219,14 +216,15 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
     So nothing is jogged, typed or overridden, and no switch ends the stroke: a target beyond it is
     refused, a button that is pressed in motion stops it, and a push off the way is an alarm.
     """
-    from playwright.sync_api import expect
 
     channels = [
         *("controller.state", "controller.code", "controller.counter", "controller.track"),
         *("controller.homed", "controller.voltage", "controller.error", "controller.edges"),
         *("axis.table_position", "axis.table_speed", "axis.pressure_a", "axis.pressure_b"),
     ]
-    with session(browser, tmp_path, "hydraulic_slide", channels) as at:
+    # As the listing is written, one search in some seventeen loses the edge of the home switch.
+    repaired = {"set": {"controller.flag_clear": 1}}
+    with session(browser, tmp_path, "hydraulic_slide", channels, **repaired) as at:
         page = at.page
         button, go = "Home, stop, clear", "Go to target"
         target = page.get_by_label("Target [counts]", exact=True)
@@ -292,8 +290,7 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
         assert np.ptp(record["controller.counter"][before]) == 0  # it stood, the slide did not
         assert np.ptp(record["axis.table_position"][before]) > 1e-3
         at.fault("unplugged", "Scale unplugged")
-        box.get_by_role("button", name="Undo").click()
-        expect(box).not_to_have_class(re.compile("changed"))
+        at.undo(box)
         at.view("operate")
         at.pace("1 \N{MULTIPLICATION SIGN}")
         at.click(button)
@@ -312,7 +309,7 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
         push.fill("-20000")
         push.press("Enter")
         at.alarm("Following error", "look for a load, the pump or an end stop")
-        box.get_by_role("button", name="Undo").click()
+        at.undo(box)
         at.view("operate")
         at.click(button)
         at.no_alarm()
@@ -390,8 +387,7 @@ def test_a_session_at_the_card(browser: Any, tmp_path: Path) -> None:
         assert error[len(error) // 4 - 1] == 0 and error[len(error) // 4] == 10
         assert np.ptp(record["card.position[1]"][-100:]) == 0
         at.fault("alarm", "Alarms of the drives")
-        box.get_by_role("button", name="Undo").click()
-        expect(box).not_to_have_class(re.compile("changed"))
+        at.undo(box)
         at.view("operate")
         at.click("Reset")
         at.no_alarm()
