@@ -10,6 +10,8 @@ from typer.testing import CliRunner
 import motionfmu
 from motionfmu.cli import app
 from motionfmu.identify import identify_file
+from motionfmu.identify.ground import IdentifyOptions
+from motionfmu.identify.recorded_loop import ColumnUse
 
 PERIOD, STOP = 1e-3, 1.5  # [s]
 
@@ -92,6 +94,14 @@ def test_what_is_wrong_is_told_and_nothing_is_written(
     assert isinstance(done.exception, motionfmu.InputError), done.exception
     assert told in str(done.exception)
     assert not (tmp_path / "out").exists()
+
+
+def test_a_file_of_columns_alone_asks_for_the_defaults() -> None:
+    asked = identify_file.options({"columns": {"volt": "drives.dac"}}, "identify.toml")
+    assert asked == IdentifyOptions({"volt": ColumnUse("drives.dac")}, fix=[])
+    more = {"axis": 2, "free": ["a"], "fix": ["b"], "laws": [], "keep": 0.2, "controller": False}
+    asked = identify_file.options({"columns": {"volt": "drives.dac"}, **more}, "identify.toml")
+    assert {k: getattr(asked, k) for k in more} == more
 
 
 def test_a_column_of_the_command_line_takes_the_place_of_the_files_of_that_signal() -> None:

@@ -11,28 +11,41 @@ static const double LENGTH = 100.0, ACC = 1000.0, JERK = 20000.0; /* [mm, mm/s^2
 
 static struct speed_profile profile;
 
-/* Under way at 50 mm/s, with the same limits for all axes. */
-static inline void begin(void)
+/* At rest, with the same limits for all axes. */
+static inline void at_rest(void)
 {
-    const double start[AXES] = { 0.0 }, end[AXES] = { LENGTH };
     struct speed_limits l = { .speed = { 0.0 } };
-    struct segment p;
-    struct path path;
 
     for (int k = 0; k < AXES; k++) {
         l.acc[k] = ACC;
         l.jerk[k] = JERK;
     }
+    memset(&profile, 0, sizeof profile);
+    speed_profile_start(&profile, &l);
+}
+
+/* A piece of the line follows. [mm, mm, mm/s] */
+static inline void piece(double from, double to, double feed)
+{
+    const double start[AXES] = { from }, end[AXES] = { to };
+    struct segment p;
+    struct path path;
+
     memset(&p, 0, sizeof p);
     p.kind = SEGMENT_LINE;
-    p.feed = p.cap = 50.0;
+    p.feed = p.cap = feed;
     p.ramp = (struct ramp_limits){ ACC, ACC, JERK, JERK };
     path_line(&path, start, end);
     p.length = path.length;
     path_at(&path, 0.0, p.start, p.slope);
-    memset(&profile, 0, sizeof profile);
-    speed_profile_start(&profile, &l);
     CHECK(speed_profile_join(&profile, &p));
+}
+
+/* Under way at 50 mm/s. */
+static inline void begin(void)
+{
+    at_rest();
+    piece(0.0, LENGTH, 50.0);
     speed_profile_advance(&profile, 1.0, 0.2);
     CHECK(profile.at.here > 5.0 && profile.at.here < 10.0);
 }
