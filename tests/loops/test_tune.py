@@ -386,6 +386,13 @@ def test_the_ise_of_a_lag_is_the_published_formula() -> None:
     assert 0.0 < more < 0.75e-4
 
 
+def test_a_machine_without_a_program_is_told_so(tmp_path: Path) -> None:
+    done = command("tune", "mill3", "--out", tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr.endswith("a program's path: tune PROGRAM --machine mill3\n")
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_command_refuses_a_gain_that_ran_away(tmp_path: Path) -> None:
     file, out = tmp_path / "away.toml", tmp_path / "out"
     file.write_text(

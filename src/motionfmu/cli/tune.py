@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from motionfmu.base.errors import InputError
 from motionfmu.base.extras import needed
 from motionfmu.cli.common import (
     Folder,
@@ -73,6 +74,10 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     asked |= {"cost": cost, "identified": identified}
     values |= {k: v for k, v in asked.items() if v}
     wanted = problem(values)
+    if not program and not is_arm(scenario) and scenario.document.tables.get("contour"):
+        raise InputError(
+            f"{name}: gains are found for a program's path: tune PROGRAM --machine {path}"
+        )
     target = result_folder.usable(folder or results(name, "tune"))
     if is_arm(scenario):
         _tune_arm(scenario, wanted, settings(set_), program, target)
