@@ -1,6 +1,7 @@
 """The report says what was run: overrides, times, ways, feeds, gains; so does result.json."""
 
 import json
+import math
 import re
 from pathlib import Path
 
@@ -11,7 +12,8 @@ from page_curves import curve, page_data
 
 import motionfmu
 from motionfmu.report import result_folder
-from motionfmu.report.signal_words import sentence, titled
+from motionfmu.report.signal_words import of_check, sentence, titled
+from motionfmu.run.checks import Verdict
 
 
 @pytest.fixture(scope="module")
@@ -110,3 +112,22 @@ def test_a_list_of_values_is_no_title_but_stands_beside_its_check() -> None:
         titled("card.dac", "DAC voltage of the axes, held") == "DAC voltage of the axes (card.dac)"
     )
     assert sentence(doc) == "0 none, 1 following error, 2 overspeed"
+
+
+@pytest.mark.parametrize(
+    ("name", "bounds", "value", "told"),
+    [
+        ("mcc.error", "|.| <= 0", 62209.0, "Run-time error: axis 1 at a limit"),
+        ("drives.alarm[2]", "final = 0", 4.0, "Alarm of the drive: encoder unplugged"),
+        ("mcc.status", "max in 0 .. 1", 1.0, "What the library does: stopped (no stock)"),
+        ("mcc.error", "|.| <= 0", 7.0, "Run-time error"),
+        ("mcc.error", "<= 0", math.nan, "Run-time error"),
+        ("mcc.error", "changes = 0", 0.0, "Run-time error"),
+        ("mcc.status", "order 2, 0, 1 to 3 s", 2.0, "What the library does: hold, running"),
+    ],
+)
+def test_a_number_that_is_checked_has_its_meaning_beside_it(
+    name: str, bounds: str, value: float, told: str
+) -> None:
+    plan = motionfmu.machine("mill3").plan()
+    assert of_check(plan.resolver, Verdict(name, bounds, value, True)) == (told, "")

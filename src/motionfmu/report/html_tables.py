@@ -98,7 +98,7 @@ def warning_list(warnings: Sequence[str]) -> str:
     return f"<ul>{''.join(f'<li>{escape(told)}</li>' for told in warnings)}</ul>"
 
 
-def check_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str]]) -> str:
+def check_table(checks: Sequence[Verdict], words: Callable[[Verdict], tuple[str, str]]) -> str:
     """Verdicts of the scenario, failures first; `words` say what is checked, and its unit.
 
     The least and the largest that one number may be are one row. What is not judged has none.
@@ -108,7 +108,7 @@ def check_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str
     for same in of_one_number(sorted(given, key=lambda c: bool(c.ok))):
         check = same[0]
         mark, kind = ("✓ pass", "pass") if check.ok else ("✗ fail", "fail")
-        said, unit = words(check.name)
+        said, unit = words(check)
         told = [judged(c.value, c.bounds, unit) for c in same]
         text, bounds = told[0][0], together([b for _, b in told])
         text = "none" if check.reason else text
@@ -125,12 +125,12 @@ def check_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str
     return table(("Verdict", "Check", "Value", "Bounds"), rows, numeric=4)
 
 
-def expected_table(checks: Sequence[Verdict], words: Callable[[str], tuple[str, str]]) -> str:
+def expected_table(checks: Sequence[Verdict], words: Callable[[Verdict], tuple[str, str]]) -> str:
     """What the scenario as written is expected to give and this run gave, with the difference."""
     rows = []
     for same in of_one_number([c for c in checks if c.ok is None]):
         check, apart = same[0], beyond(same)
-        said, unit = words(check.name)
+        said, unit = words(check)
         told = [judged(c.value, c.bounds, unit) for c in same]
         below = (t for t in (said, check.reason) if t)
         sub = "".join(f'<div class="sub">{escape(t)}</div>' for t in below)

@@ -14,7 +14,7 @@ from motionfmu.report.report_input import ReportInput
 from motionfmu.report.run_summary import RunSummary, add_speed, add_summary
 from motionfmu.report.sample_files import SampleFiles
 from motionfmu.report.signal_chart import add_charts
-from motionfmu.report.signal_words import words_of
+from motionfmu.report.signal_words import of_check
 from motionfmu.report.tool_section import add_tools
 from motionfmu.report.view.deviations import from_cycles
 from motionfmu.report.view.scene import DeviationLine, no_arm, scene_of
@@ -54,7 +54,7 @@ def add_record_over_run(page: Page, result: ReportInput) -> None:
 
 def add_verdict(page: Page, result: ReportInput) -> None:
     """Add the verdict, and what is expected of the scenario as written where that is not judged."""
-    words = partial(words_of, result.resolver)
+    words = partial(of_check, result.resolver)
     count = tally(v.ok for v in result.checks)
     if count.judged:
         page.section("Verdict", "", check_table(result.checks, words))

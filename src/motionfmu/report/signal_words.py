@@ -1,14 +1,19 @@
 """What a variable or a number of an analysis is, in words beside its name."""
 
 import re
+from collections.abc import Sequence
 
 from motionfmu.base.units import spelled
 from motionfmu.report.contour_words import in_words
+from motionfmu.run.checks import Verdict, parts
+from motionfmu.scenarios.fault_advice import meanings
 from motionfmu.scenarios.record_signals import overlays
 from motionfmu.scenarios.system import Resolver
 
 # Where the first clause of a description ends, and its first sentence.
 _END, _SENTENCE = re.compile(r"[;:(\[]|, "), re.compile(r"[;(\[]|\. ")
+# How bounds begin that hold for the value, not for how often or how fast it changes.
+_OF_THE_VALUE = ("final", "|.|", ">=", "<=", "min", "max")
 
 
 def head(doc: str) -> str:
@@ -27,8 +32,17 @@ def titled(name: str, doc: str) -> str:
     return f"{words} ({name})" if (words := head(doc)) else name
 
 
-def words_of(resolver: Resolver, name: str) -> tuple[str, str]:
-    """Words and unit of what is checked; both are empty where no description has them."""
+def of_check(resolver: Resolver, check: Verdict) -> tuple[str, str]:
+    """Words and unit of what is checked; of numbers that have a meaning, what they mean."""
+    words, wanted, _ = parts(check.bounds)
+    found = [check.value] if words.startswith(_OF_THE_VALUE) else []
+    if words.startswith("order"):
+        found = [float(n) for n in wanted.split(",")]
+    return words_of(resolver, check.name, found)
+
+
+def words_of(resolver: Resolver, name: str, values: Sequence[float] = ()) -> tuple[str, str]:
+    """Words and unit of a quantity; both are empty where no description has them."""
     whole = name.partition("[")[0]
     table, _, own = whole.partition(".")
     if table == "contour":
@@ -39,6 +53,10 @@ def words_of(resolver: Resolver, name: str) -> tuple[str, str]:
     port = resolver.ports.get(table, {}).get(own)
     if port is None:
         return "", ""
+    if port.declared and (known := meanings(port)):
+        what = sentence(port.doc.replace(port.declared[1], "").rstrip(": "))
+        words = ", ".join(known[int(v)] for v in values if v in known)
+        return ": ".join(filter(None, (what, words))), ""
     return sentence(port.doc), spelled(port.unit)
 
 
