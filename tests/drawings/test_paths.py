@@ -204,6 +204,7 @@ def edge(axis: np.ndarray, d: float, heading: np.ndarray, step: float = 2e-4) ->
     return np.array(places)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("d", few([0.25, 1.0], 1))
 def test_the_edge_of_a_drag_knife_follows_the_drawing(d: float) -> None:
     path = mixed()

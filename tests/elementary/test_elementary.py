@@ -9,6 +9,7 @@ from pathlib import Path
 import nearest
 import pytest
 import tables
+from few_cases import few
 from mpmath import mp
 
 mp.prec = 200
@@ -34,14 +35,14 @@ def telling(
     return nearest.telling(tmp_path_factory.mktemp("telling"), *request.param.split())
 
 
-@pytest.mark.parametrize("name", nearest.DRAWN)
+@pytest.mark.parametrize("name", few(nearest.DRAWN, 6))
 def test_results_are_the_nearest_doubles(quick: ctypes.CDLL, name: str) -> None:
     nearest.rnd.seed(name)
     all_at = itertools.chain(nearest.drawn(name, 4000), nearest.hard(name, 1000))
     assert nearest.worst(nearest.function(quick, name), name, all_at)[:2] < (NEAREST, ())
 
 
-@pytest.mark.parametrize("name", sorted(nearest.DRAWN.keys() - {"hypot", "cbrt"}))
+@pytest.mark.parametrize("name", few(sorted(nearest.DRAWN.keys() - {"hypot", "cbrt"}), 6))
 def test_what_is_rounded_is_within_its_bound(
     telling: ctypes.CDLL, name: str, request: pytest.FixtureRequest
 ) -> None:

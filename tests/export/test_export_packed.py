@@ -183,6 +183,7 @@ def test_what_cannot_be_packed_is_told(line: tuple[str, ...], tmp_path: Path) ->
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("fmi", few([2, 3], [3]))
 def test_a_system_takes_its_program_by_uri_and_from_its_resources(fmi: int, tmp_path: Path) -> None:
     """The same bits as a run here; and as with a program by path, set in the importer."""

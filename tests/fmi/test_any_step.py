@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from few_cases import few
 from fmi_tools import ERROR, OK, Instance, random_inputs, start_values, unpacked
 from fmpy import simulate_fmu
 from numpy.typing import NDArray
@@ -23,7 +24,6 @@ ROWS = 30
 STOP = 0.15  # [s] the demo's first motion
 THIRD = 1e-3 / 3  # [s]
 both = pytest.mark.parametrize("fmi", (2, 3))
-every_fmu = pytest.mark.parametrize("name", fmu_names())
 
 
 def parts(chance: random.Random, begin: float, end: float) -> Iterator[float]:
@@ -41,7 +41,7 @@ def parts(chance: random.Random, begin: float, end: float) -> Iterator[float]:
 
 
 @both
-@every_fmu
+@pytest.mark.parametrize("name", few(fmu_names(), 6))
 def test_at_common_points_any_steps_give_the_same_bits(name: str, fmi: int, tmp_path: Path) -> None:
     """Inputs change at common points; in between an FMU may be saved and restored."""
     size = float(unpacked(name, 3)[0].defaultExperiment.stepSize)

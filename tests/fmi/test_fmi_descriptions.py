@@ -18,7 +18,7 @@ from motionfmu.scenarios.fmus import fmu_names, fmu_path
 
 every_fmu = pytest.mark.parametrize("name", fmu_names())
 both = pytest.mark.parametrize("fmi", (2, 3))
-IN_FMI_2 = few(((name, 2) for name in fmu_names()), 4)
+IN_FMI_2 = few([(name, 2) for name in fmu_names()[::-1]], 1)
 HEADERS = Path(fmpy.__file__).parent / "c-code"
 MODEL_EXCHANGE = {  # functions that an FMI 2.0 library without model exchange need not have
     f"fmi2{name}"
@@ -31,13 +31,13 @@ MODEL_EXCHANGE = {  # functions that an FMI 2.0 library without model exchange n
 
 
 # FMPy parses each name; in FMI 2 each element of an array has one, so it takes ten times as long.
-@pytest.mark.parametrize(("name", "fmi"), [*((name, 3) for name in fmu_names()), *IN_FMI_2])
+@pytest.mark.parametrize(("name", "fmi"), few([(name, 3) for name in fmu_names()], 4) + IN_FMI_2)
 def test_fmpy_finds_nothing_wrong(name: str, fmi: int) -> None:
     assert validate_fmu(str(fmu_path(name, fmi))) == []
 
 
 @both
-@every_fmu
+@pytest.mark.parametrize("name", few(fmu_names()[::-1], 3))
 def test_fmutool_finds_nothing_wrong(
     name: str, fmi: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from few_cases import few
 from fmi_tools import ERROR, OK, Instance, Variable, start_values, unpacked
 
 from motionfmu.scenarios.fmus import fmu_names
@@ -97,7 +98,7 @@ OUT_OF_ORDER: list[tuple[tuple[str, ...], Act, str]] = [
 
 
 @both
-@every_fmu
+@pytest.mark.parametrize("name", few(fmu_names(), 6))
 def test_a_call_out_of_order_is_one_clear_error(name: str, fmi: int, tmp_path: Path) -> None:
     for before, act, words in OUT_OF_ORDER:
         instance = Instance(name, fmi)

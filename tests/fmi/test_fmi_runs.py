@@ -117,7 +117,7 @@ def test_two_instances_do_not_know_each_other(name: str, fmi: int, tmp_path: Pat
     assert seen == [run_anew(name, fmi, tmp_path, seed) for seed in (6, 7)]
 
 
-@every_fmu
+@pytest.mark.parametrize("name", few(fmu_names(), 7))
 def test_dividing_the_step_changes_no_bit(name: str, tmp_path: Path) -> None:
     whole = run_anew(name, 3, tmp_path, 8)
     size = size_of(name)
@@ -166,11 +166,8 @@ def quick_build(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, st
     }
 
 
-# A build of one FMU alone has neither of these.
-QUICK = [name for name in ("epcio", "scope") if name in fmu_names()]
-
-
-@pytest.mark.parametrize("name", few(fmu_names(), QUICK))
+@pytest.mark.more
+@every_fmu
 def test_packed_sources_give_the_same_bits(
     name: str, tmp_path: Path, quick_build: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from conftest import ROOT
+from few_cases import few
 from fmi_tools import Instance
 from fmpy.model_description import read_build_description
 
@@ -151,7 +152,7 @@ def hashed(one: Instance, names: list[str]) -> str:
 
 
 @both
-@pytest.mark.parametrize("name", ("msp430_positioner", "velocity_axes"))
+@pytest.mark.parametrize("name", few(("msp430_positioner", "velocity_axes"), 1))
 def test_a_library_made_of_them_shows_the_functions_of_the_standard_alone(
     name: str, fmi: int, tmp_path: Path
 ) -> None:

@@ -41,7 +41,7 @@ def points_at_random(seed: int) -> tuple[Points, Points, int]:
     return np.cumsum(steps, axis=0), weights, order
 
 
-@pytest.mark.parametrize("seed", few(range(30), 10))
+@pytest.mark.parametrize("seed", few(range(30), 4))
 @pytest.mark.parametrize("plane", (17, 18, 19))
 def test_the_path_is_the_curve(seed: int, plane: int) -> None:
     """Each place of the path is on the curve, and each place of the curve on the path."""

@@ -130,7 +130,7 @@ def test_only_equal_units_share_a_wire() -> None:
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
-@pytest.mark.parametrize("name", few(NAMES, 2))
+@pytest.mark.parametrize("name", few(NAMES[::-1], 1))
 def test_the_fmu_says_what_the_description_says(name: str, fmi: int) -> None:
     d = fmu_toml.load(ROOT / "fmus" / name / "fmu.toml")
     md = read_model_description(str(FMUS / f"{name}.fmi{fmi}.fmu"), validate=False)

@@ -33,6 +33,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.more
 def test_a_new_fmu_builds_and_passes_what_every_fmu_must(project: Path) -> None:
     source, gen, built = project / "fmus" / NAME, project / "gen", project / "built"
     built.mkdir()

@@ -93,6 +93,7 @@ def with_noise(ran, share, seed=1):
     return AxisRecord(ran.time, columns, {"torque": "N.m", "position": "mm"}, "trace")
 
 
+@pytest.mark.more
 def test_two_masses_come_back_from_a_closed_loop_with_noise(excited):
     _, folder, ran = excited
     columns = {

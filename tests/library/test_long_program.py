@@ -72,6 +72,7 @@ def memory(lines: int, way: float, stop: float) -> int:
     return int(subprocess.run(command, capture_output=True, check=True, text=True).stdout)
 
 
+@pytest.mark.more
 def test_memory_is_that_of_a_short_program() -> None:
     """A command is 0.7 kB, a line 20 bytes: kept, a hundred thousand would be 70 or 2 MB."""
     short, long = memory(1_000, 1.0, 6.0), memory(100_000, 0.01, 6.0)

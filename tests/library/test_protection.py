@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
+from few_cases import few
 from fmi_tools import ERROR, OK, Instance
 
 import motionfmu
@@ -58,7 +59,7 @@ def test_bad_protection_is_named(values: dict[str, Any], said: str, tmp_path: Pa
     assert status == ERROR and said in message
 
 
-@pytest.mark.parametrize("engine", ["native", "python"])
+@pytest.mark.parametrize("engine", few(["native", "python"], ["native"]))
 def test_three_stops(engine: str) -> None:
     result = motionfmu.load(ROOT / "scenarios" / "protection").run(engine=engine)
     assert result.ok

@@ -53,6 +53,7 @@ def test_a_key_of_the_keyboard_jogs_while_it_is_down(tab: Any) -> None:
     assert position(tab, 1) < there - 0.05
 
 
+@pytest.mark.more
 def test_the_keys_jog_everywhere_only_if_that_is_switched_on(tab: Any) -> None:
     tab.locator("#tab-operate").focus()
     before = position(tab, 2)
@@ -68,6 +69,7 @@ def test_the_keys_jog_everywhere_only_if_that_is_switched_on(tab: Any) -> None:
     rests(tab, 2)
 
 
+@pytest.mark.more
 def test_a_finger_jogs_and_a_page_that_loses_the_focus_lets_go(browser: Any, address: str) -> None:
     with browser_tab(browser, address, PHONE) as tab:
         ready(tab)
@@ -94,6 +96,7 @@ GAMEPAD = """() => {
 }"""
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("gone", few(["pulled out", "no longer listed", "shoulder", "middle"], 1))
 def test_a_gamepad_jogs_while_its_shoulder_is_down_and_its_loss_stops(tab: Any, gone: str) -> None:
     tab.evaluate(GAMEPAD)
@@ -206,6 +209,7 @@ SHOWN_TOOL = """([name, wanted]) => {
 }"""
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("kind", few(["csv", "npz"], 1))
 def test_a_record_has_every_step_until_its_end(tab: Any, tmp_path: Path, kind: str) -> None:
     from playwright.sync_api import expect
@@ -323,6 +327,7 @@ def test_a_fault_is_set_shown_as_changed_and_undone(tab: Any) -> None:
     expect(force).to_have_value("0")
 
 
+@pytest.mark.more
 def test_a_trigger_catches_the_edge_and_its_record_is_a_file(tab: Any) -> None:
     from playwright.sync_api import expect
 
@@ -364,6 +369,7 @@ def test_a_trigger_catches_the_edge_and_its_record_is_a_file(tab: Any) -> None:
     expect(tab.locator("#scope-channels li")).to_have_count(4)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("show", few(["field", "fft", "xy"], 1))
 def test_every_picture_of_the_oscilloscope_has_ink_of_its_channels(tab: Any, show: str) -> None:
     tab.locator("#tab-scope").click()
@@ -392,6 +398,7 @@ def line_of(tab: Any, line: str) -> None:
     tab.locator(f"#{own}").click()
 
 
+@pytest.mark.more
 def test_what_was_done_is_saved_and_its_run_has_the_same_end(browser: Any, tmp_path: Path) -> None:
     from playwright.sync_api import expect
 
@@ -470,6 +477,7 @@ def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
         rests(other, 2)
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("theme", few(["light", "dark"], 1))
 @pytest.mark.parametrize("size", few([DESK, PHONE], 1), ids=["desk", "phone"])
 def test_everyone_can_read_and_reach_every_view(

@@ -8,6 +8,7 @@ from typing import Any
 import control
 import numpy as np
 import pytest
+from few_cases import few
 from robot_arm import EXACT, Arm, Pinocchio
 
 import motionfmu
@@ -85,7 +86,7 @@ def by_hand(loops: JointLoops, pose: np.ndarray, gains: np.ndarray, joint: int) 
     return drives[joint - 1] * own
 
 
-@pytest.mark.parametrize("joint", [1, 3, 5])
+@pytest.mark.parametrize("joint", few([1, 3, 5], [3]))
 def test_margins_are_those_of_blocks_by_hand(loops: JointLoops, joint: int) -> None:
     """Gain and phase margin by python-control, peak of S by its frequency response."""
     pose = np.array([0.0, 40.0, -60.0, 25.0, 50.0, -10.0])

@@ -130,6 +130,7 @@ def test_a_job_is_opened_sent_started_paused_stopped_homed(tab: Any, served: Ser
     assert box["y"] + box["height"] <= 844 and box["width"] > 300
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("width", [390, 1400])
 def test_no_text_lies_over_text(tab: Any, served: Served, width: int) -> None:
     from playwright.sync_api import expect
@@ -260,6 +261,7 @@ def test_another_page_cannot_press_start(browser: Any, served: Served, tmp_path:
     other.server_close()
 
 
+@pytest.mark.more
 def test_the_page_works_on_the_real_server_with_a_card_that_comes_late(
     browser: Any, tmp_path: Path
 ) -> None:
@@ -302,6 +304,7 @@ def test_the_page_works_on_the_real_server_with_a_card_that_comes_late(
     assert kinds == [messages.Start, messages.Pause, messages.Stop, messages.Home]
 
 
+@pytest.mark.more
 def test_another_page_of_a_drawing_is_chosen(tab: Any, served: Served, tmp_path: Path) -> None:
     from playwright.sync_api import expect
 

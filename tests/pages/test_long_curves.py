@@ -95,6 +95,7 @@ def test_zoomed_stretch_shows_the_samples(browser: Any, folder: Path, k: int) ->
     assert shown["lines"] == LINES[few].tolist()
 
 
+@pytest.mark.more
 def test_views_of_any_width_have_the_extremes(browser: Any, folder: Path) -> None:
     """The least and the largest sample are drawn of the whole and of each part."""
     time, values = CURVES["even"]

@@ -127,7 +127,7 @@ def a_plot_is_saved(page: Any) -> None:
 ON_A_PHONE = {"contour": band_holds_every_sample, "margins": step_has_cursors_of_its_own}
 
 
-@pytest.mark.parametrize("kind", few(KINDS, 5))
+@pytest.mark.parametrize("kind", few(KINDS, 2))
 def test_nothing_overlaps_overflows_or_breaks(browser: Any, pages: Any, kind: str) -> None:
     paths, run = pages
     with tab(browser, paths[kind].as_uri(), PHONE) as page:
@@ -152,7 +152,7 @@ def drawn(page: Any) -> None:
     page.evaluate(FRAME)
 
 
-@pytest.mark.parametrize("kind", few((*KINDS, *BARE), 5))
+@pytest.mark.parametrize("kind", few((*KINDS, *BARE), 2))
 @pytest.mark.parametrize("size", [PHONE, DESK], ids=["390", "1400"])
 def test_no_text_lies_over_text(browser: Any, pages: Any, kind: str, size: Any) -> None:
     with tab(browser, pages[0][kind].as_uri(), size) as page:

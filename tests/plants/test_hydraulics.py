@@ -38,6 +38,7 @@ def ends():
     return [round(piece[0] / STEP) for piece in HARD]
 
 
+@pytest.mark.more
 def test_the_reference_goes_through_everything(exact):
     _, spool, a, b, s, v = exact.T
     assert (spool.max(), spool.min()) == (1.0, pytest.approx(-0.514, abs=0.01))
@@ -49,6 +50,7 @@ def test_the_reference_goes_through_everything(exact):
     assert b.min() < 3e5
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("fmi", [2, 3])
 def test_fmu_against_radau(exact, fmi):
     fmu = Instance("hydraulic_axis", fmi).initialize(START)
@@ -65,6 +67,7 @@ def test_fmu_against_radau(exact, fmi):
     fmu.free()
 
 
+@pytest.mark.more
 def test_every_micro_step_against_radau(library, exact):
     ours = drive_all(started(library, **START), HARD)
     error = np.abs(ours - exact).max(axis=0) / np.abs(exact).max(axis=0)

@@ -74,6 +74,7 @@ def judged(folder: Path, seed: int) -> None:
     assert abs(dry.time - time) <= 0.01 * time, f"seed {seed}"
 
 
+@pytest.mark.more
 def test_faults_are_found_where_a_run_has_them(tmp_path: Path) -> None:
     for seed in range(JOBS):
         judged(tmp_path, seed)

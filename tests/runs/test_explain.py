@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from conftest import FMUS, ROOT
 from contour_runs import Machine, Program, lag_error, run_along
+from few_cases import few
 from typer.testing import CliRunner
 
 import motionfmu
@@ -117,7 +118,7 @@ INJECTED = {
 }
 
 
-@pytest.mark.parametrize("name", INJECTED)
+@pytest.mark.parametrize("name", few(INJECTED, 3))
 def test_an_injected_cause_is_named_first_with_its_size(name: str, tmp_path: Path) -> None:
     scenario, settings, program, stop, by_hand, (low, high) = INJECTED[name]
     file = tmp_path / "program.ngc"

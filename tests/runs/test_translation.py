@@ -203,6 +203,7 @@ def test_a_mill_and_a_card_get_the_same_drawing(kind: str, tmp_path: Path) -> No
     assert apart([places[down]], exact()) < 0.026 and apart(exact(), [places[down]], 8) < 0.026
 
 
+@pytest.mark.more
 def test_options_of_a_drawing_are_those_of_mill_and_card(tmp_path: Path) -> None:
     file = drawn_twin(tmp_path)["svg"]
     asked = {"scale": 0.5, "copies": [2, 2], "pitch": [50, 40], "at": [3, 4]}
