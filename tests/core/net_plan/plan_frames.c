@@ -31,7 +31,7 @@ static struct net_plan_config config_of(enum net_plan_pen pen)
     return c;
 }
 
-/* Circles on a raster of 1/40 mm, a square with exact stops, a dot. */
+/* Circles on a raster of 1/40 mm, a square with exact stops, a line out and back, a dot. */
 static int32_t draw(void)
 {
     int32_t n = 0;
@@ -53,6 +53,9 @@ static int32_t draw(void)
                                                 80.0,
                                                 i == 0 ? NET_PLAN_MOVE : NET_PLAN_STOP };
     }
+    vertex[n++] = (struct net_plan_vertex){ { 40.0, -9.0 }, 80.0, NET_PLAN_MOVE };
+    vertex[n++] = (struct net_plan_vertex){ { 60.0, -9.0 }, 80.0, NET_PLAN_DRAW };
+    vertex[n++] = (struct net_plan_vertex){ { 40.0, -9.0 }, 80.0, NET_PLAN_DRAW };
     vertex[n++] = (struct net_plan_vertex){ { 40.0, 1.0 }, 80.0, NET_PLAN_MOVE };
     vertex[n++] = (struct net_plan_vertex){ { 40.0, 1.0 }, 80.0, NET_PLAN_DRAW };
     return n;
@@ -157,20 +160,32 @@ static void test_output_pen(void)
         CHECK_EQ(f->step == NET_PLAN_RESTS, rest > 0);
         rest -= rest > 0;
     }
-    CHECK_EQ(lowered, 5);
-    CHECK_EQ(raised, 6); /* at the begin, too */
+    CHECK_EQ(lowered, 6);
+    CHECK_EQ(raised, 7); /* at the begin, too */
     CHECK(!down);
-    CHECK_EQ(plan.stops, 3);
+    CHECK_EQ(plan.stops, 4);
     CHECK(sizeof plan < 1000000);
-    for (int32_t k = 0; k < 4; k++) { /* exactly at the corners */
-        bool there = false;
-        for (int32_t i = 0; i < n && !there; i++) {
-            there = hypot(frame[0][i].place[0] - vertex[3603 + k].point[0],
-                          frame[0][i].place[1] - vertex[3603 + k].point[1])
-                    < 1e-9;
+    int32_t at[4]; /* exactly at the corners, for the first time */
+    for (int32_t k = 0; k < 4; k++) {
+        for (at[k] = 0; at[k] < n; at[k]++) {
+            const double *p = frame[0][at[k]].place, *q = vertex[3603 + k].point;
+            if (hypot(p[0] - q[0], p[1] - q[1]) < 1e-9) {
+                break;
+            }
         }
-        CHECK(there);
+        CHECK(at[k] < n);
     }
+    /* From rest to rest at 80 mm/s: L / v + v / a + a / j, of Y and of X; the line twice. */
+    const double a = (1.0 - RESERVE) * ACC, j = (1.0 - RESERVE) * JERK;
+    const double y = 1e3 * (20.0 / 80.0 + 80.0 / (0.5 * a) + 0.5 * a / j);
+    const double x = 1e3 * (20.0 / 80.0 + 80.0 / a + a / j);
+    int32_t line = 0;
+    for (int32_t k = 0; k < n; k++) {
+        line += frame[0][k].step == NET_PLAN_DRAWS && fabs(frame[0][k].place[1] + 9.0) < 1e-9;
+    }
+    CHECK_NEAR(at[2] - at[1], y, 2.0);
+    CHECK_NEAR(at[3] - at[2], x, 2.0);
+    CHECK_NEAR(line, 2.0 * x, 4.0);
 }
 
 /* The pen's rest is the smallest whole number of periods that is not shorter, one at least. */
@@ -198,7 +213,7 @@ static void test_dwell(void)
             rests += frame[0][k].step == NET_PLAN_RESTS;
             events += frame[0][k].job.event != 0;
         }
-        CHECK_EQ(events, 11);
+        CHECK_EQ(events, 13);
         CHECK_EQ(rests, events * CASES[i].rest);
     }
 }
