@@ -111,6 +111,8 @@ def test_it_has_values_files_units_and_what_is_open(made: tuple[int, Path]) -> N
     assert variables["mcc.path_feed"].unit == "mm/s"
     assert variables["mcc.hold"].causality == "input"
     assert variables["mcc.program"].start == "resource:circle.ngc"
+    own = [v for n, v in variables.items() if n.startswith(("system.", "recorder.", "until."))]
+    assert len(own) >= 5 and len({v.description for v in own} - {None, ""}) == len(own)
     with zipfile.ZipFile(file) as archive:
         program = archive.read("resources/circle.ngc")
         assert program == (ROOT / "scenarios/circle/circle.ngc").read_bytes()
