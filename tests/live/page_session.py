@@ -30,6 +30,15 @@ COLOURS = """(id) => {
 }"""
 
 
+# What the head of the page has said of the machine's state since it was opened.
+SAID = """window.said = [];
+addEventListener("DOMContentLoaded", () => {
+  const head = document.querySelector("#state");
+  new MutationObserver(() => window.said.push(head.textContent))
+    .observe(head, { childList: true, characterData: true, subtree: true });
+});"""
+
+
 @dataclass
 class Session:
     """A page of a machine, worked by mouse, finger and keyboard."""
@@ -253,6 +262,7 @@ def session(
         ready(page, expected)
         chosen = f"localStorage.setItem('scope:{expected}', '{json.dumps(list(channels))}')"
         page.evaluate(chosen)
+        page.add_init_script(SAID)
         page.goto(address)
         ready(page, expected)
         found = Session(page, address, folder, channels)
@@ -260,6 +270,8 @@ def session(
         page.locator("#run").click()
         try:
             yield found
+            said = page.evaluate("window.said")
+            assert said and not [text for text in said if "undefined" in text.lower()]
         except BaseException:
             page.screenshot(path=folder / "failed.png")
             for part in ("#state", "#alarm", "#time", "#hand"):

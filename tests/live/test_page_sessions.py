@@ -16,6 +16,7 @@ from page_session import COLOURS, Session, session
 
 MACHINES = ROOT / "src/motionfmu/machines"
 FASTEST = "as fast as it goes"
+SLOW = "0.1 \N{MULTIPLICATION SIGN}"  # what lasts seconds lasts until a slow hand is there
 LINE = "#program-lines [aria-current=step]"
 
 
@@ -63,6 +64,7 @@ def test_a_session_at_the_mill(browser: Any, tmp_path: Path) -> None:
         at.mdi("G0 X12.5 Y-3")
         expect(page.locator("#readout tbody td").first).to_have_text("12.500")
         # The program.
+        at.pace(SLOW)
         at.click("Cycle start")
         expect(page.locator(LINE)).to_contain_text("G2 I-20 F3000")
         readout = expect(page.locator("#readout"))
@@ -153,16 +155,18 @@ def test_a_session_at_the_robot(browser: Any, tmp_path: Path) -> None:
         at.key("ArrowDown", 2, -5.0)
         rests(page, 2)
         far = position(page, 2)
-        at.pace("0.1 \N{MULTIPLICATION SIGN}")  # it turns there in some 40 ms
+        at.pace(SLOW)  # it turns there in some 40 ms
         at.click("Replay")
         until(page, MOVED, [2, far, 1, first - far - 0.1])  # it has been at the first one
         at.pace("1 \N{MULTIPLICATION SIGN}")
         rests(page, 2)
         assert position(page, 2) == pytest.approx(second, abs=0.01)
         # The program.
+        at.pace(SLOW)
         at.click("Start")
         expect(page.locator(LINE)).to_contain_text("MOV")
         at.hold_and_slow("Speed", lambda: at.state("^Running$"))
+        at.pace("1 \N{MULTIPLICATION SIGN}")
         # A switch that the card's stop input sees, and out of it.
         box, field = at.fault("digital", "Digital inputs")
         field.fill("1")
@@ -228,6 +232,7 @@ def test_a_session_at_the_slide(browser: Any, tmp_path: Path) -> None:
         page = at.page
         button, go = "Home, stop, clear", "Go to target"
         target = page.get_by_label("Target [counts]", exact=True)
+        rests(page, 1)  # a button that is down at power-up is not pressed
         # A motion before it has been homed is refused, in words, and they lead out of it.
         at.click(go)
         at.alarm("Not homed", "Press Home, stop, clear: it homes the slide.")
@@ -400,10 +405,10 @@ def test_a_session_at_the_card(browser: Any, tmp_path: Path) -> None:
 
 
 def homed(at: Session) -> None:
-    """Have the card search its origins, from wherever."""
+    """Have the card search its origins, from wherever; what comes next is slow."""
     at.click("Home")
     at.state("^Homing$")
     at.pace(FASTEST)
     at.state("^Ready$")
     assert [position(at.page, k) for k in (1, 2)] == [0, 0]
-    at.pace("1 \N{MULTIPLICATION SIGN}")
+    at.pace(SLOW)

@@ -29,6 +29,7 @@ export function clock(seconds) {
 
 // What the number of a variable means.
 export function meaning(variable, value) {
+  if (value === undefined) return ""; // the machine has not told it yet
   if (variable?.type === "Boolean") return value ? "on" : "off";
   return variable?.words?.[value] ?? String(value);
 }
