@@ -1,4 +1,4 @@
-/* Pieces of a line become one box where that costs nothing, and stay two where it would be slower. */
+/* Pieces of a line become one box where that costs nothing, and stay two where it would be slow. */
 #include "speed_line.h"
 
 int main(void)
