@@ -74,12 +74,13 @@ def tune(  # noqa: PLR0913  (each is an option of the command)
     asked |= {"cost": cost, "identified": identified}
     values |= {k: v for k, v in asked.items() if v}
     wanted = problem(values)
-    if not program and not is_arm(scenario) and scenario.document.tables.get("contour"):
+    arm = is_arm(scenario)
+    if not program and not arm and scenario.document.tables.get("contour"):
         raise InputError(
             f"{name}: gains are found for a program's path: tune PROGRAM --machine {path}"
         )
     target = result_folder.usable(folder or results(name, "tune"))
-    if is_arm(scenario):
+    if arm:
         _tune_arm(scenario, wanted, settings(set_), program, target)
         return
     from motionfmu.report.loop_pages.tune_page import page_text

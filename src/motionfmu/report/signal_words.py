@@ -33,7 +33,7 @@ def titled(name: str, doc: str) -> str:
 
 
 def of_check(resolver: Resolver, check: Verdict) -> tuple[str, str]:
-    """Words and unit of what is checked; of numbers that have a meaning, what they mean."""
+    """Words and unit of a checked quantity, with what the value found means."""
     words, wanted, _ = parts(check.bounds)
     found = [check.value] if words.startswith(_OF_THE_VALUE) else []
     if words.startswith("order"):
@@ -42,7 +42,7 @@ def of_check(resolver: Resolver, check: Verdict) -> tuple[str, str]:
 
 
 def words_of(resolver: Resolver, name: str, values: Sequence[float] = ()) -> tuple[str, str]:
-    """Words and unit of a quantity; both are empty where no description has them."""
+    """Words and unit of a quantity, with what these values of it mean; empty if nothing says it."""
     whole = name.partition("[")[0]
     table, _, own = whole.partition(".")
     if table == "contour":

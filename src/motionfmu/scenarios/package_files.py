@@ -72,7 +72,7 @@ def unknown(given: str, known: Callable[[], dict[str, Path]]) -> str:
 
 
 def no_scenario(given: str | Path) -> str:
-    """The hint behind the message that a name is that of no scenario; for a path it is empty."""
+    """The hint that follows the words `no such scenario`; it is empty if a path was given."""
     if not is_name(given):
         return ""
     name = str(given)
