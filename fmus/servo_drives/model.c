@@ -12,6 +12,7 @@ struct model {
     struct drive_output next[CHANNELS]; /* outputs of the latest instant, shown at the next one */
     int64_t period;                     /* [ns] sampling grid */
     int64_t instant;                    /* [ns] next instant of that grid */
+    int channels;                       /* up to the last one that is active */
     bool prompt;                        /* a channel shows its outputs without a period's delay */
 };
 
@@ -95,6 +96,9 @@ static int model_start(struct fmu *f)
             return fmu_fail(f, "command_mean_time[%d] = %.17g s: at most %d samples of %g s", i + 1,
                             v->command_mean_time[i], DRIVE_MEAN_MOST, v->period);
     *m = (struct model){ .period = (int64_t)round(ticks) * FMU_TICK_NS };
+    for (int i = 0; i < CHANNELS; i++)
+        if (v->active[i])
+            m->channels = i + 1;
     publish(v, m, true);
     return 0;
 }
@@ -103,7 +107,7 @@ static int sample(struct fmu *f)
 {
     const struct vars *v = &f->s.v;
     struct model *m = &f->s.m;
-    for (int i = 0; i < CHANNELS; i++) {
+    for (int i = 0; i < m->channels; i++) {
         if (!v->active[i])
             continue;
         const struct drive_config *c = &m->config[i];
