@@ -15,6 +15,7 @@ from motionfmu.scenarios import fmus
 
 NAME = "velocity_axes"
 Files = dict[str, bytes]
+MAPPED = Path("/proc/self/maps")
 
 
 def library(files: Files) -> str:
@@ -87,6 +88,24 @@ def test_a_library_that_does_not_load_is_named_with_the_cause(broken, change, wh
         text = str(caught.value)
         assert text.startswith(f"{scenario.document.file}: {folder}/{NAME}.fmi{fmi}.fmu: ")
         assert what in text and "\n" not in text
+
+
+@pytest.mark.skipif(not MAPPED.exists(), reason="the system does not list what is loaded")
+@pytest.mark.parametrize("change", [None, other])
+def test_a_library_that_was_looked_at_is_unloaded(broken, change) -> None:
+    """Its file is gone; a study would keep one for each FMU of each machine."""
+    folder, before = broken(change, same), loaded()
+    if change is None:
+        assert fmus.runnable(NAME, 3).parent == folder
+    else:
+        with pytest.raises(motionfmu.InputError):
+            fmus.runnable(NAME, 3)
+    assert loaded() == before
+
+
+def loaded() -> list[str]:
+    """Files of libraries of the FMU that this process has loaded."""
+    return sorted({x.split()[5] for x in MAPPED.read_text().splitlines() if "VelocityAxes" in x})
 
 
 @pytest.mark.parametrize(
