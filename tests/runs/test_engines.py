@@ -39,7 +39,8 @@ SOME = few(SCENARIOS, of_every_fmu())
 SHORT = 0.4  # [s] at most
 STEPS = 4000  # at most
 ON = 100  # steps
-WARNS = "robot_line"  # at once, of a step that is coarse for a drive
+# At once, of a step that is coarse for a drive; two components by turns.
+WARN = [("robot_line", SHORT), ("pulse_underrun", 0.06)]
 FINE = 400_000  # at most, of a run of which the step is divided
 DRIVEN = """
 [[drive]]
@@ -224,11 +225,16 @@ def test_fmpys_container_agrees_over_a_whole_run() -> None:
 
 
 @pytest.mark.parametrize(("engine", "fmi"), few([("python", 3), ("fmpy", 3), ("fmpy", 2)], 1))
-def test_engines_tell_the_same_warnings(engine: str, fmi: int) -> None:
-    one = fused(WARNS, SHORT)
-    assert one.warnings and loaded(WARNS).run(engine=engine, fmi=fmi, stop=SHORT).warnings == (
-        one.warnings
-    )
+@pytest.mark.parametrize(("scenario", "stop"), WARN)
+def test_engines_tell_the_same_warnings(scenario, stop, engine: str, fmi: int) -> None:
+    told = fused(scenario, stop).warnings
+    assert told and loaded(scenario).run(engine=engine, fmi=fmi, stop=stop).warnings == told
+
+
+def test_components_that_warn_in_turn_are_heard_in_turn() -> None:
+    """So is the comparison above one of their order."""
+    names = [told.partition(":")[0] for told in fused(*WARN[1]).warnings]
+    assert names != sorted(names) and names != sorted(names, reverse=True)
 
 
 @pytest.mark.parametrize("divisor", few([2, 10], [2]))

@@ -107,11 +107,14 @@ def test_an_error_that_is_over_is_no_warning() -> None:
     ]
 
 
-def test_a_run_keeps_twenty_different_warnings_of_components() -> None:
+def test_twenty_different_warnings_of_a_component_are_kept_and_more_are_told() -> None:
     errors: list[str] = []
     warnings: list[str] = []
     for k in [*range(15), *range(40)]:
         fmu_messages.keep(fmu_messages.WARNING, f"card: number {k}", errors, warnings)
         fmu_messages.keep(fmu_messages.WARNING, f"number {k} of nobody", errors, warnings)
         fmu_messages.keep(0, f"card: news {k}", errors, warnings)
-    assert warnings == [f"card: number {k}" for k in range(20)] and errors == []
+    fmu_messages.keep(fmu_messages.WARNING, "drives: one", errors, warnings)
+    more = "card: more warnings than these 20, which are its first"
+    assert warnings == [*(f"card: number {k}" for k in range(20)), more, "drives: one"]
+    assert errors == []

@@ -6,8 +6,8 @@ from motionfmu.base.errors import InputError
 from motionfmu.run.translated_places import in_source
 
 WARNING, ERROR = 1, 3  # status in both FMI versions; from ERROR on a run cannot go on
-# A run keeps so many different warnings of its FMUs at most.
-_WARNINGS_MAX = 20
+# A run keeps so many different warnings of each component, and a line that tells of more.
+_MOST = 20
 _NAMED = re.compile(r"^\w+: ")
 
 
@@ -21,13 +21,12 @@ def keep(status: int, text: str, errors: list[str], warnings: list[str]) -> None
     text = in_source(text)
     if status >= ERROR:
         errors.append(text)
-    elif (
-        status == WARNING
-        and not unnamed(text)
-        and text not in warnings
-        and len(warnings) < _WARNINGS_MAX
-    ):
-        warnings.append(text)
+    elif status == WARNING and (named := _NAMED.match(text)) and text not in warnings:
+        kept = sum(told.startswith(named[0]) for told in warnings)
+        if kept < _MOST:
+            warnings.append(text)
+        elif kept == _MOST:
+            warnings.append(f"{named[0]}more warnings than these {_MOST}, which are its first")
 
 
 def failure(name: str, call: str, errors: list[str]) -> InputError:

@@ -60,12 +60,13 @@ class Master:
 
     def run(self, system: System, progress: Progress) -> EngineResult:
         """Run from the start."""
-        system, messages = self._scopes.of(system), list[str]()
+        system, errors, warnings = self._scopes.of(system), list[str](), list[str]()
         with ExitStack() as stack:
             slaves: dict[str, Slave] = {}
             for name, fmu in system.components.items():
                 fmi = system.version(name, self._fmi)
-                slaves[name] = self._make(name, lean.unpacked(fmu, fmi), fmi, messages)
+                slaves[name] = self._make(name, lean.unpacked(fmu, fmi), fmi, errors)
+                slaves[name].share(warnings)
                 stack.callback(slaves[name].free)
             for s in system.settings:
                 port = s.end.port
@@ -88,8 +89,7 @@ class Master:
                     step(k * system.step_ns * 1e-9)
             for slave in slaves.values():
                 slave.end()
-            told = [told for slave in slaves.values() for told in slave.warnings]
-            return ending.ran(self._engine, self._scopes, told)
+            return ending.ran(self._engine, self._scopes, warnings)
 
     def close(self) -> None:
         """Do nothing: no instance lives between two runs."""

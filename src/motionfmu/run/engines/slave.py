@@ -150,6 +150,11 @@ class Slave:
         with self._told():
             self._library.terminate()
 
+    def share(self, warnings: list[str]) -> None:
+        """Keep warnings in a list that others fill, too: all stand in the order they come in."""
+        warnings += self.warnings
+        self.warnings = warnings
+
     def renew(self) -> None:
         """Take a new instance; the library stays loaded."""
         self._library.release()
