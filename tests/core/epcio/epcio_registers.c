@@ -259,6 +259,22 @@ static void module_resets(void)
     CHECK_EQ(pulses[0], 300); /* the DDA time in progress ended */
 }
 
+/* 0 ends conversions by the register that 1 began them by: nothing is due, none comes. */
+static void conversions_stop(void)
+{
+    struct epcio card = card_on();
+    epcio_write(&card, REG_ADC_ENABLED, 255);
+    epcio_write(&card, REG_ADC_MODE, 1); /* free run */
+    CHECK_EQ(epcio_write(&card, REG_ADC_RUN, 1), EPCIO_OK);
+    epcio_advance(&card, 4000);
+    CHECK(card.irq.flags[IRQ_ADC] != 0 && adc_due(&card.adc) < INT64_MAX);
+    CHECK_EQ(epcio_write(&card, REG_ADC_RUN, 0), EPCIO_OK);
+    const struct adc stopped = card.adc;
+    epcio_advance(&card, 40000);
+    CHECK_EQ(adc_due(&card.adc), INT64_MAX);
+    CHECK(memcmp(&card.adc, &stopped, sizeof stopped) == 0);
+}
+
 /* What stopped the pulses is gone with the module's reset: they go on by themselves. */
 static void pulses_go_on_behind_a_reset(void)
 {
@@ -294,6 +310,7 @@ int main(void)
     map();
     map_is_disjoint();
     module_resets();
+    conversions_stop();
     pulses_go_on_behind_a_reset();
     return check_result();
 }
