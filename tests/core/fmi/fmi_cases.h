@@ -482,12 +482,45 @@ static void test_instantiate(void)
     CHECK(call_step(NULL, 0.0, 1e-3) == 3 && call_set_n(NULL, 1) == 3 && call_reset(NULL) == 3);
 }
 
+/* What a parameter names as a file: the path, or what is said of it. The folder is the root, so a
+ * name that leads out of it would be found. */
+static void test_paths(void)
+{
+    static const struct {
+        const char *given, *text;
+        bool good;
+    } cases[] = {
+        { "a/b.ngc", "a/b.ngc", true },
+        { "FILE:///a%20b", "/a b", true },
+        { "resource:dev/null", "/dev/null", true },
+        { "resource:dev/../dev/null", "without \"..\"", false },
+        { "resource:..", "without \"..\"", false },
+        { "resource:/dev/null", "without \"..\"", false },
+        { "resource:", "without \"..\"", false },
+        { "resource:?", "no such file", false },
+        { "resource:?/b", "no such file", false },
+        { "resource:..?", "no such file", false },
+        { "file://", "file:///PATH is wanted", false },
+        { "file:///%00", "two hexadecimal digits", false },
+        { "ftp://a/b", "resource:NAME is wanted", false },
+    };
+    void *c = call_instantiate("one", FMU_TOKEN, "/");
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const struct fmu_path p = fmu_path(c, cases[i].given, FMU_READ);
+        CHECK(p.good == cases[i].good);
+        CHECK(cases[i].good ? !strcmp(p.text, cases[i].text) : !!strstr(p.text, cases[i].text));
+    }
+    CHECK(!fmu_path(c, "resource:dev/null", FMU_WRITTEN).good);
+    call_free(c);
+}
+
 #include "fmi_any_step.h"
 #include "fmi_small_state.h"
 
 static int test_all(void)
 {
     test_instantiate();
+    test_paths();
     test_order_of_calls();
     test_messages_of_wrong_order();
     test_values_are_refused_whole();
