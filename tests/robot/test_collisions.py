@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 import motionfmu
 from motionfmu import InputError
-from motionfmu.analysis.collisions import ArmParts, Cell, CellBody, read_cell
+from motionfmu.analysis.collisions import ArmParts, Cell, CellBody, clearance, read_cell
 from motionfmu.analysis.collisions.arm_parts import NAMES
 from motionfmu.analysis.collisions.clearance import FLOOR, distances
 from motionfmu.analysis.collisions.distances import between_segments, from_box
@@ -129,6 +129,37 @@ def test_a_thousand_poses_are_as_far_from_everything_as_coal_says(tmp_path: Path
                 assert theirs < 1e-3, (first, second, row)
                 seen["inside"] += 1
     assert seen["apart"] > 20 * POSES and seen["inside"] > POSES // 2
+
+
+@pytest.mark.parametrize("piece", [37, 20_000])
+def test_least_distances_stand_by_the_line_that_moves(monkeypatch, piece: int) -> None:
+    """Row by row: lines of one row, lines that come again, and rows in which the arm rests."""
+    monkeypatch.setattr(clearance, "_PIECE", piece)
+    rng = np.random.default_rng(5)
+    rows = [("time", "f8"), ("joint", "f8", 6), ("place", "f8", 3), ("base", "f8", 3)]
+    samples = np.zeros(400, [*rows, ("line", "i8"), ("rate", "f8", 6)])
+    samples["time"] = np.arange(400) * 1e-3
+    samples["joint"] = np.cumsum(rng.normal(0.0, 1.0, (400, 6)), axis=0)
+    samples["joint"][:, 4] += 90.0
+    samples["place"] = Kinematics().forward(samples["joint"])[:, :3, 3]
+    samples["line"] = np.repeat(rng.integers(1, 30, 400), rng.integers(1, 9, 400))[:400]
+    samples["rate"] = rng.normal(0.0, 1.0, (400, 6)) * (rng.random((400, 1)) > 0.2)
+    parts, cell = ArmParts.of(settings(), {}), Cell(floor=-50.0)
+    least: dict[tuple[int, str, str], tuple[float, float]] = {}
+    for k, row in enumerate(samples):
+        line = int(row["line"]) if row["rate"].any() else 0
+        if line or k == 0:
+            for first, second, apart in distances(
+                parts, cell, row["joint"][None], row["place"][None]
+            ):
+                now = float(apart[0]), float(row["time"])
+                least[line, first, second] = min(least.get((line, first, second), now), now)
+    found = clearance.approaches(samples, parts, cell)
+    assert {(a.line, a.first, a.second): pytest.approx(a.distance, abs=1e-9) for a in found} == {
+        key: distance for key, (distance, _) in least.items()
+    }
+    times = {(a.line, a.first, a.second): a.time for a in found if not a.near}
+    assert len(times) > 100 and all(least[key][1] == time for key, time in times.items())
 
 
 def test_segments_and_boxes_by_dense_points() -> None:
