@@ -19,9 +19,10 @@ partial model GearedArm
   parameter Real link_viscous[6](each unit = "N.m.s/rad", each min = 0) =
     {9, 12.5, 6.5, 1.55, 1.55, 0.8} "Friction of the joints per speed";
   parameter Real payload_mass(unit = "kg", min = 0) = 6 "Mass of the payload";
-  parameter Real payload_center[3](each unit = "m") = {0, 0, 0.1} "Its centre from the flange";
+  parameter Real payload_center[3](each unit = "m") = {0, 0, 0.1}
+    "Centre of the payload from the flange";
   parameter Real payload_inertia[3](each unit = "kg.m2", each min = 0) = {0.0104, 0.0104, 0.0108}
-    "Its moments of inertia xx, yy, zz about the centre";
+    "Moments of inertia of the payload xx, yy, zz about its centre";
   parameter Real gravity(unit = "m/s2") = 9.81 "Acceleration of free fall";
   parameter Real gear_ratio[6](each unit = "1", each min = 1) = {100, 120, 120, 100, 100, 80}
     "Turns of the motor per turn of the joint";

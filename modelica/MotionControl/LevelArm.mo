@@ -5,12 +5,13 @@ model LevelArm
     "So many joints before it do not tilt its link, by a linkage: of joint 3 up to 1, of 4 up to 2";
   parameter Real hand_offset[3](each unit = "m") = {0, 0, 0}
     "Origin of joint 4 from the end of axis_origin, on the hand that is kept level there";
-  parameter Real hand_mass(unit = "kg", min = 0) = 0 "Mass of that hand";
-  parameter Real hand_center[3](each unit = "m") = {0, 0, 0} "Its centre from there";
+  parameter Real hand_mass(unit = "kg", min = 0) = 0 "Mass of the level hand";
+  parameter Real hand_center[3](each unit = "m") = {0, 0, 0}
+    "Centre of the level hand from the origin of joint 4";
   parameter Real hand_inertia[3](each unit = "kg.m2", each min = 0) = {0, 0, 0}
-    "Moments of inertia xx, yy, zz of that hand about its centre";
+    "Moments of inertia xx, yy, zz of the level hand about its centre";
   parameter Real hand_product[3](each unit = "kg.m2") = {0, 0, 0}
-    "The other elements of its tensor: xy, yz, zx";
+    "Elements xy, yz, zx of the level hand's tensor about its centre";
   extends ArmByAxes(
     final level = {0, 0, min(joint_level[3], 1), joint_level[4], 0, 0},
     final hand_way = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, hand_offset, {0, 0, 0}, {0, 0, 0}},

@@ -51,6 +51,18 @@ def test_fmutool_finds_nothing_wrong(
     assert "ERROR" not in told
 
 
+@every_fmu
+def test_each_description_is_read_alone(name: str) -> None:
+    """A tool shows a variable by its own, in an order of its own."""
+    leans = re.compile(r"(Its|Their|The same|That|Those|Of these|Longest so far)\b")
+    told = {
+        v.name: v.description or ""
+        for v in fmpy.read_model_description(fmu_path(name)).modelVariables
+    }
+    assert len(told) > 5 and all(told.values())
+    assert [(n, text) for n, text in told.items() if leans.match(text)] == []
+
+
 @both
 @every_fmu
 def test_the_library_exports_the_standard_and_nothing_else(name: str, fmi: int) -> None:
