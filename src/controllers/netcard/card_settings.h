@@ -94,11 +94,13 @@ enum card_policy { CARD_SAFE, CARD_LITERAL };
     X(int32_t, slots, , "", 2, 1, 2, \
       "Slots for jobs: 2 keep the old job until the new one is whole, 1 has twice the room") \
     X(int32_t, program_us, , "us", 700, 1, 100000, "Usual time of the program of a page") \
-    X(int32_t, program_most_us, , "us", 3000, 1, 100000, "Its longest time") \
+    X(int32_t, program_most_us, , "us", 3000, 1, 100000, "Longest time of the program of a page") \
     X(int32_t, erase_ms, , "ms", 45, 1, 100000, "Usual time of the erase of a sector of 4 KB") \
-    X(int32_t, erase_most_ms, , "ms", 400, 1, 100000, "Its longest time") \
+    X(int32_t, erase_most_ms, , "ms", 400, 1, 100000, \
+      "Longest time of the erase of a sector of 4 KB") \
     X(int32_t, block_ms, , "ms", 150, 1, 100000, "Usual time of the erase of a block of 64 KB") \
-    X(int32_t, block_most_ms, , "ms", 2000, 1, 100000, "Its longest time") \
+    X(int32_t, block_most_ms, , "ms", 2000, 1, 100000, \
+      "Longest time of the erase of a block of 64 KB") \
     X(int32_t, flash_spread, , "", 0, 0, 1000, \
       "Share of the way from usual to longest that a time is drawn from [1/1000]") \
     X(int32_t, spi_hz, , "Hz", 42000000, 100000, 200000000, "Clock of the bus of the flash") \
