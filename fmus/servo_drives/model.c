@@ -12,8 +12,8 @@ struct model {
     struct drive_output next[CHANNELS]; /* outputs of the latest instant, shown at the next one */
     int64_t period;                     /* [ns] sampling grid */
     int64_t instant;                    /* [ns] next instant of that grid */
-    int channels;                       /* up to the last one that is active */
-    bool prompt;                        /* a channel shows its outputs without a period's delay */
+    int channels; /* channels up to the last active one: a sample looks at no more */
+    bool prompt;  /* a channel shows its outputs without a period's delay */
 };
 
 #include "fmi_model.h"

@@ -151,7 +151,7 @@ class Slave:
             self._library.terminate()
 
     def share(self, warnings: list[str]) -> None:
-        """Keep warnings in a list that others fill, too: all stand in the order they come in."""
+        """Keep warnings in a list that other FMUs fill, too, in the order in which all warn."""
         warnings += self.warnings
         self.warnings = warnings
 
