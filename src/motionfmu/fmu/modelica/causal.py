@@ -170,13 +170,21 @@ def _refuse_variables(names: _FlatNames, told: list[tuple[str, ca.SX]], variable
             raise names.refuse(f"{text} depends on more than parameters, which is not supported")
 
 
-def _linear_parts(names: _FlatNames, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """A and b of e = A v + b."""
+def _linear(e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX] | None:
+    """A and b of e = A v + b, if it is that."""
     a = ca.jacobian(e, v)
     if ca.depends_on(a, v) or steps_on(e, v):
+        return None
+    return a, ca.substitute(e, v, ca.SX.zeros(v.numel()))
+
+
+def _linear_parts(names: _FlatNames, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """A and b of e = A v + b, or a refusal."""
+    found = _linear(e, v)
+    if found is None:
         unknowns = ", ".join(map(str, ca.symvar(v)))
         raise names.refuse(f"nonlinear equations for {unknowns} are not supported")
-    return a, ca.substitute(e, v, ca.SX.zeros(v.numel()))
+    return found
 
 
 def _dummy_derivatives(
@@ -228,9 +236,10 @@ def _by_states(
                 v = names.symbol(name)
                 known = ca.vertcat(ca.SX(0, 1), *map(names.symbol, found))
                 e = ca.substitute(e, known, ca.vertcat(ca.SX(0, 1), *found.values()))
-                if ca.depends_on(ca.jacobian(e, v), v) or steps_on(e, v):
+                parts = _linear(e, v)
+                if parts is None:
                     continue
-                a, b = _linear_parts(names, e, v)
+                a, b = parts
                 found[name] = -b / a
                 progress = True
     return found
