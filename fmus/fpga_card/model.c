@@ -150,12 +150,12 @@ static void warn_refused(struct fmu *f)
 }
 
 /* Warn of underruns, where pulses stood still because the host was late: of the first one, and each
- * time that their number has doubled. */
+ * time that there are ten times as many. */
 static void warn_underruns(struct fmu *f, int64_t clock)
 {
     struct model *m = &f->s.m;
     const int64_t n = m->card.underruns;
-    if (n == 0 || n / 2 < m->dry)
+    if (n == 0 || n / 10 < m->dry)
         return;
     m->dry = n;
     fmu_warn(f,
