@@ -47,8 +47,8 @@ PYTEST = $(BIN)/python -m pytest -n 2 --dist loadgroup --durations=25
 CTEST = ctest --test-dir $(1) -j 2 --output-on-failure > $(1)/tests.txt || { grep -v -e " Passed " -e " Start " $(1)/tests.txt; \
   echo "C tests failed in $(1)" >&2; exit 1; }; grep "tests passed" $(1)/tests.txt
 
-test: build check               ## what every change needs: style, C tests, most Python tests
-	@$(call CTEST,build)
+test: build                     ## what every change needs: style, C tests, most Python tests
+	@{ $(call CTEST,build); } & tested=$$!; $(MAKE) --no-print-directory check; checked=$$?; wait $$tested && exit $$checked
 	$(PYTEST) --durations-min=5
 
 test-more: build export sanitized .venv/documenting    ## what is slow and stands by itself: sanitized C tests, exports, tests marked `more`

@@ -62,6 +62,7 @@ def test_poses_are_pinocchio_s() -> None:
         assert geometry.jacobian(q)[:3] == pytest.approx(slope, abs=1e-8)
 
 
+@pytest.mark.more
 def test_its_job_runs_within_the_limits(arm_run, arm_folder: Path) -> None:
     assert arm_run.ok
     machine = arm_machine(run.machine(arm_folder))

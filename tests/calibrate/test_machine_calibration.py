@@ -127,7 +127,7 @@ def written(file: Path, name: str, test) -> None:
     file.write_text("\n".join(rows) + "\n", encoding="utf-8")
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_the_loop_closes(mill: Path, tmp_path: Path) -> None:
     """Measured by the FMUs with known errors; found by others; compensated, and measured again."""
     real = MachineTests.of(machine(mill), tmp_path, TRUTH)

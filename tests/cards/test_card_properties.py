@@ -478,6 +478,7 @@ class Cards(RuleBasedStateMachine):
             assert fired <= served or card.flags[page] >> bit & 1, f"page {page} bit {bit}"
 
 
+@pytest.mark.more
 @pytest.mark.hypothesis
 def test_the_card_is_what_ticking_gives() -> None:
     run_state_machine_as_test(Cards, settings=RUNS)

@@ -345,6 +345,7 @@ def differences(card: Card, ticks: Ticks, clock: int) -> dict[str, Any]:
     return {n: (seen[n], want[n]) for n in want if seen[n] != pytest.approx(want[n], abs=1e-12)}
 
 
+@pytest.mark.more
 @RUNS
 @given(data=st.data(), config=configs)
 def test_the_card_is_a_card_that_ticks(data: st.DataObject, config: dict[str, Any]) -> None:

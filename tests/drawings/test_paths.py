@@ -240,6 +240,7 @@ def test_the_way_of_a_knife_in_closed_form() -> None:
     assert box.path.nodes[-1] == pytest.approx([2 * d, 0.0])
 
 
+@pytest.mark.more
 def test_a_knife_follows_chords_of_a_curve_without_a_turn_at_each() -> None:
     t = np.linspace(0.0, np.pi, 200)
     raster = np.stack([10 * np.cos(t), 10 * np.sin(t)], axis=1)

@@ -100,6 +100,7 @@ PLAIN = [t for t in FMUS if not fmu_toml.names_modelica(t)]
 PLANTS = [t for t in FMUS if fmu_toml.names_modelica(t)]
 
 
+@pytest.mark.more
 def test_a_description_is_read_or_refused() -> None:
     def body(text: str) -> Any:
         found = answer(fmu_toml.parse, text, "fmu.toml")
@@ -123,6 +124,7 @@ def test_a_plants_description_is_read_or_refused(tmp_path: Path) -> None:
     fuzz(PLANTS, body, 100)
 
 
+@pytest.mark.more
 def test_a_scenario_is_loaded_or_refused(tmp_path: Path) -> None:
     mine = tmp_path / "mine"
     mine.mkdir()
@@ -326,6 +328,7 @@ def test_a_compensation_file_is_read_if_it_is_well_formed(tmp_path: Path) -> Non
         slave.free()
 
 
+@pytest.mark.more
 def test_the_search_would_find_what_it_looks_for() -> None:
     """A reader that stumbles over one sort of value, and one that waits for ever, are found."""
 

@@ -106,6 +106,7 @@ def test_two_runs_draw_the_same_and_exploring_does_not() -> None:
     assert fresh[0] != fresh[1]
 
 
+@pytest.mark.more
 def test_an_exploration_tells_a_process_that_ended(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

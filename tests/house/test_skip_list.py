@@ -120,6 +120,7 @@ def test_a_skip_is_an_error_while_what_it_needs_is_there(tmp_path: Path) -> None
         assert ("test_made: not made" in done.stdout) == bool(status)
 
 
+@pytest.mark.more
 @WORKERS
 def test_lines_without_a_skip_are_told_after_a_whole_run(
     workers: tuple[str, ...], tmp_path: Path
@@ -139,6 +140,7 @@ def test_lines_without_a_skip_are_told_after_a_whole_run(
     assert done.returncode == 0 and section(done.stdout, IDLE)
 
 
+@pytest.mark.more
 @WORKERS
 def test_a_module_that_is_skipped_is_one(workers: tuple[str, ...], tmp_path: Path) -> None:
     run(tmp_path, BOTH)

@@ -125,7 +125,7 @@ def test_the_best_of_fits_beside_one_another_is_taken(known: Known) -> None:
     assert (told.deviations > 0.9e-4 * own.reach(free, good.guess.free)).all()
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_a_gap_that_is_not_the_plants_is_told(known: Known) -> None:
     """With the one that is, and deviations that hold what the wrong one does."""
     truth, record = known

@@ -44,6 +44,7 @@ def test_fmus_with_the_law_that_validation_chooses_repeat_the_record():
     assert run.differences["drives.torque"] < 0.038
 
 
+@pytest.mark.long
 def test_deviations_cover_what_block_bootstrap_repetitions_scatter():
     """Ten records of the fit and blocks of its residuals, fitted anew (Politis and Romano 1992)."""
     record = of_record(motionfmu.record(RECORD))

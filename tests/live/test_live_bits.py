@@ -122,6 +122,6 @@ def test_what_was_done_is_there_at_any_pace_with_and_without_a_scope(tmp_path: P
     compare(tmp_path / "short", 7)
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_two_minutes_are_there_at_any_pace(tmp_path: Path) -> None:
     compare(tmp_path / "long", 450)

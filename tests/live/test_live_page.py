@@ -89,6 +89,7 @@ def test_a_finger_jogs_and_a_page_that_loses_the_focus_lets_go(browser: Any, add
 
 
 # A gamepad in the page: its axes and buttons are set by the test, and it can be pulled out.
+LOSSES = ("pulled out", "no longer listed", "shoulder", "middle")
 GAMEPAD = """() => {
   window.pad = { connected: true, axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 },
     () => ({ pressed: false, value: 0 })) };
@@ -97,7 +98,7 @@ GAMEPAD = """() => {
 
 
 @pytest.mark.more
-@pytest.mark.parametrize("gone", few(["pulled out", "no longer listed", "shoulder", "middle"], 1))
+@pytest.mark.parametrize("gone", few(LOSSES, 1, pytest.mark.long))
 def test_a_gamepad_jogs_while_its_shoulder_is_down_and_its_loss_stops(tab: Any, gone: str) -> None:
     tab.evaluate(GAMEPAD)
     before = position(tab, 2)
@@ -210,7 +211,7 @@ SHOWN_TOOL = """([name, wanted]) => {
 
 
 @pytest.mark.more
-@pytest.mark.parametrize("kind", few(["csv", "npz"], 1))
+@pytest.mark.parametrize("kind", few(["csv", "npz"], 1, pytest.mark.long))
 def test_a_record_has_every_step_until_its_end(tab: Any, tmp_path: Path, kind: str) -> None:
     from playwright.sync_api import expect
 
@@ -245,6 +246,7 @@ def test_a_record_has_every_step_until_its_end(tab: Any, tmp_path: Path, kind: s
     expect(tab.locator("#told")).to_have_class("told bad")
 
 
+@pytest.mark.more
 def test_lines_by_hand_run_and_wrong_ones_are_refused_in_words(tab: Any) -> None:
     from playwright.sync_api import expect
 
@@ -288,6 +290,7 @@ def test_the_program_is_started_held_and_overridden(tab: Any) -> None:
     expect(tab.locator("#readout")).to_contain_text("Feed0 mm/min")
 
 
+@pytest.mark.more
 def test_an_alarm_says_what_to_do_and_the_emergency_stop_is_released(tab: Any) -> None:
     from playwright.sync_api import expect
 
@@ -302,6 +305,7 @@ def test_an_alarm_says_what_to_do_and_the_emergency_stop_is_released(tab: Any) -
     expect(alarm).to_be_hidden()
 
 
+@pytest.mark.more
 def test_a_fault_is_set_shown_as_changed_and_undone(tab: Any) -> None:
     from playwright.sync_api import expect
 
@@ -370,7 +374,7 @@ def test_a_trigger_catches_the_edge_and_its_record_is_a_file(tab: Any) -> None:
 
 
 @pytest.mark.more
-@pytest.mark.parametrize("show", few(["field", "fft", "xy"], 1))
+@pytest.mark.parametrize("show", few(["field", "fft", "xy"], 1, pytest.mark.long))
 def test_every_picture_of_the_oscilloscope_has_ink_of_its_channels(tab: Any, show: str) -> None:
     tab.locator("#tab-scope").click()
     tab.locator("#scope-show").select_option(show)
@@ -478,7 +482,7 @@ def test_a_second_page_watches_and_acts_when_it_has_taken_the_hand(
 
 
 @pytest.mark.more
-@pytest.mark.parametrize("theme", few(["light", "dark"], 1))
+@pytest.mark.parametrize("theme", few(["light", "dark"], 1, pytest.mark.long))
 @pytest.mark.parametrize("size", few([DESK, PHONE], 1), ids=["desk", "phone"])
 def test_everyone_can_read_and_reach_every_view(
     browser: Any, address: str, size: dict[str, int], theme: Any

@@ -134,6 +134,7 @@ def test_nodes_are_those_of_the_specification(tmp_path: Path) -> None:
     asyncio.run(work())
 
 
+@pytest.mark.more
 def test_states_of_the_machine(tmp_path: Path) -> None:
     item, mode = (
         f"{WHOLE}Machinery:{n}/CurrentState"
@@ -165,6 +166,7 @@ def test_states_of_the_machine(tmp_path: Path) -> None:
     asyncio.run(work())
 
 
+@pytest.mark.more
 def test_nothing_can_be_changed_from_there(tmp_path: Path) -> None:
     async def work() -> None:
         async with bench(tmp_path) as b:

@@ -20,7 +20,7 @@ SLOW = "0.1 \N{MULTIPLICATION SIGN}"  # what lasts seconds lasts until a slow ha
 LINE = "#program-lines [aria-current=step]"
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_a_session_at_the_mill(browser: Any, tmp_path: Path) -> None:
     """It has all of it; its library believes X to be 150 mm from where it stands."""
     from playwright.sync_api import expect
@@ -101,7 +101,7 @@ def test_a_session_at_the_mill(browser: Any, tmp_path: Path) -> None:
         at.saved("mcc.position[2]")
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_a_session_at_the_robot(browser: Any, tmp_path: Path) -> None:
     """An arm with absolute encoders has no search of origins, a pendant no lines by hand.
 

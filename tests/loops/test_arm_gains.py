@@ -127,7 +127,7 @@ def test_a_climb_ends_at_a_top() -> None:
         assert best == pytest.approx(-((pose - top) ** 2).sum())
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_spoilt_gains_are_not_kept(loops: JointLoops) -> None:
     """Sound ones keep the limits in all poses; the machine's own, and too quick ones, do not."""
     search = ArmSearch(loops, LIMITS, True)

@@ -151,6 +151,7 @@ def test_no_text_lies_over_text(tab: Any, served: Served, width: int) -> None:
         tab.locator(view).click()
 
 
+@pytest.mark.more
 def test_the_picture_shows_the_speed_and_the_tool(tab: Any, served: Served) -> None:
     from playwright.sync_api import expect
 
@@ -320,6 +321,7 @@ def test_another_page_of_a_drawing_is_chosen(tab: Any, served: Served, tmp_path:
     expect(about).to_contain_text("15.0 \N{MULTIPLICATION SIGN} 0.0 mm, 1 line")
 
 
+@pytest.mark.more
 def test_a_drawing_that_is_opened_before_a_card_is_known(browser: Any, tmp_path: Path) -> None:
     from playwright.sync_api import expect
 
@@ -341,7 +343,7 @@ def test_a_drawing_that_is_opened_before_a_card_is_known(browser: Any, tmp_path:
         expect(page.locator("#job-about")).to_contain_text("40.0 \N{MULTIPLICATION SIGN} 0.0 mm")
 
 
-@pytest.mark.parametrize("theme", few(["light", "dark"], 1))
+@pytest.mark.parametrize("theme", few(["light", "dark"], 1, pytest.mark.long))
 @pytest.mark.parametrize(
     "size", few([pytest.param((1280, 900), id="desk"), pytest.param((390, 844), id="phone")], 1)
 )

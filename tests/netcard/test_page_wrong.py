@@ -57,6 +57,7 @@ ANYTHING = given(
 )
 
 
+@pytest.mark.more
 @ANYTHING
 @example("/cards/1/command", {"name": "start", "card": 5}, None)
 @example("/cards/1/command", {"name": "\ud800"}, None)
@@ -68,7 +69,7 @@ def test_wrong_types_are_refused_in_words(path: str, asked: Any, raw: bytes | No
     refused(path, asked, raw)
 
 
-@pytest.mark.more
+@pytest.mark.long
 @ANYTHING
 @settings(deadline=None, max_examples=300)
 def test_many_wrong_types_are_refused_in_words(path: str, asked: Any, raw: bytes | None) -> None:

@@ -15,6 +15,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     return made(tmp_path_factory.getbasetemp() / "pages")[0]
 
 
+@pytest.mark.more
 def test_every_kind_is_looked_at(pages: dict[str, Path]) -> None:
     assert set(pages) == {*KINDS, *BARE}
 

@@ -166,6 +166,7 @@ def test_no_text_lies_over_text(browser: Any, pages: Any, kind: str, size: Any) 
         assert page.evaluate(WORDS) == []
 
 
+@pytest.mark.more
 @pytest.mark.parametrize(
     "move",
     [
@@ -254,6 +255,7 @@ def read(found: list[float], values: np.ndarray, rows: list[int], dt: float) -> 
     assert found[3] == pytest.approx(wanted[3], rel=1e-5, abs=4e-6 * height / abs(dt))
 
 
+@pytest.mark.more
 def test_cursors_read_the_samples_of_the_run(browser: Any, pages: Any) -> None:
     paths, run = pages
     following = run.contour().following

@@ -85,6 +85,7 @@ def test_every_text_is_read_on_its_ground(browser: Any, pages: Any, kind: str, s
     assert seen > 50 and wrong == []
 
 
+@pytest.mark.more
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 def test_a_picture_follows_the_browser_or_what_the_notebook_says(
     browser: Any, pages: Any, scheme: str

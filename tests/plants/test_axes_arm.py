@@ -121,6 +121,7 @@ def test_slides_start_at_millimetres() -> None:
     assert motors == pytest.approx(exact * a.parameter("gear_ratio"), abs=1e-9)
 
 
+@pytest.mark.more
 def test_the_tool_is_where_pinocchio_has_it() -> None:
     """Tip and attitude, a tool that is turned on the flange: 1e-12."""
     for _ in range(5):

@@ -11,6 +11,7 @@ from xml.etree import ElementTree as ET
 import bits
 import pytest
 from conftest import ROOT
+from few_cases import few
 from test_ports import EXPORTED, exported
 
 import motionfmu
@@ -101,7 +102,9 @@ def test_the_ssp_of_the_demo_has_the_bits_of_a_run(
 
 
 @exported
-@platforms
+@pytest.mark.parametrize(
+    "platform", few([here(), WINDOWS], 1, pytest.mark.long), ids=lambda p: p.name
+)
 def test_a_packed_program_runs_from_its_resources(
     platform: Platform, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

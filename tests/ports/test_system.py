@@ -10,6 +10,7 @@ import bits
 import pytest
 from conftest import ROOT
 from console import command
+from few_cases import few
 
 import motionfmu
 from motionfmu.base.errors import InputError
@@ -67,7 +68,7 @@ ON_ARM: dict[str, tuple[int, dict[str, int]]] = {
 
 @pytest.mark.more
 @pytest.mark.skipif(not util.find_spec("ziglang"), reason="no zig: make export installs it")
-@pytest.mark.parametrize("fmi", [3, 2])
+@pytest.mark.parametrize("fmi", few([3, 2], 1, pytest.mark.long))
 @pytest.mark.parametrize("name", ON_ARM)
 @pytest.mark.parametrize("platform", [Platform("aarch64-linux")], ids=lambda p: p.name)
 def test_an_arm_processor_gives_the_bits_of_a_system(

@@ -31,6 +31,7 @@ def told(value: float, number: str) -> bool:
     return abs(value - float(number)) <= 0.551 * 10.0 ** -len(number.partition(".")[2])
 
 
+@pytest.mark.long
 def test_ten_times(tmp_path: Path) -> None:
     """By ten.py as it is first typed: its picture does not take the place of the tracked one."""
     before = hashlib.sha256((FOLDER / "ivu.png").read_bytes()).hexdigest()

@@ -132,6 +132,7 @@ def test_command(tmp_path):
     assert sum(s["time"] for s in told["where"]) == pytest.approx(told["time"], abs=1e-9)
 
 
+@pytest.mark.more
 def test_command_reads_with_the_values_that_are_set(tmp_path):
     file = tmp_path / "part.ngc"
     file.write_text("G1 A400 F1000\nM2\n")

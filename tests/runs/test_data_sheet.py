@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from console import within
+from few_cases import few
 from refusals import refusal
 
 import motionfmu
@@ -142,7 +143,7 @@ FIGURES = ("| ISO", "| position loop:", "| velocity loop:", "| its step:", "- IS
 
 
 @pytest.mark.more
-@pytest.mark.parametrize("name", sorted(LIBRARY))
+@pytest.mark.parametrize("name", few(sorted(LIBRARY), ["mill3", "robot6"], pytest.mark.long))
 def test_a_readme_has_the_figures_of_a_run(name: str) -> None:
     """Each row of the table that the command writes, within 1 % or the last digit, and no other."""
     readme = (LIBRARY[name] / "README.md").read_text()

@@ -90,6 +90,7 @@ def test_a_shell_is_offered_commands_and_scenarios(words, count, offered) -> Non
     assert done.stdout.split() == offered
 
 
+@pytest.mark.more
 def test_a_consumer_is_checked_by_the_types_of_the_package(tmp_path: Path) -> None:
     assert (files("motionfmu") / "py.typed").is_file()
     file = tmp_path / "mine.py"

@@ -78,6 +78,7 @@ def test_what_is_no_bidirectional_test(up: tuple[int, ...], down: tuple[int, ...
         PositioningTest(np.zeros(3), np.zeros(up), np.zeros(down))
 
 
+@pytest.mark.more
 def test_backlash_and_pitch_error_of_a_screw_are_found(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

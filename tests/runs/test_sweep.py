@@ -177,6 +177,7 @@ def test_one_worker_gives_the_same_rows_and_the_journal_is_gone(
     assert names == {"sweep.parquet", "report.html", "sweep.png", "sweep.svg"}
 
 
+@pytest.mark.more
 def test_a_cluster_gives_the_same_rows(whole: Outcome, tmp_path: Path) -> None:
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
@@ -353,6 +354,7 @@ def test_a_number_that_is_not_there_is_an_empty_cell_beside_the_others(
     assert row.values[0] > 0 and row.values[1] is None
 
 
+@pytest.mark.more
 def test_a_run_that_ends_its_process_is_a_row_and_is_tried_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -433,6 +435,7 @@ def finished(folder: Path) -> list[int]:
     return [json.loads(line)["run"] for line in lines]
 
 
+@pytest.mark.more
 def test_a_kill_loses_and_repeats_nothing_that_was_done(whole: Outcome, tmp_path: Path) -> None:
     """SIGKILL while rows come; the workers end by themselves, the rest is done once."""
     out = tmp_path / "killed"

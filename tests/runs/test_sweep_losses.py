@@ -150,7 +150,7 @@ def test_a_worker_of_a_cluster_that_is_killed_is_replaced(
     assert set(before) != set(processes())
 
 
-@pytest.mark.more
+@pytest.mark.long
 def test_a_run_that_ends_its_process_on_a_cluster_is_a_row_with_its_message(
     tmp_path: Path, undisturbed: list[dict[str, Any]], monkeypatch: pytest.MonkeyPatch
 ) -> None:

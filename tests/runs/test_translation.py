@@ -121,6 +121,7 @@ def test_a_page_of_several_is_chosen_and_told(machine: str, tmp_path: Path) -> N
     assert motionfmu.machine(machine).scenario(tmp_path / "one.plt").notes == ()
 
 
+@pytest.mark.more
 def test_a_look_at_a_page_of_several(tmp_path: Path) -> None:
     """By gcode, with and without a machine."""
     (tmp_path / "two.plt").write_text(PAGES)

@@ -11,6 +11,7 @@ from pathlib import Path
 import nbformat
 import pytest
 from conftest import FMUS, ROOT
+from few_cases import few
 from followed_pages import Folder
 from installed_wheel import Installed
 from matplotlib.figure import Figure
@@ -21,7 +22,9 @@ pytestmark = pytest.mark.more
 
 PAGES = sorted((ROOT / "docs/tutorials").glob("*.md"))
 ENVIRON = {**os.environ, "MOTIONFMU_FMUS": str(FMUS)}
-WHERE = ["checkout", pytest.param("wheel", marks=pytest.mark.xdist_group("wheel"))]
+WHEEL = pytest.mark.xdist_group("wheel")
+CHECKOUT = [pytest.param(page, "checkout", id=f"{page.stem}-checkout") for page in PAGES]
+INSTALLED = [pytest.param(p, "wheel", marks=WHEEL, id=f"{p.stem}-wheel") for p in PAGES]
 
 
 def printed(cells: list[str], folder: Path) -> list[str]:
@@ -29,8 +32,7 @@ def printed(cells: list[str], folder: Path) -> list[str]:
     return cells_printed(cells, folder, Path(sys.executable), ENVIRON)
 
 
-@pytest.mark.parametrize("where", WHERE)
-@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.stem)
+@pytest.mark.parametrize(("page", "where"), CHECKOUT + few(INSTALLED, 2, pytest.mark.long))
 def test_a_tutorial_prints_what_it_says(
     page: Path, where: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 import nbformat
 import pytest
 from conftest import ROOT
+from few_cases import few
 from followed_pages import Folder, own, steps
 from installed_wheel import Installed
 from page_cells import alike, cells_printed
@@ -20,6 +21,8 @@ from page_cells import alike, cells_printed
 pytestmark = [pytest.mark.more, pytest.mark.xdist_group("wheel")]
 
 NAMES = sorted(file.parent.name for file in (ROOT / "examples").glob("*/README.md"))
+# Those that show each way of use: Python alone, a CI, a notebook, somebody's own master.
+INSTALLED_TOO = ("continuous_integration", "fmpy_loop", "notebook", "student_backlash")
 # Where libraries and headers are installed as this one's README says.
 CORES = "virtual_card"
 NOTEBOOK = "*.ipynb"
@@ -123,7 +126,7 @@ def copies(workbench: Installed, tmp_path_factory: pytest.TempPathFactory) -> Co
     return Copies(workbench, tmp_path_factory.mktemp("copies"))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", few(NAMES, INSTALLED_TOO, pytest.mark.long))
 def test_an_example_does_what_it_says(name: str, copies: Copies) -> None:
     assert copies.follow(name) is None
 
