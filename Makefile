@@ -58,7 +58,7 @@ test-more: build export sanitized .venv/documenting    ## what is slow and stand
 test-all: export MOTIONFMU_SKIPS = listed
 test-all: test test-more        ## everything but test-long; a skip that is not in tests/skips.toml is an error
 
-test-long: build                ## what takes an hour and the others show of a few: FMPy on all scenarios
+test-long: build                ## what takes two hours and the others show of a few: FMPy on all scenarios
 	$(PYTEST) -m long --durations-min=60
 
 sanitized: build                ## C tests and fuzz harnesses with AddressSanitizer and UBSan in build/asan

@@ -213,8 +213,8 @@ def opened(browser: Any, file: Path, size: dict[str, int], scheme: str) -> Any:
     return page
 
 
-# A look by axe-core takes seconds. Pages share their colours and their parts: every other one is read
-# in light, the others in dark.
+# A look by axe-core takes seconds. Pages share their colours and their parts: every other one is
+# read in light, the others in dark.
 @pytest.mark.parametrize(
     ("size", "scheme", "read"),
     [(DESK, "light", 0), (DESK, "dark", None), (PHONE, "light", None), (PHONE, "dark", 1)],
