@@ -159,7 +159,7 @@ static void warn_underruns(struct fmu *f, int64_t clock)
         return;
     m->dry = n;
     fmu_warn(f,
-             "%d underrun%s by %.9g s: the next pulse memory was not full in time, and the "
+             "%d underrun%s until %.9g s: the next pulse memory was not full in time, and the "
              "pulses stood still",
              (int)n, n == 1 ? "" : "s", (double)clock / FPGA_CLOCK_HZ);
 }
