@@ -131,7 +131,7 @@ class VirtualRobot(Commands, Station[RobotReading]):
         if missed := self._state["underruns"] - before:
             when, cycle = self._state["clock"] / CLOCK_HZ, self._state["cycle_time_most"] * 1e6
             warnings.warn(
-                f"{missed} underruns of the card by {when:.6g} s: cycles of the driver "
+                f"{missed} underruns of the card until {when:.6g} s: cycles of the driver "
                 f"take up to {cycle:.4g} µs (ik_time, pitch)",
                 RuntimeWarning,
                 stacklevel=level,
