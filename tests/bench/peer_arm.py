@@ -13,7 +13,7 @@ import pinocchio
 import robot_arm
 from medians import Medians
 from peers import ROUNDS, Row, agree
-from plant_library import BUILD, ROOT, Library
+from plant_library import BUILD, ROOT, Library, equations
 
 from motionfmu.virtual import robot
 
@@ -82,10 +82,9 @@ class Rows:
     def _compiled(self) -> ctypes.CDLL:
         """Our equations as the build has compiled them."""
         self._folder = tempfile.TemporaryDirectory(prefix="motionfmu-")
-        objects = BUILD / "CMakeFiles/robot_arm_fmi3.dir/gen/robot_arm"
         file = Path(self._folder.name) / "arm_rates.so"
         Library.compile(
-            [HERE / "arm_rates.c", objects / "plant.c.o", BUILD / "libelementary.a"],
+            [HERE / "arm_rates.c", *equations("robot_arm")],
             file,
             [BUILD / "gen/robot_arm", ROOT / "src/plant", ROOT / "src/fmi"],
         )

@@ -74,6 +74,12 @@ double run_radius(double *a) { return plant_spectral_radius(a, PLANT_FINE); }
 """
 
 
+def equations(name: str) -> list[Path]:
+    """What the build has compiled of an FMU's equations, and what they are linked with."""
+    made = BUILD / f"CMakeFiles/{name}_equations.dir/gen/{name}/plant.c.o"
+    return [made, BUILD / "libelementary.a"]
+
+
 class Library:
     """The compiled plant of one fmu.toml."""
 
@@ -83,8 +89,7 @@ class Library:
         made, files = folder, [folder / "plant.c", *_ELEMENTARY.glob("*.c")]
         if built:
             made = BUILD / "gen" / toml.parent.name
-            objects = BUILD / f"CMakeFiles/{made.name}_fmi3.dir"
-            files = [objects / "gen" / made.name / "plant.c.o", BUILD / "libelementary.a"]
+            files = equations(made.name)
         else:
             codegen.write(toml, folder)
             (folder / "vars.h").write_text(ctables.header(self.description))

@@ -249,7 +249,9 @@ def test_a_move_of_joints_takes_no_inverse_kinematics() -> None:
 def test_underruns_are_told() -> None:
     robot = VirtualRobot(ik_time=80e-6)  # 2 m/s: two points in 100 us
     robot.move_line([1000, 400, 900, 180, 0, 180], feed=2000)
-    with pytest.warns(RuntimeWarning, match=r"underruns of the card until .* s: cycles of the driver"):
+    with pytest.warns(
+        RuntimeWarning, match=r"underruns of the card until .* s: cycles of the driver"
+    ):
         robot.run(1.0)
     assert robot.read().underruns > 0
 
