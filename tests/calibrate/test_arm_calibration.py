@@ -137,6 +137,7 @@ def test_what_acts_alike_leaves_nothing_at_the_tool(plan) -> None:
     assert set(found.after.left) >= set(LEFT)
 
 
+@pytest.mark.more
 def test_values_are_within_their_deviations(plan) -> None:
     away = []
     for seed in range(6):

@@ -132,6 +132,7 @@ def test_what_is_for_a_checker_alone_is_not_changed() -> None:
     assert {c.line for c in changes(Path("x.py"), text)} == {4}
 
 
+@pytest.mark.more
 def test_tests_that_make_test_leaves_out_are_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

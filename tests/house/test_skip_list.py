@@ -81,6 +81,7 @@ def section(told: str, title: str) -> list[str]:
     return rows[: next((k for k, row in enumerate(rows) if "::" not in row and ":" not in row), 0)]
 
 
+@pytest.mark.more
 @WORKERS
 def test_a_skip_without_a_line_is_an_error(workers: tuple[str, ...], tmp_path: Path) -> None:
     done = run(tmp_path, BOTH.split("\n\n")[0], *workers)
@@ -104,6 +105,7 @@ def test_skips_with_a_line_are_none(workers: tuple[str, ...], tmp_path: Path) ->
     assert "1 passed, 3 skipped" in done.stdout and "toml" not in done.stdout
 
 
+@pytest.mark.more
 def test_nothing_is_asked_of_a_person(tmp_path: Path) -> None:
     done = run(tmp_path, "", asked="")
     assert done.returncode == 0 and "toml" not in done.stdout
@@ -113,6 +115,7 @@ def test_nothing_is_asked_of_a_person(tmp_path: Path) -> None:
     assert done.returncode == 4 and "a line is a table [[skip]]" in done.stderr
 
 
+@pytest.mark.more
 def test_a_skip_is_an_error_while_what_it_needs_is_there(tmp_path: Path) -> None:
     for programs, status in (('["no-such", "sh"]', 1), ('["no-such", "nor-this"]', 0)):
         done = run(tmp_path, f"{BOTH}unless = {programs}\n")

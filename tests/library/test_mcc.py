@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from few_cases import few
 from fmi_tools import ERROR, OK, WARNING, Instance
 
 HOST = """dda_length dda_divider dda_run min_stock irq_mask ack_seq ack_flags p_gain loop_on
@@ -171,7 +172,7 @@ def program(folder: Path, text: str) -> str:
     return str(folder / "part.ngc")
 
 
-@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("fmi", few([3, 2], 1))
 def test_jog_and_hand_wheel_from_the_panel(fmi: int) -> None:
     machine = Machine(fmi, {**FAST, "output_mode": 0, "queue_depth": 8})
 

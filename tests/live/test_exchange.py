@@ -180,6 +180,7 @@ def test_a_wrong_plan_has_one_message(
         Exchange(mill, ExchangePlan(**{"peer": "udp://127.0.0.1:9", **plan}))  # type: ignore[arg-type]
 
 
+@pytest.mark.more
 def test_the_command_says_what_is_wrong_with_an_exchange() -> None:
     url = ["--exchange", "udp://127.0.0.1:9"]
     for given, said in (

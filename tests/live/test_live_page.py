@@ -35,6 +35,7 @@ def tab(browser: Any, address: str) -> Iterator[Any]:
         yield page
 
 
+@pytest.mark.more
 def test_a_key_of_the_keyboard_jogs_while_it_is_down(tab: Any) -> None:
     before = position(tab, 1)
     tab.keyboard.down("ArrowRight")  # the pad has not the focus: nothing may move
@@ -505,7 +506,7 @@ def test_everyone_can_read_and_reach_every_view(
 ROWS = {"robot6": 6, "hydraulic_slide": 1, "engraver": 2}
 
 
-@pytest.mark.parametrize("name", few(["robot6", "hydraulic_slide", "engraver"], 1))
+@pytest.mark.parametrize("name", few(list(ROWS), ["engraver"]))
 def test_other_machines_have_their_page(browser: Any, name: str) -> None:
     from playwright.sync_api import expect
 

@@ -246,6 +246,7 @@ def refused(link: Any, port: int = 0, folder: Path | None = None) -> str:
     return str(found.value)
 
 
+@pytest.mark.more
 def test_a_port_that_is_taken(tmp_path: Path) -> None:
     async def work() -> None:
         with socket.create_server(("127.0.0.1", 0)) as taken:

@@ -198,6 +198,7 @@ def test_the_picture_shows_the_speed_and_the_tool(tab: Any, served: Served) -> N
     assert arm > 60
 
 
+@pytest.mark.more
 def test_the_form_checks_as_it_is_typed_and_saves(tab: Any, served: Served) -> None:
     from playwright.sync_api import expect
 

@@ -85,6 +85,7 @@ def refused(path: str, asked: Any, raw: bytes | None) -> None:
         assert all(answer.json()["errors"])
 
 
+@pytest.mark.more
 @given(st.data())
 @settings(deadline=None, max_examples=100)
 def test_wrong_values_of_a_configuration_are_refused_in_words(data: Any) -> None:

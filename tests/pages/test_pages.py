@@ -182,6 +182,7 @@ def test_text_over_text_is_seen(browser: Any, pages: Any, move: str) -> None:
         assert page.evaluate(WORDS) != []
 
 
+@pytest.mark.more
 def test_a_page_is_small_light_and_dark_with_contents(browser: Any, pages: Any) -> None:
     paths, _ = pages
     for kind in KINDS:

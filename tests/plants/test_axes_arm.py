@@ -45,6 +45,7 @@ def ideal(a: ByAxes) -> np.ndarray:
     return np.array(a.start[a.places("rotor.angle")] / a.parameter("gear_ratio"))
 
 
+@pytest.mark.more
 def test_dynamics_are_those_of_pinocchio() -> None:
     """Forward and inverse, five random arms at 100 random states each: 1e-11 of the largest."""
     forward, inverse, sizes = 0.0, 0.0, []

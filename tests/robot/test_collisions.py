@@ -93,6 +93,7 @@ def by_coal(a: tuple[Any, Any], b: tuple[Any, Any]) -> float:
     return float(coal.distance(a[0], a[1], b[0], b[1], coal.DistanceRequest(True), result))
 
 
+@pytest.mark.more
 def test_a_thousand_poses_are_as_far_from_everything_as_coal_says(tmp_path: Path) -> None:
     """Each pair of parts, each body, the floor; where two are inside each other both say so."""
     (tmp_path / "cell.toml").write_text(CELL)

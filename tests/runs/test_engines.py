@@ -263,7 +263,8 @@ def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("fmi", few([3, 2], 1))
+@pytest.mark.more
+@pytest.mark.parametrize("fmi", [3, 2])
 def test_stimuli_reach_every_engine_alike(driven: Path, fmi: int) -> None:
     scenario = motionfmu.load(driven)
     one = scenario.run(engine="fused")

@@ -120,6 +120,7 @@ def test_a_worker_that_is_killed_is_replaced(
     assert is_undisturbed(rows, undisturbed) <= 3
 
 
+@pytest.mark.more
 def test_a_worker_that_is_killed_before_its_first_run_is_replaced(
     tmp_path: Path, undisturbed: list[dict[str, Any]]
 ) -> None:
