@@ -17,9 +17,7 @@ class Menu:
     def __init__(self, html: str) -> None:
         self.pieces = TAGS.split(html)
         self.links: dict[int, str] = {}  # places of links and where they lead from the front page
-        self.around: dict[
-            str, list[int]
-        ] = {}  # by that: places of the first link and what holds it
+        self.around: dict[str, set[int]] = {}  # by that: places of the links and of what holds them
         held: list[int] = []
         for k, piece in enumerate(self.pieces):
             if piece.startswith(("<ul", "<li")):
@@ -47,7 +45,7 @@ class Menu:
 
 
 def _once(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """Give the theme, which asks each page for the whole menu, that of the front page led anew."""
+    """The theme asks each page for the whole menu: give it what the front page has, led anew."""
     resolved = context.get("toctree")
 
     def toctree(**how: Any) -> str:
