@@ -12,12 +12,12 @@ TAGS = re.compile(
 
 
 class Menu:
-    """The menu as the front page shows it, which is not in it, in pieces."""
+    """The menu of the front page, cut at its tags; no entry of it leads to the front page."""
 
     def __init__(self, html: str) -> None:
         self.pieces = TAGS.split(html)
-        self.links: dict[int, str] = {}  # places of links and where they lead from the front page
-        self.around: dict[str, set[int]] = {}  # by that: places of the links and of what holds them
+        self.links: dict[int, str] = {}  # by place of a link: where it leads
+        self.around: dict[str, set[int]] = {}  # by where they lead: links, and tags around
         held: list[int] = []
         for k, piece in enumerate(self.pieces):
             if piece.startswith(("<ul", "<li")):
@@ -29,7 +29,7 @@ class Menu:
                 self.around.setdefault(self.links[k], set()).update(held, {k})
 
     def at(self, page: str) -> str:
-        """The menu on a page, given by its address: its own branch is marked."""
+        """The menu of the page at an address: the entries that lead there are marked."""
         pieces = list(self.pieces)
         for k, address in self.links.items():
             own = relative_uri(page, address) or "#"
@@ -45,7 +45,7 @@ class Menu:
 
 
 def _once(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """The theme asks each page for the whole menu: give it what the front page has, led anew."""
+    """Replace the function by which the theme asks for the menu of a page."""
     resolved = context.get("toctree")
 
     def toctree(**how: Any) -> str:
@@ -60,6 +60,6 @@ def _once(app: Any, page: str, template: str, context: dict[str, Any], doctree: 
 
 
 def setup(app: Any) -> dict[str, bool]:
-    """Come before the theme, which asks at 500."""
+    """Connect ahead of the theme's own handler, which asks for the menu with priority 500."""
     app.connect("html-page-context", _once, priority=400)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

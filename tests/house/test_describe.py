@@ -132,7 +132,7 @@ def test_only_equal_units_share_a_wire() -> None:
 
 @pytest.mark.parametrize("name", few(NAMES[::-1], 1))
 def test_the_fmu_says_what_the_description_says(name: str) -> None:
-    d = fmu_toml.load(ROOT / "fmus" / name / "fmu.toml")  # seconds of a Modelica class: once
+    d = fmu_toml.load(ROOT / "fmus" / name / "fmu.toml")  # takes seconds of a Modelica class
     for fmi in (2, 3):
         says_what_it_should(d, name, fmi)
 

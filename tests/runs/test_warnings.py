@@ -54,6 +54,16 @@ def test_what_fits_is_not_warned_of() -> None:
     assert told({"card.loop_period": 1e-4, "mcc.bus_period": 2e-4}) == ()
 
 
+def test_underruns_are_told_of_when_there_are_ten_times_as_many() -> None:
+    run = load(ROOT / "scenarios/pulse_underrun").run(stop=0.6)
+    counted = [row.split(" underrun")[0] for row in run.warnings]
+    for card in ("document_card", "good_card", "short_card", "long_card"):
+        all_of_it = run[f"{card}.underruns"][-1]
+        wanted = [f"{card}: {n}" for n in (1, 10, 100, 1000) if n <= all_of_it]
+        assert [row for row in counted if row.startswith(card)] == wanted
+    assert run["short_card.underruns"][-1] >= 100
+
+
 @pytest.mark.parametrize("z", [0.3, 0.36])
 def test_the_warning_begins_at_an_error_of_a_ten_thousandth(z: float) -> None:
     """Runge-Kutta's step of e^-z: its exponent is wrong by z^4/120 and terms of higher order."""

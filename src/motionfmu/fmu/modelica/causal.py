@@ -171,7 +171,7 @@ def _refuse_variables(names: _FlatNames, told: list[tuple[str, ca.SX]], variable
 
 
 def _linear(e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX] | None:
-    """A and b of e = A v + b, if it is that."""
+    """Matrix A and vector b of expressions e = A v + b; None if e is not linear in v."""
     a = ca.jacobian(e, v)
     if ca.depends_on(a, v) or steps_on(e, v):
         return None
@@ -179,7 +179,7 @@ def _linear(e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX] | None:
 
 
 def _linear_parts(names: _FlatNames, e: ca.SX, v: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """A and b of e = A v + b, or a refusal."""
+    """Matrix A and vector b of expressions e = A v + b; an e that is not linear is refused."""
     found = _linear(e, v)
     if found is None:
         unknowns = ", ".join(map(str, ca.symvar(v)))

@@ -68,7 +68,7 @@ def steps_on(expression: ca.SX, variables: ca.SX) -> bool:
     """Whether a comparison, sign or rounding depends on a column of symbols."""
     whole = ca.Function("f", ca.symvar(expression), [expression])
     if STEPS.isdisjoint(map(whole.instruction_id, range(whole.n_instructions()))):
-        return False  # as of almost every equation, in a tenth of the time
+        return False  # most equations compare nothing: nodes need not be made for them
     others = [s for s in ca.symvar(expression) if not ca.depends_on(s, variables)]
     p = program([variables, ca.vertcat(*others)], [expression])
     depends = p.depends({0})
