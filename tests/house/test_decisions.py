@@ -43,6 +43,8 @@ def faults(text: str, folder: Path) -> list[str]:
     ]
     if not any(line.startswith("## ") and line != "## Rejected" for line in lines):
         found.append("no heading above the decisions")
+    if not rejected(text):
+        found.append("nothing rejected")
     found += [
         f"{sentence.words} words; {LONGEST} at most: {sentence.text}"
         for sentence in of_markdown(text)
@@ -134,6 +136,7 @@ On which side do cars drive?
         ("All neighbours do.", "`" + "x" * 100 + "`", "columns; 100"),
         ("## Rejected", "| " + "x" * 160 + " |\n\n## Rejected", "columns; 160"),
         ("On which", "\n" * 60 + "On which", "lines; 60"),
+        ("## Rejected", "## Other ways", "nothing rejected"),
         (": there are more cars of the other kind", "", "without a reason: The left."),
         (": there are more cars of the other kind", ": no", "without a reason: The left: no."),
         ("The middle, which takes two turns", "The middle in two turns", "reason: The middle in"),
