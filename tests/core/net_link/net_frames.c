@@ -209,7 +209,7 @@ static void check_queue(uint64_t *seed)
 static void check_ring(uint64_t *seed)
 {
     int32_t words[BYTE_RING_WORDS] = { 0 }, count = INT32_MAX - 3000, taken = count;
-    uint8_t sent = 0, seen = 0, bytes[600];
+    uint8_t sent = 0, seen = 0, bytes[601];
     int64_t total = 0;
     for (int round = 0; round < 2000; round++) {
         const size_t n = (size_t)check_random(seed, 0, 600);
@@ -219,10 +219,13 @@ static void check_ring(uint64_t *seed)
         const size_t put = byte_ring_put(words, &count, taken, bytes, n);
         CHECK_EQ(put, n < (size_t)(512 - held) ? n : (size_t)(512 - held));
         sent = (uint8_t)(sent + put);
+        for (size_t i = 0; i < sizeof bytes; i++)
+            bytes[i] = (uint8_t)~(seen + i);
         const size_t got =
             byte_ring_look(words, count, taken, bytes, (size_t)check_random(seed, 0, 600));
         for (size_t i = 0; i < got; i++)
             CHECK_EQ(bytes[i], (uint8_t)(seen + i));
+        CHECK_EQ(bytes[got], (uint8_t)~(seen + got)); /* nothing behind what it says */
         seen = (uint8_t)(seen + got);
         taken = byte_ring_on(taken, got);
         total += (int64_t)got;
