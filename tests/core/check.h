@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 static int check_failures;
+enum { CHECK_SHOWN = 20 }; /* failures that are printed; the others are counted */
 
 /* Stride of loops over similar cases: under ASan, where a case takes several times as long, every
  * fifth case is enough for the sanitizers. */
@@ -21,8 +22,8 @@ enum { CHECK_EACH = 1 };
 #define CHECK(condition) \
     do { \
         if (!(condition)) { \
-            check_failures++; \
-            printf("%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+            if (check_failures++ < CHECK_SHOWN) \
+                printf("%s:%d: %s\n", __FILE__, __LINE__, #condition); \
         } \
     } while (0)
 
@@ -31,9 +32,9 @@ enum { CHECK_EACH = 1 };
     do { \
         long long check_got = (long long)(got), check_want = (long long)(want); \
         if (check_got != check_want) { \
-            check_failures++; \
-            printf("%s:%d: %s = %lld, want %lld\n", __FILE__, __LINE__, #got, check_got, \
-                   check_want); \
+            if (check_failures++ < CHECK_SHOWN) \
+                printf("%s:%d: %s = %lld, want %lld\n", __FILE__, __LINE__, #got, check_got, \
+                       check_want); \
         } \
     } while (0)
 
@@ -42,9 +43,9 @@ enum { CHECK_EACH = 1 };
     do { \
         const double check_got = (got), check_want = (want); \
         if (!(fabs(check_got - check_want) <= (tolerance))) { \
-            check_failures++; \
-            printf("%s:%d: %s = %.17g, want %.17g\n", __FILE__, __LINE__, #got, check_got, \
-                   check_want); \
+            if (check_failures++ < CHECK_SHOWN) \
+                printf("%s:%d: %s = %.17g, want %.17g\n", __FILE__, __LINE__, #got, check_got, \
+                       check_want); \
         } \
     } while (0)
 
