@@ -238,11 +238,13 @@ static struct rest pause(double speed, double acc, double jerk, double reserve)
     player_set_target(&p, 1);
     player_advance(&p, 123457);
     player_take(&p);
+    CHECK_NEAR(player_velocity(&p, 0), 1e3 * f.command[0], 1e-9 * speed);
     player_counts(&p, p.clock, a);
     player_set_target(&p, 0);
     const int64_t from = p.clock;
     while (player_next(&p) < INT64_MAX) {
         player_advance(&p, player_next(&p));
+        CHECK_NEAR(player_velocity(&p, 0), 1e3 * f.command[0] * player_rate(&p), 1e-9 * speed);
     }
     player_counts(&p, p.clock, b);
     const struct player_told told = player_take(&p);
