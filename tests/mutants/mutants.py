@@ -36,8 +36,9 @@ ROOT = Path(__file__).resolve().parents[2]
 PLACE = ROOT / "build/mutants"
 TREE, BUILT, PYTHON = PLACE / "tree", PLACE / "built", PLACE / "venv/bin/python"
 # For the tests of a change, which take seconds, or minutes on a busy machine: their processor's
-# time, and a sleeper's.
+# time, and a sleeper's. What a C test takes by itself is known: a change has so many times that.
 PATIENCE, SLEEP = 900, 3600  # [s]
+LONGER, AT_LEAST = 10, 30  # [s]
 NEAREST = 3  # Python tests that are asked in one go
 # No C test compiles these: a plant is made of its template, others are loaded built, by Python.
 ELSEWHERE = ("src/plant", "src/python", "src/controllers/robot_station")
@@ -103,13 +104,18 @@ def draw(count: int, seed: int, only: str, ending: str) -> list[Change]:
     return [change for _, change in sorted(drawn, key=lambda d: d[0])][:count]
 
 
-def _limited() -> None:
-    """The same on a machine with other work to do: no test is slow for that."""
-    resource.setrlimit(resource.RLIMIT_CPU, (PATIENCE, PATIENCE))
+def used() -> float:
+    """Processor's time of all commands so far [s]."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return children.ru_utime + children.ru_stime
 
 
-def ran(line: list[str], cwd: Path) -> bool:
-    """Whether a command holds within its time."""
+def ran(line: list[str], cwd: Path, patience: int = PATIENCE) -> bool:
+    """Whether a command holds within its processor's time [s]."""
+
+    def limited() -> None:
+        resource.setrlimit(resource.RLIMIT_CPU, (patience, patience))
+
     try:
         quiet = {
             "stdin": subprocess.DEVNULL,
@@ -117,7 +123,7 @@ def ran(line: list[str], cwd: Path) -> bool:
             "stderr": subprocess.DEVNULL,
         }
         done = subprocess.run(
-            line, cwd=cwd, timeout=SLEEP, check=False, preexec_fn=_limited, **quiet
+            line, cwd=cwd, timeout=SLEEP, check=False, preexec_fn=limited, **quiet
         )
         return done.returncode == 0
     except subprocess.TimeoutExpired:
@@ -144,16 +150,19 @@ class Run:
     """What is known of the tests, and what became of each change."""
 
     good: dict[str, bool] = field(default_factory=dict)  # does a test hold without any change?
+    takes: dict[str, float] = field(default_factory=dict)  # a C test without any change [s]
     fate: dict[Change, str] = field(default_factory=dict)
 
     def holds(self, test: str) -> bool:
         """Whether a test holds without any change, found when it is first asked for."""
         if test not in self.good:
-            self.good[test] = (
-                python_tests([test])
-                if test.endswith(".py")
-                else make([f"test_{test}"]) and ran([f"./test_{test}"], BUILT)
-            )
+            if test.endswith(".py"):
+                self.good[test] = python_tests([test])
+            else:
+                made = make([f"test_{test}"])
+                before = used()
+                self.good[test] = made and ran([f"./test_{test}"], BUILT)
+                self.takes[test] = used() - before
         return self.good[test]
 
     def judge(self, change: Change) -> str:
@@ -187,7 +196,8 @@ class Run:
                     return "does not compile"
                 if k == 0 and objects and self._objects(change.file) == objects:
                     return "compiles to the same"
-                if not ran([f"./test_{test}"], BUILT):
+                patience = AT_LEAST + math.ceil(LONGER * self.takes[test])
+                if not ran([f"./test_{test}"], BUILT, patience):
                     return "caught"
         return "held"
 
