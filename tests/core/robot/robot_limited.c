@@ -107,10 +107,78 @@ static void held(void)
     CHECK_NEAR(t.by[LIMITED_WAIT], 1.0, 5 * CYCLE);
 }
 
+/* The turn as a move that flows: what is neither speed, feed nor acceleration is jerk. */
+static void flows(void)
+{
+    struct robot_config c = rig_config();
+    c.flow = true;
+    const double v = 48.0 / (c.scale[1] * c.slot), most = fmin(c.arm.joint[1].speed, v);
+    const double acc = c.arm.joint[1].acc;
+
+    for (int smooth = 0; smooth < 2; smooth++) {
+        c.smooth = 0.1 * smooth;
+        for (int n = 0; n < 3; n++) { /* whole, half as asked, half by override */
+            const struct told t = turn(&c, n == 1 ? 0.5 : 1.0, n == 2 ? 0.5 : 1.0);
+            const double part = n == 0 ? 1.0 : 0.5, ramp = part * most / acc;
+            const double steady = 2.5 / (part * most) - ramp - c.smooth; /* and what is near it */
+            const double whole = t.by[n == 0 ? LIMITED_SPEED : LIMITED_FEED];
+            CHECK(whole >= steady && whole <= steady + (smooth ? 0.06 : 0.03 * ramp));
+            CHECK_NEAR(t.by[LIMITED_JERK], 4.0 * c.smooth, 0.3 * c.smooth);
+            CHECK_NEAR(whole + t.by[LIMITED_ACCELERATION] + t.by[LIMITED_JERK], t.all, 2 * CYCLE);
+            CHECK_NEAR(t.all, 1.001 * (steady + 2.0 * (ramp + c.smooth)), 0.001 * t.all);
+            CHECK_EQ(t.axis[LIMITED_ACCELERATION], 2);
+            CHECK_EQ(t.axis[LIMITED_SPEED], n == 0 ? 2 : 0);
+        }
+    }
+}
+
+/* A hold of moves that flow: they rest once they stand, and until it ends or an abort does. */
+static void flow_held(void)
+{
+    struct robot_config c = rig_config();
+    const double from[OPW_JOINTS] = { 0, -1.25, 0, 0, 1.5, 0 };
+    struct robot_move m = { .kind = ROBOT_JOINTS, .share = 1.0, .target.by_joints = true };
+
+    c.flow = true;
+    memcpy(m.target.joint, from, sizeof from);
+    m.target.joint[1] = 1.25;
+    for (int aborts = 0; aborts < 2; aborts++) {
+        robot_start(&robot, &c, from);
+        CHECK(robot_rests(&robot));
+        CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+        CHECK(!robot_rests(&robot));
+        watch(&c, 0.0, 0.5);
+        CHECK(robot.rate[1] > 0.5);
+        robot_hold(&robot, true);
+        int n = 0;
+        for (; n < 10000 && !robot_rests(&robot); n++) {
+            CHECK(robot.rate[1] > 0.0);
+            robot_cycle(&robot, &c);
+            CHECK_EQ(robot_limited(&robot, &c, 0.0).by, LIMITED_WAIT);
+        }
+        CHECK(n > 10 && n < 10000 && robot.rate[1] < 1e-6 && !robot_idle(&robot));
+        const double at = robot.joint[1];
+        if (aborts) {
+            robot_abort(&robot);
+            robot_cycle(&robot, &c);
+        } else {
+            CHECK_NEAR(watch(&c, 0.0, 0.2).by[LIMITED_WAIT], 0.2, 2 * CYCLE);
+            CHECK(robot_rests(&robot) && robot.joint[1] == at);
+            robot_hold(&robot, false);
+            CHECK(!robot_rests(&robot));
+            watch(&c, 0.0, INFINITY);
+        }
+        CHECK(robot_rests(&robot) && robot_idle(&robot));
+        CHECK_NEAR(robot.joint[1], aborts ? at : 1.25, 1e-12);
+    }
+}
+
 int main(void)
 {
     joints();
     lines();
     held();
+    flows();
+    flow_held();
     return check_result();
 }
