@@ -42,13 +42,14 @@ static void begin(const struct netcard_config *config, bool with_job)
     carried = 0;
 }
 
-static int64_t give(uint8_t type)
+static int64_t give_order(struct net_host_order order)
 {
     struct net_host_order *o = host.order;
 
-    CHECK(net_host_give(&host, &(struct net_host_order){ .at = c.now, .type = type, .axes = 15 }));
+    order.at = c.now;
+    CHECK(net_host_give(&host, &order));
     while (o < host.order + NET_HOST_ORDERS - 1
-           && !(o->type == type && o->stage != NET_HOST_ANSWERED)) {
+           && !(o->type == order.type && o->stage != NET_HOST_ANSWERED)) {
         o++;
     }
     for (int i = 0; i < 1000 && o->stage != NET_HOST_ANSWERED; i++) {
@@ -56,6 +57,42 @@ static int64_t give(uint8_t type)
     }
     CHECK_EQ(o->stage, NET_HOST_ANSWERED);
     return o->code;
+}
+
+static int64_t give(uint8_t type)
+{
+    return give_order((struct net_host_order){ .type = type, .axes = 15 });
+}
+
+/* Set a setting; the code of the answer. */
+static int64_t set(int id, int index, int64_t value)
+{
+    const struct net_config_set m = { ++host.last_number, (uint16_t)id, (uint16_t)index, value };
+    struct net_host_order *o = &host.order[NET_HOST_ORDERS - 1];
+    uint8_t payload[NET_BYTES_config_set];
+
+    *o = (struct net_host_order){ .stage = NET_HOST_SENT, .number = m.number };
+    net_put_config_set(payload, &m);
+    CHECK(net_channel_put(&host.channel, NET_CONFIG_SET, payload, sizeof payload));
+    pass(20);
+    CHECK_EQ(o->stage, NET_HOST_ANSWERED);
+    CHECK_EQ(o->state, c.state);
+    return o->code;
+}
+
+/* Ask for a setting; INT64_MIN: the card does not know it. */
+static int64_t get(int id, int index)
+{
+    const uint32_t before = host.settings, naks = host.naks;
+
+    CHECK(net_host_ask(&host, (uint16_t)id, (uint16_t)index));
+    pass(20);
+    CHECK_EQ(host.settings - before + host.naks - naks, 1);
+    if (host.settings == before) {
+        return INT64_MIN;
+    }
+    CHECK(host.setting.id == id && host.setting.index == index);
+    return host.setting.value;
 }
 
 static void take_file(int32_t frames)
@@ -95,6 +132,90 @@ static void upload(void)
     CHECK_EQ(bench_count(&c, 0), bench_end[0]);
     CHECK_EQ(bench_count(&c, 1), bench_end[1]);
     bench_times(&c);
+}
+
+/* Settings of each type are read and set; what is out of range, or comes while a job runs, is
+ * refused and changes nothing. */
+static void settings(void)
+{
+    const struct netcard_config config = bench_config();
+
+    take_file(4000);
+    begin(&config, true);
+    CHECK(!net_host_ask(&host, CARD_SET_home_back, 0)); /* not yet up */
+    pass(1000);
+    CHECK_EQ(get(CARD_SET_home_back, 2), config.settings.home_back[2]);
+    CHECK_EQ(get(CARD_SET_home_plus, 3), config.settings.home_plus[3]);
+    CHECK_EQ(get(CARD_SET_jerk_max, 1), llround(config.settings.jerk_max[1]));
+    CHECK_EQ(get(CARD_SET_home_back, 4), INT64_MIN);
+    CHECK_EQ(get(CARD_SETTING_COUNT, 0), INT64_MIN);
+    CHECK_EQ(set(CARD_SET_home_back, 2, 1234), NET_DONE);
+    CHECK_EQ(set(CARD_SET_home_plus, 3, 1), NET_DONE);
+    CHECK_EQ(set(CARD_SET_jerk_max, 1, 7000000), NET_DONE);
+    CHECK(c.settings.home_back[2] == 1234 && c.settings.home_back[1] != 1234);
+    CHECK(c.settings.home_plus[3] && !c.settings.home_plus[2]);
+    CHECK(c.settings.jerk_max[1] == 7e6 && c.settings.jerk_max[0] == config.settings.jerk_max[0]);
+    CHECK_EQ(get(CARD_SET_home_back, 2), 1234);
+    const struct card_settings before = c.settings;
+    CHECK_EQ(set(CARD_SET_home_back, 2, 0), NET_RANGE);
+    CHECK_EQ(set(CARD_SET_home_back, 2, INT64_C(1) << 32 | 5), NET_RANGE);
+    CHECK_EQ(set(CARD_SET_home_plus, 3, 2), NET_RANGE);
+    CHECK_EQ(set(CARD_SET_home_plus, 4, 1), NET_RANGE);
+    CHECK_EQ(set(CARD_SETTING_COUNT, 0, 1), NET_RANGE);
+    CHECK_EQ(give(NET_START), NET_DONE);
+    CHECK_EQ(set(CARD_SET_home_back, 2, 1235), NET_BUSY);
+    CHECK(memcmp(&before, &c.settings, sizeof before) == 0);
+}
+
+/* Outputs by message: levels of several at once, a pulse that ends, a width out of range. */
+static void outputs(void)
+{
+    const struct netcard_config config = bench_config();
+    struct net_host_order o = { .type = NET_OUTPUT, .pins = 0x8005, .level = 1 };
+
+    begin(&config, false);
+    pass(1000);
+    const uint32_t rest = c.outputs.levels;
+    CHECK_EQ(give_order(o), NET_DONE);
+    pass(200);
+    CHECK_EQ(c.outputs.levels, rest | 0x8005);
+    CHECK_EQ(host.status.outputs, rest | 0x8005);
+    o.pins = 4;
+    o.level = 0;
+    CHECK_EQ(give_order(o), NET_DONE);
+    pass(1);
+    CHECK_EQ(c.outputs.levels, rest | 0x8001);
+    o = (struct net_host_order){
+        .type = NET_OUTPUT, .pins = 2, .mode = MC_PO_PULSE, .level = 1, .width = 50000
+    };
+    CHECK_EQ(give_order(o), NET_DONE);
+    pass(40);
+    CHECK_EQ(c.outputs.levels, rest | 0x8003);
+    pass(20);
+    CHECK_EQ(c.outputs.levels, rest | 0x8001);
+    o.width = MC_PO_WIDTH_LONGEST + 1;
+    CHECK_EQ(give_order(o), NET_RANGE);
+    pass(1);
+    CHECK_EQ(c.outputs.levels, rest | 0x8001);
+}
+
+/* HOME by message moves the axes that it names, and without a switch ends in its fault. */
+static void homes(void)
+{
+    const struct netcard_config config = bench_config();
+
+    begin(&config, false);
+    pass(1000);
+    for (int i = 0; i < CARD_AXES; i++) {
+        CHECK_EQ(set(CARD_SET_home_travel, i, 4000), NET_DONE);
+    }
+    CHECK_EQ(give_order((struct net_host_order){ .type = NET_HOME, .axes = 2 }), NET_DONE);
+    CHECK_EQ(c.state, NET_HOMING);
+    pass(2000);
+    CHECK_EQ(c.state, NET_FAULT);
+    CHECK_EQ(host.status.error, NET_NOT_HOMED);
+    CHECK(bench_count(&c, 1) <= -3900 && bench_count(&c, 1) >= -6000);
+    CHECK(bench_count(&c, 0) == 0 && bench_count(&c, 2) == 0 && bench_count(&c, 3) == 0);
 }
 
 /* The load that STATUS tells is that of the last second, whatever was before: each is the share of
@@ -218,6 +339,9 @@ static void lost(enum card_link_loss loss, enum net_state state)
 int main(void)
 {
     upload();
+    settings();
+    outputs();
+    homes();
     loads();
     flooded();
     writes_while_running(false);
