@@ -107,8 +107,8 @@ static void held(void)
     CHECK_NEAR(t.by[LIMITED_WAIT], 1.0, 5 * CYCLE);
 }
 
-/* The turn as a move that flows: what is neither speed, feed nor acceleration is jerk. A speed within
- * 1 % counts as the whole one, and the time is at most 0.2 % above that of the closed form. */
+/* The turn as a move that flows: what is neither speed, feed nor acceleration is jerk. A speed
+ * within 1 % counts as the whole one, and the time is at most 0.2 % above the closed form. */
 static void flows(void)
 {
     struct robot_config c = rig_config();
