@@ -220,12 +220,12 @@ static void check_ring(uint64_t *seed)
         CHECK_EQ(put, n < (size_t)(512 - held) ? n : (size_t)(512 - held));
         sent = (uint8_t)(sent + put);
         for (size_t i = 0; i < sizeof bytes; i++)
-            bytes[i] = (uint8_t)~(seen + i);
+            bytes[i] = (uint8_t) ~(seen + i);
         const size_t got =
             byte_ring_look(words, count, taken, bytes, (size_t)check_random(seed, 0, 600));
         for (size_t i = 0; i < got; i++)
             CHECK_EQ(bytes[i], (uint8_t)(seen + i));
-        CHECK_EQ(bytes[got], (uint8_t)~(seen + got)); /* nothing behind what it says */
+        CHECK_EQ(bytes[got], (uint8_t) ~(seen + got)); /* nothing behind what it says */
         seen = (uint8_t)(seen + got);
         taken = byte_ring_on(taken, got);
         total += (int64_t)got;
