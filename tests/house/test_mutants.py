@@ -68,6 +68,8 @@ def test_what_is_the_same_either_way_is_no_change() -> None:
         "struct step all[STEPS + 1];": [],
         "return a < b ? a : b;": [],
         "return p->a[i] > b.c ? b.c : p->a[i];": [],
+        "return a < (int)b ? a : (int)b;": [],
+        "return a < (int)b ? a : b;": ["return a <= (int)b ? a : b;"],
         "return a < b ? a : c;": ["return a <= b ? a : c;"],
         "return a < b ? a : b + c;": ["return a <= b ? a : b + c;", "return a < b ? a : b - c;"],
         "return c + a < b ? a : b;": ["return c + a <= b ? a : b;", "return c - a < b ? a : b;"],

@@ -36,7 +36,8 @@ _PLACES_C = re.compile(r"^\s+(?!return|else|goto|case)(?:\w+ )+\**\w+((?:\[[\w +
 # The less or the greater of two, which are one if they are equal.
 _EXTREME_C = re.compile(
     r"(?:(?<=[(\[])|(?<=[=,?:] )|(?<=return ))"
-    r"([\w.>\[\]-]+) [<>] ([\w.>\[\]-]+) \? (?:\1 : \2|\2 : \1)(?=[;,)\]])"
+    r"((?:\(\w+\))?[\w.>\[\]-]+) [<>] ((?:\(\w+\))?[\w.>\[\]-]+)"
+    r" \? (?:\1 : \2|\2 : \1)(?=[;,)\]])"
 )
 # The length that numpy finds by itself, for which any number below 0 stands.
 _ANY_LENGTH_PYTHON = re.compile(r"\.reshape\([^=]*-$")
