@@ -1,5 +1,5 @@
-/* check - checks for the C tests: a check that fails prints file, line and values and the test goes
- * on; main returns check_result(), which is not 0 if one has failed. */
+/* check - checks for the C tests: of the first checks that fail file, line and values are printed,
+ * and the test goes on; main returns check_result(), which is not 0 if one has failed. */
 #ifndef CHECK_H
 #define CHECK_H
 
@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 static int check_failures;
-enum { CHECK_SHOWN = 20 }; /* failures that are printed; the others are counted */
+enum { CHECK_SHOWN = 20 }; /* the others are counted */
 
 /* Stride of loops over similar cases: under ASan, where a case takes several times as long, every
  * fifth case is enough for the sanitizers. */

@@ -22,13 +22,13 @@ static int switched(int points, bool smooth)
     if (r.n < points) {
         return -1;
     }
-    const double at = way_of_tool(), dec = limits_at(feed, smooth).acc;
+    const struct limits l = limits_at(feed, smooth);
+    const double at = way_of_tool();
     const double planned = m.trajectory.lookahead.base + m.trajectory.lookahead.s;
     const double v = m.trajectory.lookahead.v;
-    const double first = ceil(fmin(PIECES, planned + v * v / (2.0 * dec)) - 1e-9);
+    const double first = ceil(fmin(PIECES, planned + v * v / (2.0 * l.acc)) - 1e-9);
     CHECK_EQ(task_set_single_block(&m, true), MCC_NO_ERR);
     CHECK_EQ(task_continue(&m), MCC_CONTI_ILLEGAL); /* it moves yet */
-    const struct limits l = limits_at(feed, smooth);
     struct stream x = { .n = 0 };
     while (point(&r)) {
         if (m.trajectory.motion == TRAJECTORY_CHAIN) {

@@ -25,8 +25,8 @@ static struct told watch(const struct robot_config *c, double feed, double most)
     return t;
 }
 
-/* A turn of joint 2 by 2.5 rad at a share of its speed; the arm's ramps come up at once. */
-static struct told turn(const struct robot_config *c, double share, double override)
+/* Begin a turn of joint 2 by 2.5 rad at a share of its speed; the arm's ramps come up at once. */
+static void begin_turn(const struct robot_config *c, double share, double override)
 {
     static const double from[OPW_JOINTS] = { 0, -1.25, 0, 0, 1.5, 0 };
     struct robot_move m = { .kind = ROBOT_JOINTS, .share = share };
@@ -35,17 +35,28 @@ static struct told turn(const struct robot_config *c, double share, double overr
     m.target.joint[1] = 1.25;
     m.target.by_joints = true;
     robot_start(&robot, c, from);
+    CHECK(robot_rests(&robot));
     robot_override(&robot, override);
     CHECK_EQ(robot_move(&robot, c, &m, &why), ROBOT_OK);
+}
+
+static struct told turn(const struct robot_config *c, double share, double override)
+{
+    begin_turn(c, share, override);
     return watch(c, 0.0, INFINITY);
+}
+
+/* Highest speed of joint 2, by the motor or by the pulses of a slot [rad/s]. */
+static double fastest(const struct robot_config *c)
+{
+    return fmin(c->arm.joint[1].speed, 48.0 / (c->scale[1] * c->slot));
 }
 
 static void joints(void)
 {
     struct robot_config c = rig_config();
     c.smooth = 0.0;
-    const double v = 48.0 / (c.scale[1] * c.slot), most = fmin(c.arm.joint[1].speed, v);
-    const double acc = c.arm.joint[1].acc;
+    const double most = fastest(&c), acc = c.arm.joint[1].acc;
 
     struct told t = turn(&c, 1.0, 1.0);
     CHECK_NEAR(t.by[LIMITED_SPEED], 2.5 / most - most / acc, 3 * CYCLE);
@@ -113,8 +124,7 @@ static void flows(void)
 {
     struct robot_config c = rig_config();
     c.flow = true;
-    const double v = 48.0 / (c.scale[1] * c.slot), most = fmin(c.arm.joint[1].speed, v);
-    const double acc = c.arm.joint[1].acc;
+    const double most = fastest(&c), acc = c.arm.joint[1].acc;
 
     for (int smooth = 0; smooth < 2; smooth++) {
         c.smooth = 0.1 * smooth;
@@ -137,16 +147,10 @@ static void flows(void)
 static void flow_held(void)
 {
     struct robot_config c = rig_config();
-    const double from[OPW_JOINTS] = { 0, -1.25, 0, 0, 1.5, 0 };
-    struct robot_move m = { .kind = ROBOT_JOINTS, .share = 1.0, .target.by_joints = true };
 
     c.flow = true;
-    memcpy(m.target.joint, from, sizeof from);
-    m.target.joint[1] = 1.25;
     for (int aborts = 0; aborts < 2; aborts++) {
-        robot_start(&robot, &c, from);
-        CHECK(robot_rests(&robot));
-        CHECK_EQ(robot_move(&robot, &c, &m, &why), ROBOT_OK);
+        begin_turn(&c, 1.0, 1.0);
         CHECK(!robot_rests(&robot));
         watch(&c, 0.0, 0.5);
         CHECK(robot.rate[1] > 0.5);
