@@ -14,6 +14,7 @@ from pathlib import Path
 
 import fmpy
 from fmpy.model_description import ModelVariable
+from starting import start
 
 from motionfmu.base.platforms import Platform, here
 
@@ -24,8 +25,6 @@ RUNNERS = {
     "x86_64-windows": ("wine",),
     "aarch64-linux": ("qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"),
 }
-# What wine says before any program: of its place in the address space, which the system draws.
-UNSTARTED, TRIES = (b"wine: failed", b"wine client error", b"preloader:"), 3
 PACKAGES = {"wine": "wine wine64", "qemu-aarch64": "qemu-user libc6-arm64-cross"}
 _FOLDERS: list["tempfile.TemporaryDirectory[str]"] = []
 
@@ -89,10 +88,7 @@ def ran(made: Path, platform: Platform, arguments: Sequence[str], folder: Path) 
     """The lines that a program for a platform prints."""
     runner = () if platform == here() else RUNNERS[platform.name]
     whole = [*runner, str(made), *arguments]
-    for _ in range(TRIES):
-        done = subprocess.run(whole, cwd=folder, capture_output=True, check=False)
-        if not done.returncode or not done.stderr.startswith(UNSTARTED):
-            break
+    done = start(whole, folder)
     if done.returncode:
         told = done.stderr.decode(errors="replace")
         error = subprocess.CalledProcessError(done.returncode, whole, done.stdout, told)
