@@ -100,6 +100,7 @@ def test_a_new_scenario_holds_and_fails_where_it_must(project: Path) -> None:
         ("fmu 2nd", "NAME '2nd': small letters and digits"),
         ("fmu a-b", "NAME 'a-b': small letters"),
         ("scenario ../x", "NAME '../x': small letters"),
+        ("machine ../x --like gantry", "NAME '../x': small letters"),
     ],
 )
 def test_a_name_that_is_taken_or_wrong_is_refused(project: Path, line: str, told: str) -> None:
