@@ -20,6 +20,8 @@ from motionfmu.cards.plan_figures import deviations, figures, paths
 from motionfmu.cli import app
 from motionfmu.drawings import DrawingOptions, plt
 from motionfmu.drawings.contours import clean, corners, way_between
+from motionfmu.report.diagram import Diagram
+from motionfmu.report.jobs.card_charts import draw_job
 
 ACC, JERK, SCALE = 1000.0, 50_000.0, 800.0
 AXIS = f"""
@@ -295,6 +297,27 @@ def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     for option in (["--page", "2"], ["--frame", "0", "0", "1", "1"]):
         with pytest.raises(InputError, match=r"a\.mcj: --frame and --page are for drawings"):
             run(app, ["card", "show", "a.mcj", *option], catch_exceptions=False)
+
+
+def test_the_picture_of_a_job_marks_each_event_where_it_is(config, monkeypatch) -> None:
+    """The pen goes down where a square begins, and up there again: one square starts and ends."""
+    drawn: list[list[Diagram]] = []
+    monkeypatch.setattr(
+        "motionfmu.report.matplotlib_figure.write_file", lambda *given: drawn.append(given[-1])
+    )
+    found = card_job.decode(plan(plt.parse(written(squares()[:3]), "a.plt"), config).job)
+    draw_job(found, "a.mcj", Path("a.png"))
+    ((path, _),) = drawn
+    line, *events = path.subplots[0].marks
+    assert [m.name for m in (line, *events)] == [
+        "path",
+        *(f"event {k}" for k in range(1, len(found.events) + 1)),
+    ]
+    begins = np.array([p[0] for p in squares()[:3]]) / 40.0  # [mm]
+    places = [np.stack([m.x, m.y], axis=1) for m in events]
+    near = pytest.approx(begins, abs=1.5 / SCALE)
+    assert places[0] == near and places[1][-3:] == near and len(places) == 2
+    assert places[1][:-3] == pytest.approx(np.zeros((1, 2)))  # it is up before the first way
 
 
 def test_a_job_of_a_page_of_several(tmp_path, monkeypatch) -> None:
