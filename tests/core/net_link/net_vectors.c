@@ -130,6 +130,25 @@ static void check_rfc(void)
     check_hmac(key, 20, bytes_of("Test With Truncation"), 20, "a3b6167473100ee06e0c796c2955552b");
 }
 
+/* Of numbers all of whose bytes differ, by Python's hmac: the smaller byte of a number is first. */
+static void check_proofs(void)
+{
+    struct net_secret s = { .card = 0xa1b2c3d4, .protocol = 0xe5f6 };
+    uint8_t proof[NET_SHA_BYTES];
+    for (int i = 0; i < NET_SHA_BYTES; i++)
+        s.key[i] = (uint8_t)i;
+    for (int i = 0; i < NET_NONCE; i++) {
+        s.card_nonce[i] = (uint8_t)(0x40 + i);
+        s.server_nonce[i] = (uint8_t)(0x80 + i);
+    }
+    net_prove(&s, NET_OF_SERVER, proof);
+    check_hex(proof, "4f9b5b3c9eab3496fd41973e2188306541f42abd03963707d5c20ce6fbbf6f3c", __LINE__);
+    net_prove(&s, NET_OF_CARD, proof);
+    check_hex(proof, "b4d15579d7cf7fd3bb63be9ff9549290c446a915dda4f22752ff09d2b4549b86", __LINE__);
+    net_prove(&s, NET_OF_SESSION, proof);
+    check_hex(proof, "6e4edb8a799d0e4aa6d963fa600fd641346b7f6d01a529af6f7f6b9b9312fafa", __LINE__);
+}
+
 static void check_equal(void)
 {
     uint8_t a[40] = { 0 }, b[40] = { 0 };
@@ -165,6 +184,7 @@ int main(void)
     check_crc();
     check_hashes();
     check_rfc();
+    check_proofs();
     check_equal();
     check_random_bytes();
     return check_result();
