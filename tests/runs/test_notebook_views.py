@@ -146,6 +146,7 @@ def test_a_study_tells_its_runs_and_the_best(outcome: Outcome) -> None:
 def test_a_notebook_shows_a_study(outcome: Outcome, tmp_path: Path) -> None:
     text = shown(outcome)
     assert "9 runs (grid), 1 with an error" in text and "4 ✓ 32 " in text
+    assert outcome._repr_html_().count("✓") == 5  # the best ones
     empty = synthetic(["mcc.p_gain"], "grid", 2, tmp_path)
     for row in empty.rows:
         object.__setattr__(row, "values", (None,) * 3)
