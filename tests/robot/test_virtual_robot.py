@@ -385,6 +385,7 @@ def test_a_run_in_pieces_is_a_run_in_one_go() -> None:
 
 def test_kinematics_within_limits_and_near_a_place() -> None:
     arm = Kinematics(tool=[0, 0, 150, 0, 0, 0])
+    assert repr(arm) == "<Kinematics: joints at 0, tip at [1180, 0, 1260, 0, 90, 0]>"  # no -0
     random = np.random.default_rng(2)
     low, high = (np.array(robots.defaults()[n][0]) for n in ("joint_low", "joint_high"))
     joints = random.uniform(low, high, (50, 40, 6))
