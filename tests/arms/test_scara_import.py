@@ -9,11 +9,12 @@ from random_arms import PinocchioChain
 from typer.testing import CliRunner
 
 from motionfmu import run
+from motionfmu.analysis.collisions.arm_parts import ArmParts
 from motionfmu.arm_machines import arm_machine
 from motionfmu.arms import AxesGeometry, driven_geometry, urdf_arm
 from motionfmu.cli import app
 from motionfmu.report.view.scene import scene_of
-from motionfmu.virtual.robot import RobotError, VirtualRobot
+from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot, defaults
 
 SCARA = Path(__file__).parent / "small_scara.urdf"
 MM, SLIDE = 1e-3, 2
@@ -86,6 +87,22 @@ def test_its_picture_slides(arm_run) -> None:
     assert scene is not None and scene.arm is not None
     assert [row[2] for row in scene.arm.axes] == [False, False, True, False]
     assert scene.joints is not None and scene.joints.shape[1] >= 4
+
+
+def test_bars_for_collisions_are_where_the_links_are(settings: dict) -> None:
+    """Each joint's, by the arm's frames, and the flange by the controller's own kinematics."""
+    geometry = driven_geometry(urdf_arm(SCARA))
+    assert isinstance(geometry, AxesGeometry)
+    joints = np.zeros((50, 6))
+    joints[:, :4] = np.random.default_rng(5).uniform(-150, 150, (50, 4))
+    q = np.radians(joints[:, :4])
+    q[:, SLIDE] = MM * joints[:, SLIDE]
+    known = {name: value for name, (value, _) in defaults().items()}
+    points = ArmParts.of(known | settings).points(joints, np.zeros((50, 3)))
+    for k, frame in enumerate(geometry.frames(q), 1):
+        assert points[:, k] == pytest.approx(1e3 * frame[:, :3, 3], abs=1e-6)
+    flange = Kinematics(**settings).forward(joints)[:, :3, 3]
+    assert points[:, 7] == pytest.approx(flange, abs=1e-6)
 
 
 def at_rest(robot: VirtualRobot) -> None:

@@ -145,6 +145,8 @@ def test_a_ballbar_record_is_read_for_what_made_it(name: str) -> None:
     assert mark.findings[0].size == pytest.approx(0.012, rel=1e-6)
     assert mark.mean == pytest.approx(0.004, abs=1e-9)
     assert [f.name for f in mark.findings if f.named] == [name]
+    if name == "mismatch":  # y behind by T makes the radius v T / 2 sin 2 angle less
+        assert " X lags Y by 1.44 ms: " in mark.findings[0].words
 
 
 def test_the_command_reads_a_ballbar_in_two_files_without_times(tmp_path: Path) -> None:
