@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import robot_settings
 from random_arms import PinocchioChain
 from typer.testing import CliRunner
 
@@ -14,7 +15,7 @@ from motionfmu.arm_machines import arm_machine
 from motionfmu.arms import AxesGeometry, driven_geometry, urdf_arm
 from motionfmu.cli import app
 from motionfmu.report.view.scene import scene_of
-from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot, defaults
+from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot
 
 SCARA = Path(__file__).parent / "small_scara.urdf"
 MM, SLIDE = 1e-3, 2
@@ -97,8 +98,7 @@ def test_bars_for_collisions_are_where_the_links_are(settings: dict) -> None:
     joints[:, :4] = np.random.default_rng(5).uniform(-150, 150, (50, 4))
     q = np.radians(joints[:, :4])
     q[:, SLIDE] = MM * joints[:, SLIDE]
-    known = {name: value for name, (value, _) in defaults().items()}
-    points = ArmParts.of(known | settings).points(joints, np.zeros((50, 3)))
+    points = ArmParts.of(robot_settings.settings(**settings)).points(joints, np.zeros((50, 3)))
     for k, frame in enumerate(geometry.frames(q), 1):
         assert points[:, k] == pytest.approx(1e3 * frame[:, :3, 3], abs=1e-6)
     flange = Kinematics(**settings).forward(joints)[:, :3, 3]

@@ -9,7 +9,7 @@ import pytest
 from starting import TRIES, first_start, start
 
 HINT = "it looks like wine32 is missing, you should install it."  # Debian's first line
-GONE = "wine: chdir to /tmp/wine-Nm3X10/server-fe00-ba046 : No such file or directory"
+GONE = "wine: chdir to wine-x/server-y : No such file or directory"
 # Complains each time, starts at the given one; `cmd` is what it is first started with.
 COUNTED = f"""#!/bin/sh
 echo "{HINT}" >&2
@@ -63,7 +63,7 @@ def test_what_did_not_start_is_started_again(
     assert HINT in done.stderr.decode()
 
 
-def test_the_first_start_is_one_process_s(place: Path) -> None:
+def test_one_process_makes_the_first_start(place: Path) -> None:
     made(place, RACING)
     words = f"""import sys
 sys.path[:0] = [{str(Path(__file__).parent)!r}]

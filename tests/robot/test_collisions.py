@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from public_arms import Array, universal
+from robot_settings import settings
 from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
@@ -19,7 +20,7 @@ from motionfmu.analysis.collisions.clearance import FLOOR, distances
 from motionfmu.analysis.collisions.distances import between_segments, from_box
 from motionfmu.analysis.dry_run import dry_run
 from motionfmu.cli import app
-from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot, defaults
+from motionfmu.virtual.robot import Kinematics, RobotError, VirtualRobot
 
 POSES = 1000
 CELL = """
@@ -40,10 +41,6 @@ name = "post"
 bar = [[0, 800, 0], [300, 900, 2000]]
 radius = 60
 """
-
-
-def settings(**more: Any) -> dict[str, Any]:
-    return {name: value for name, (value, _) in defaults().items()} | more
 
 
 def axes_of_ur5e() -> dict[str, Any]:
